@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/gear/ring_shape.hpp"
+#include "harmonic_joint_twin/gear/tooth_profile.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Contact of the flexspline's teeth with the flanks of the circular spline (completes thesis ch. 7.4-7.5).
+///
+/// Energy:  U = sum_i k_i cos^2(beta) [r(xi_i - c_i) + r(-xi_i - c_i)] s(d_i), r the contact ramp
+/// where    P_i     tooth at mid-height, X_i + z_t n_i, n_i outward normal of the chord X_{i+1} - X_{i-1}   [m]
+///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0          [m]
+///          zeta_i  P_i along that axis                                                                     [m]
+///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
+///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - r_a             [m]
+///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
+///          k_i     stiffness of the tooth pair along the flank normal, >= 0                                [N/m]
+class ToothMesh
+{
+public:
+  ToothMesh(const MeshParameters& parameters, const GearParameters& gear);
+
+  void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+  void addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
+
+  /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
+  void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
+
+  /// Normal force on the flank of tooth i; > 0 on the leading (counter-clockwise) flank, < 0 on the trailing one [N].
+  double flankForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
+
+  /// Sliding of tooth i along the loaded flank [m/s] for speeds of the ring's points and of the output.
+  double slidingSpeed(const RingShape& shape, const DrivePosition& position, int i, const Eigen::VectorXd& speeds,
+                      double output_speed, bool leading) const noexcept;
+
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
+  Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
+
+private:
+  struct Engagement;
+  struct Law;
+  Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
+  Law law(const Engagement& tooth, int i) const noexcept;
+
+  int spaces_;
+  double mid_height_;
+  double tip_offset_;  // half tooth height minus the circular spline's tip radius [m]
+  double depth_;
+  double smoothing_;
+  double cos_flank_;
+  double half_space_;  // tangent of half a space
+  StraightFlank profile_;
+  Eigen::VectorXd axes_;  // 2 per space, unit vectors at output angle 0
+  Eigen::VectorXd stiffness_;
+  Eigen::VectorXd clearance_;
+};
+}  // namespace hjt

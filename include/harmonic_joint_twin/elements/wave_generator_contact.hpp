@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/gear/ellipse.hpp"
+#include "harmonic_joint_twin/gear/ring_shape.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by theta.
+///
+/// Energy (normal):  U = sum_i k_i r(depth_i), r the contact ramp, depth_i inside the ellipse along its true normal
+/// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
+///                   (thesis eq. 5.11-5.23): not a gradient; only for the insertion of the thesis. Its tangent leaves
+///                   the unsymmetric part out, which costs Newton some iterations and nothing else.
+/// where             k_i  stiffness per tooth, >= 0 [N/m]
+class WaveGeneratorContact
+{
+public:
+  WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear);
+
+  void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+  void addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
+
+  /// Normal force on tooth i, >= 0 [N].
+  double normalForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
+
+  /// Outward unit normal of the wave generator at tooth i [-].
+  Eigen::Vector2d normal(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
+
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
+
+private:
+  struct Frame;
+  EllipseFoot foot(const Frame& frame, double x, double y) const noexcept;
+
+  ContactLaw law_;
+  double smoothing_;
+  double mean_radius_;
+  Eigen::VectorXd stiffness_;
+};
+}  // namespace hjt

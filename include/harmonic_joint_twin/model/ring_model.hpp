@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "harmonic_joint_twin/elements/cup_torsion.hpp"
+#include "harmonic_joint_twin/elements/rim_bending.hpp"
+#include "harmonic_joint_twin/elements/rim_tension.hpp"
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/elements/tooth_mesh.hpp"
+#include "harmonic_joint_twin/elements/wave_generator_contact.hpp"
+#include "harmonic_joint_twin/gear/ring_shape.hpp"
+#include "harmonic_joint_twin/gear/tooth_ring.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// All conservative elements on the ring. Constant after construction; faults are edits of its per-tooth arrays.
+struct RingModel
+{
+  explicit RingModel(const Parameters& parameters);
+
+  /// Forces and stored energy. The shape's geometry must be up to date.
+  void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+
+  /// Hessian of the stored energy.
+  void tangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
+
+  /// The ring at rest, every tooth paired with its nearest space.
+  RingShape restShape(const DrivePosition& position) const;
+
+  GearParameters gear;
+  ToothRing rest;
+  RimTension tension;
+  RimBending bending;
+  WaveGeneratorContact contact;
+  CupTorsion cup;
+  ToothMesh mesh;
+  bool meshed{ true };  ///< false: circular spline left out
+};
+}  // namespace hjt

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// How each choice is spelt in configuration; the overload is picked by the enumeration's type.
+template <class Choice, std::size_t N>
+using ChoiceNames = std::array<std::pair<const char*, Choice>, N>;
+
+constexpr ChoiceNames<BendingLaw, 2> choiceNames(BendingLaw)
+{
+  return { { { "absolute", BendingLaw::ABSOLUTE }, { "curvature", BendingLaw::CURVATURE } } };
+}
+
+constexpr ChoiceNames<ContactLaw, 2> choiceNames(ContactLaw)
+{
+  return { { { "polar", ContactLaw::POLAR }, { "normal", ContactLaw::NORMAL } } };
+}
+
+constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
+{
+  return { { { "leapfrog", StepperKind::LEAPFROG }, { "runge_kutta4", StepperKind::RUNGE_KUTTA4 } } };
+}
+}  // namespace hjt

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// One configured value and where it came from, for the error text ("config/gear.yaml:12", "--set", "parameter server").
+struct ParameterValue
+{
+  std::variant<bool, std::int64_t, double, std::string, std::vector<double>> value;
+  std::string origin;
+};
+
+/// Flat `section.key` to value; the common form of a YAML file, `--set` and the ROS parameter server.
+using ParameterMap = std::map<std::string, ParameterValue>;
+
+/// Reads a YAML file of the form `section: {key: value}` over `map`; later files win.
+/// Numbers must be spelt as rosparam understands them (1.0e-3, not 1e-3).
+/// @throws ParameterError naming file and line.
+void readYamlFile(const std::string& path, ParameterMap& map);
+
+/// Reads one `section.key=value` (value in YAML) over `map`. @throws ParameterError.
+void readAssignment(const std::string& assignment, ParameterMap& map);
+
+/// Fills and checks the parameters.
+/// @throws ParameterError on a missing, unknown, mistyped or out-of-range key, and where two keys contradict each other.
+Parameters parseParameters(const ParameterMap& map);
+
+/// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.
+std::string describeParameters(const Parameters& parameters);
+
+/// The parameter table of the README, in Markdown: key, unit, range, meaning.
+std::string parameterTableMarkdown();
+}  // namespace hjt

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace hjt
+{
+// Plain values, one struct per section of the configuration. No defaults: every key is read from configuration.
+// Units, ranges and meanings stand in one place, the field table (params/field_table.hpp).
+
+struct GearParameters
+{
+  int teeth_flexspline{};
+  int teeth_circular_spline{};
+  double flexspline_inner_radius{};
+  double wave_amplitude{};
+  double rim_thickness{};
+  double tooth_height_flexspline{};
+  double tip_radius_circular_spline{};
+
+  /// Distance from the inner rim to mid-height of a tooth [m].
+  double toothMidHeight() const { return rim_thickness + 0.5 * tooth_height_flexspline; }
+};
+
+/// Which rotation the rim resists: of each segment from rest (thesis 5.47-5.53), or between neighbouring segments.
+enum class BendingLaw
+{
+  ABSOLUTE,
+  CURVATURE
+};
+
+struct RingParameters
+{
+  double tension_stiffness{};
+  double tension_damping{};
+  double tooth_damping{};
+  double bending_stiffness{};
+  BendingLaw bending_law{};
+};
+
+/// Where the wave generator pushes: at the thesis' polar point (eq. 5.11), or along the true normal.
+enum class ContactLaw
+{
+  POLAR,
+  NORMAL
+};
+
+struct ContactParameters
+{
+  double stiffness{};
+  double damping{};
+  ContactLaw law{};
+  double smoothing{};
+  double friction_coefficient{};
+  double slip_lever{};
+};
+
+struct MeshParameters
+{
+  double stiffness{};
+  double flank_angle{};
+  double flank_clearance{};
+  double engagement_depth{};
+  double smoothing{};
+  double friction_static{};
+  double friction_kinetic{};
+  double stribeck_velocity{};
+};
+
+struct CupParameters
+{
+  std::array<double, 3> torsion_stiffness{};
+  std::array<double, 2> torsion_breakpoints{};
+};
+
+struct BearingParameters
+{
+  double lubricant_factor{};
+  double load_factor{};
+  double pitch_diameter{};
+  double viscosity{};
+  double viscosity_temperature{};
+  double viscosity_slope{};
+};
+
+struct MotorParameters
+{
+  double rotor_inertia{};
+  double wave_generator_inertia{};
+  double coulomb_torque{};
+  double viscous_friction{};
+  double torque_limit{};
+  double speed_limit{};
+};
+
+struct OutputParameters
+{
+  double circular_spline_inertia{};
+  double load_inertia{};
+  double viscous_friction{};
+  double gravity_torque{};
+  double gravity_angle{};
+  double load_torque_limit{};
+};
+
+struct BrakeParameters
+{
+  double holding_torque{};
+  bool engaged_at_start{};
+};
+
+/// How the joint is marched: one ring solve a step, staggered; or the classical Runge-Kutta of Boost.odeint, four.
+enum class StepperKind
+{
+  LEAPFROG,
+  RUNGE_KUTTA4
+};
+
+struct SolverParameters
+{
+  double rate{};
+  StepperKind stepper{};
+  double force_tolerance{};
+  int max_iterations{};
+  int max_step_cuts{};
+  double stiction_velocity{};
+};
+
+struct SensorParameters
+{
+  int motor_counts_per_turn{};
+  int output_bits{};
+  double velocity_window{};
+};
+
+struct HealthParameters
+{
+  double stiffness_torque_span{};
+  double efficiency_window{};
+};
+
+struct InputParameters
+{
+  double command_timeout{};
+  double hold_back{};
+  bool wait_for_first_input{};
+  double temperature{};
+};
+
+struct PublishParameters
+{
+  double joint_states_rate{};
+  double encoders_rate{};
+  double contact_forces_rate{};
+  double health_rate{};
+};
+
+struct JointParameters
+{
+  std::string name{};
+  std::string hardware_id{};
+};
+
+/// Everything the twin is made from.
+struct Parameters
+{
+  JointParameters joint;
+  GearParameters gear;
+  RingParameters ring;
+  ContactParameters contact;
+  MeshParameters mesh;
+  CupParameters cup;
+  BearingParameters bearing;
+  MotorParameters motor;
+  OutputParameters output;
+  BrakeParameters brake;
+  SolverParameters solver;
+  SensorParameters sensors;
+  HealthParameters health;
+  InputParameters input;
+  PublishParameters publish;
+};
+}  // namespace hjt

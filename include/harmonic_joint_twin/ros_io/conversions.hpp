@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <sensor_msgs/JointState.h>
+
+#include "harmonic_joint_twin/ContactForces.h"
+#include "harmonic_joint_twin/Encoders.h"
+#include "harmonic_joint_twin/Health.h"
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// Names under which the joint appears in JointState messages.
+struct JointNames
+{
+  explicit JointNames(const std::string& joint_name) : joint(joint_name), motor(joint_name + "_motor") {}
+
+  std::string joint;
+  std::string motor;
+};
+
+// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
+
+/// Order of the entries: motor, joint.
+sensor_msgs::JointState makeJointStates(const JointNames& names);
+
+/// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
+void fillJointStates(const JointOutputs& outputs, const EncoderReadings& readings,
+                     sensor_msgs::JointState& message) noexcept;
+
+harmonic_joint_twin::Encoders makeEncoders(const JointNames& names);
+void fillEncoders(const JointOutputs& outputs, const EncoderReadings& readings,
+                  harmonic_joint_twin::Encoders& message) noexcept;
+
+/// One entry per tooth in every array.
+harmonic_joint_twin::ContactForces makeContactForces(const JointNames& names, int teeth);
+void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
+                       harmonic_joint_twin::ContactForces& message) noexcept;
+
+harmonic_joint_twin::Health makeHealth(const JointNames& names);
+void fillHealth(const JointOutputs& outputs, const HealthReport& report,
+                harmonic_joint_twin::Health& message) noexcept;
+
+/// What was found in a stamped torque message.
+enum class EffortStatus
+{
+  FOUND,
+  UNKNOWN_JOINT,   ///< no entry for this joint
+  MISSING_EFFORT   ///< the joint is named, but the effort array does not reach it
+};
+
+/// Motor torque [N.m] in a stamped command: the effort of the joint or, if only that is named, of its motor.
+EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
+
+/// Load torque [N.m] in a stamped load: the effort of the joint.
+EffortStatus readLoadTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
+}  // namespace hjt

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace hjt
+{
+/// Names of the twin's topics, relative to the node's private namespace, live and in bags.
+namespace topics
+{
+constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< in, std_msgs/Float64 [N.m]
+constexpr const char* COMMAND = "command";                            ///< in, sensor_msgs/JointState, its stamped form
+constexpr const char* LOAD_TORQUE = "load_torque";                    ///< in, std_msgs/Float64 [N.m]
+constexpr const char* LOAD = "load";                                  ///< in, sensor_msgs/JointState, its stamped form
+constexpr const char* JOINT_STATES = "joint_states";                  ///< out, sensor_msgs/JointState
+constexpr const char* ENCODERS = "encoders";                          ///< out, harmonic_joint_twin/Encoders
+constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, harmonic_joint_twin/ContactForces
+constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
+}  // namespace topics
+}  // namespace hjt

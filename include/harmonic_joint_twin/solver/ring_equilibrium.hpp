@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/model/ring_model.hpp"
+#include "harmonic_joint_twin/solver/cyclic_solver.hpp"
+
+namespace hjt
+{
+enum class SolveCode
+{
+  CONVERGED,
+  NOT_CONVERGED,  ///< the iterations ran out or no step reduced the forces
+  SINGULAR,       ///< the tangent has no inverse
+  NOT_FINITE      ///< NaN or Inf came up
+};
+
+/// What a solve says of itself; the caller must look.
+struct [[nodiscard]] SolveStatus
+{
+  SolveCode code{ SolveCode::CONVERGED };
+  int iterations{};   ///< Newton iterations, all attempts
+  int cuts{};         ///< halvings of the path
+  double residual{};  ///< largest out-of-balance force component on a tooth [N]
+
+  bool ok() const noexcept { return code == SolveCode::CONVERGED; }
+};
+
+/// The ring in equilibrium for a position of wave generator and circular spline.
+///
+/// Newton with the analytic tangent, line search, and continuation: a target that is not reached directly is approached
+/// over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good state stays.
+class RingEquilibrium
+{
+public:
+  RingEquilibrium(const RingModel& model, const SolverParameters& parameters);
+
+  /// Cold start: from the round ring the wave amplitude grows to its full value.
+  SolveStatus insert(const DrivePosition& target) noexcept;
+
+  /// From the present equilibrium to another position.
+  SolveStatus moveTo(const DrivePosition& target) noexcept;
+
+  const RingModel& model() const noexcept { return model_; }
+  const RingShape& shape() const noexcept { return shape_; }
+  const DrivePosition& position() const noexcept { return position_; }
+  const RingForces& forces() const noexcept { return forces_; }
+
+  /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
+  const Eigen::VectorXd& byWaveGenerator() const noexcept { return by_wave_generator_; }
+  const Eigen::VectorXd& byOutput() const noexcept { return by_output_; }
+
+  /// Second derivatives of the stored energy by (wave generator, output) angle, the ring following [N.m/rad].
+  const Eigen::Matrix2d& stiffness() const noexcept { return stiffness_; }
+
+private:
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+  void predict(const DrivePosition& target) noexcept;
+  SolveStatus solve(const DrivePosition& target) noexcept;
+  bool refactor() noexcept;
+  bool searchLine(double residual) noexcept;
+  void updateSensitivities() noexcept;
+
+  const RingModel& model_;
+  SolverParameters parameters_;
+  CyclicSolver solver_;
+  RingTangent tangent_;
+  RingShape shape_;
+  RingForces forces_;
+  DrivePosition position_;
+  Eigen::VectorXd by_wave_generator_;
+  Eigen::VectorXd by_output_;
+  Eigen::Matrix2d stiffness_;
+  // Scratch, sized once.
+  RingShape good_shape_;
+  Eigen::VectorXd start_points_;
+  Eigen::VectorXd step_;
+  Columns columns_;
+};
+}  // namespace hjt

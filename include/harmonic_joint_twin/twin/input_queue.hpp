@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace hjt
+{
+/// Time of a message or of a simulated instant [ns since the epoch of the messages].
+using Stamp = std::int64_t;
+
+enum class InputKind : std::uint8_t
+{
+  MOTOR_TORQUE,
+  LOAD_TORQUE,
+  BRAKE
+};
+
+struct Input
+{
+  Stamp stamp{};
+  InputKind kind{};
+  double value{};
+};
+
+struct InputCounters
+{
+  std::uint64_t accepted{};
+  std::uint64_t not_finite{};  ///< NaN or Inf: refused
+  std::uint64_t late{};        ///< stamp before the instant already simulated: acts at once
+  std::uint64_t overflow{};    ///< queue full: oldest dropped
+};
+
+/// Stamped inputs in order of time, in a fixed store. Equal stamps keep the order of arrival.
+class InputQueue
+{
+public:
+  static constexpr std::size_t CAPACITY = 4096;
+
+  void clear() noexcept;
+  bool empty() const noexcept { return size_ == 0; }
+
+  /// `now`: the instant already simulated.
+  void push(const Input& input, Stamp now) noexcept;
+
+  /// Takes the earliest input with a stamp not after `instant`. False: there is none.
+  bool pop(Stamp instant, Input& input) noexcept;
+
+  const InputCounters& counters() const noexcept { return counters_; }
+
+private:
+  std::array<Input, CAPACITY> inputs_{};
+  std::size_t first_{};
+  std::size_t size_{};
+  InputCounters counters_{};
+};
+}  // namespace hjt

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Static equilibrium after the insertion, circular spline left out (thesis ch. 5-6).
+struct InsertionResult
+{
+  bool converged{};
+  double wave_generator_force_max{};  ///< [N]
+  double wave_generator_force_min{};  ///< [N]
+  double wave_generator_force_sum{};  ///< [N]
+  int teeth_in_contact{};             ///< with the wave generator
+  double tension_min{};               ///< [N]
+  double tension_max{};               ///< [N]
+  double radius_major_axis{};         ///< of tooth 0 [m]
+  double radius_minor_axis{};         ///< of tooth N/4 [m]
+  double bending_force_max{};         ///< [N]
+  double residual{};                  ///< [N]
+  int iterations{};                   ///< Newton iterations in all
+  double solve_time{};                ///< [s]
+  std::vector<double> tooth_x;        ///< per tooth [m]
+  std::vector<double> tooth_y;        ///< per tooth [m]
+  std::vector<double> radius;         ///< per tooth [m]
+  std::vector<double> angle_deviation;       ///< psi - psi0, per tooth [rad]
+  std::vector<double> wave_generator_force;  ///< per tooth [N]
+  std::vector<double> rim_tension;           ///< per tooth, to the next [N]
+  std::vector<double> bending_force;         ///< per tooth, of the segment to the next [N]
+};
+InsertionResult analyseInsertion(const Parameters& parameters);
+
+/// Wave generator locked, load on the circular spline, friction left out.
+struct StiffnessRow
+{
+  bool converged{};
+  double torque{};                    ///< load [N.m]
+  double output_angle{};              ///< relative to zero load [rad]
+  double wave_generator_torque{};     ///< the wave generator must be held with, reduced sign of the load [N.m]
+  int teeth_loaded{};
+  double mesh_force_max{};            ///< [N]
+  double wave_generator_force_sum{};  ///< [N]
+  double residual{};                  ///< [N]
+};
+std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
+                                           const std::vector<double>& torques);
+
+/// Quasi-static turning at constant load, friction left out.
+struct TurnRow
+{
+  bool converged{};
+  double wave_generator_angle{};   ///< [rad]
+  double output_angle{};           ///< [rad]
+  double wave_generator_torque{};  ///< [N.m]
+  double residual{};               ///< [N]
+};
+/// `progress` is called with each step done.
+std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
+                                 const std::function<void(int)>& progress);
+}  // namespace hjt

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+
+namespace hjt
+{
+/// What the joint does at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
+struct JointOutputs
+{
+  Stamp stamp{};                    ///< simulated instant [ns]
+  double motor_angle{};             ///< wave generator, true
+  double motor_velocity{};
+  double output_angle{};            ///< circular spline, true
+  double output_velocity{};
+  double motor_torque{};            ///< applied, after command timeout and limits
+  double load_torque{};             ///< external torque at the output, > 0 resists positive motion
+  double wave_generator_torque{};   ///< of the wave generator on the flexspline: what the motor must deliver without friction
+  double joint_torque{};            ///< of the mesh on the circular spline
+  double friction_torque{};         ///< all friction reduced to the motor shaft by power, >= 0
+  double torsional_stiffness{};     ///< local, wave generator locked [N.m/rad]
+  double energy_residual{};         ///< energy in - stored - dissipated since reset [J]
+  bool brake_engaged{};
+  bool converged{ true };           ///< false: the ring did not converge and the last good state is held
+  std::uint32_t iterations{};       ///< Newton iterations of the last step
+  double residual{};                ///< largest out-of-balance force [N]
+};
+
+/// Readings of both encoders.
+struct EncoderReadings
+{
+  std::int64_t motor_count{};
+  double motor_angle{};             ///< [rad]
+  double motor_velocity{};          ///< difference over the velocity window [rad/s]
+  std::uint32_t output_count{};
+  double output_angle{};            ///< unwrapped [rad]
+  double output_velocity{};         ///< [rad/s]
+};
+
+/// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
+struct ToothForces
+{
+  std::vector<double> wave_generator_force;
+  std::vector<double> rim_tension;
+  std::vector<double> bending_force;
+  std::vector<double> mesh_force;
+  std::vector<double> tooth_x;
+  std::vector<double> tooth_y;
+};
+
+enum class SolverState : std::uint8_t
+{
+  OK = 0,
+  DEGRADED = 1,
+  FAILED = 2
+};
+
+/// Health indicators; fields as in Health.msg.
+struct HealthReport
+{
+  bool transmission_ratio_valid{};
+  double transmission_ratio{};
+  double torsion{};
+  bool torsional_stiffness_valid{};
+  double torsional_stiffness{};
+  double torsional_stiffness_model{};
+  std::uint32_t teeth_loaded{};
+  std::array<double, 2> lobe_mesh_force{};
+  double lobe_asymmetry{};
+  double wave_generator_load{};
+  double friction_torque{};
+  bool efficiency_valid{};
+  double efficiency{};
+  bool kinematic_error_valid{};
+  double kinematic_error{};
+  double motor_torque{};
+  double joint_torque{};
+  double energy_residual{};
+  SolverState solver_state{};
+  std::uint32_t solver_iterations{};
+  double solver_residual{};
+  std::uint64_t solver_failures{};
+};
+
+/// Counters since reset, for diagnostics.
+struct TwinCounters
+{
+  std::uint64_t steps{};
+  std::uint64_t solver_failures{};       ///< steps that did not converge: last good state held
+  std::uint64_t step_cuts{};             ///< steps that needed a shorter path
+  InputCounters input;
+  std::uint64_t torque_clamped{};        ///< steps on which the command exceeded motor.torque_limit
+  std::uint64_t load_clamped{};          ///< steps on which the load exceeded output.load_torque_limit
+  std::uint64_t speed_limited{};         ///< steps on which the drive held torque back at motor.speed_limit
+  std::uint64_t command_timeouts{};      ///< times the command ran into input.command_timeout
+};
+
+/// The joint twin: commanded torques in, encoder angles, tooth forces and health out. Knows no ROS.
+///
+/// Time is the time of the messages: instants are whole multiples of the solver step, so that the same stamped inputs
+/// give the same numbers live, replayed and offline, in one go or in chunks.
+/// After construction no member throws or allocates except where said.
+class Twin
+{
+public:
+  /// Inserts the wave generator (some milliseconds). @throws ParameterError if the parameters have no equilibrium.
+  explicit Twin(const Parameters& parameters);
+  ~Twin();
+  Twin(Twin&&) noexcept;
+  Twin& operator=(Twin&&) noexcept;
+
+  const Parameters& parameters() const noexcept;
+
+  /// Starts anew at rest, zero angles, at the first instant not before `stamp`; forgets inputs and counters.
+  void reset(Stamp stamp) noexcept;
+
+  /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
+  /// its stamp; one that comes too late acts at once and is counted.
+  void commandMotorTorque(Stamp stamp, double torque) noexcept;  ///< [N.m] motor shaft
+  void commandLoadTorque(Stamp stamp, double torque) noexcept;   ///< [N.m] output, > 0 resists positive motion
+  void commandBrake(Stamp stamp, bool engaged) noexcept;
+
+  /// Advances by one solver step if the next instant is not after `until`. False: nothing was done.
+  bool step(Stamp until) noexcept;
+
+  Stamp stamp() const noexcept;       ///< current instant [ns]
+  Stamp stepLength() const noexcept;  ///< [ns]
+
+  const JointOutputs& outputs() const noexcept;
+  EncoderReadings encoders() const noexcept;
+  const TwinCounters& counters() const noexcept;
+
+  ToothForces makeToothForces() const;                   ///< allocates: call once
+  void toothForces(ToothForces& forces) const noexcept;  ///< fills the arrays at the current instant
+  HealthReport health() noexcept;                        ///< at the current instant; clears "since last report" states
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+}  // namespace hjt

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/model/ring_model.hpp"
+
+namespace hjt
+{
+RingModel::RingModel(const Parameters& parameters)
+  : gear(parameters.gear)
+  , rest(parameters.gear)
+  , tension(parameters.ring, rest)
+  , bending(parameters.ring, rest)
+  , contact(parameters.contact, parameters.gear)
+  , cup(parameters.cup, rest)
+  , mesh(parameters.mesh, parameters.gear)
+{
+}
+
+void RingModel::forces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
+{
+  forces.setZero();
+  tension.addForces(shape, forces);
+  bending.addForces(shape, forces);
+  contact.addForces(shape, position, forces);
+  cup.addForces(shape, forces);
+  if (meshed)
+  {
+    mesh.addForces(shape, position, forces);
+  }
+}
+
+void RingModel::tangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept
+{
+  tangent.setZero();
+  tension.addTangent(shape, tangent);
+  bending.addTangent(shape, tangent);
+  contact.addTangent(shape, position, tangent);
+  cup.addTangent(shape, tangent);
+  if (meshed)
+  {
+    mesh.addTangent(shape, position, tangent);
+  }
+}
+
+RingShape RingModel::restShape(const DrivePosition& position) const
+{
+  RingShape shape(rest.teeth());
+  shape.points = rest.points();
+  shape.updateGeometry();
+  mesh.pairNearest(position, shape);
+  return shape;
+}
+}  // namespace hjt

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/output_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hjt
+{
+SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
+{
+  constexpr int MAX_ITERATIONS = 60;
+  constexpr double MAX_STEP = 2e-4;        // rad, a few flank clearances
+  constexpr double TORQUE_TOLERANCE = 1e-8;  // N.m
+  SolveStatus total;
+  DrivePosition target = ring.position();
+  const double turn = wave_generator_angle - target.wave_generator_angle;
+  if (turn != 0.0)
+  {
+    target.wave_generator_angle = wave_generator_angle;
+    target.output_angle -= turn * ring.stiffness()(1, 0) / ring.stiffness()(1, 1);
+    total = ring.moveTo(target);
+  }
+  for (int i = 0; i < MAX_ITERATIONS && total.ok(); ++i)
+  {
+    const double excess = ring.forces().output_torque - load_torque;
+    if (std::abs(excess) <= TORQUE_TOLERANCE)
+    {
+      return total;
+    }
+    const double step = excess / ring.stiffness()(1, 1);
+    target.output_angle = ring.position().output_angle + std::clamp(step, -MAX_STEP, MAX_STEP);
+    const SolveStatus status = ring.moveTo(target);
+    total.iterations += status.iterations;
+    total.cuts += status.cuts;
+    total.residual = status.residual;
+    total.code = status.code;
+  }
+  if (total.ok())
+  {
+    total.code = SolveCode::NOT_CONVERGED;
+  }
+  return total;
+}
+}  // namespace hjt

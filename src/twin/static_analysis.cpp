@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/twin/static_analysis.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/solver/output_balance.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Statics are solved to rounding, whatever the running twin is content with.
+SolverParameters staticSolver(SolverParameters parameters)
+{
+  constexpr double STATIC_TOLERANCE = 5e-7;  // N; the tension stiffness times the rounding of a coordinate is 2e-8 N
+  parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
+  return parameters;
+}
+
+void fillTeeth(const RingEquilibrium& ring, InsertionResult& result)
+{
+  const RingModel& model = ring.model();
+  const RingShape& shape = ring.shape();
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
+    const Eigen::Vector2d rest = model.rest.radial().segment<2>(2 * i);
+    result.tooth_x.push_back(point.x());
+    result.tooth_y.push_back(point.y());
+    result.radius.push_back(point.norm());
+    result.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
+    result.wave_generator_force.push_back(model.contact.normalForce(shape, ring.position(), i));
+    result.rim_tension.push_back(model.tension.tension(shape, i));
+    result.bending_force.push_back(model.bending.bendingForce(shape, i));
+  }
+}
+
+double sum(const std::vector<double>& values)
+{
+  double total = 0.0;
+  for (const double value : values)
+  {
+    total += value;
+  }
+  return total;
+}
+}  // namespace
+
+InsertionResult analyseInsertion(const Parameters& parameters)
+{
+  RingModel model(parameters);
+  model.meshed = false;
+  InsertionResult result;
+  const auto start = std::chrono::steady_clock::now();
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  const SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  result.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.converged = status.ok();
+  result.iterations = status.iterations;
+  result.residual = status.residual;
+  fillTeeth(ring, result);
+  const auto force = std::minmax_element(result.wave_generator_force.begin(), result.wave_generator_force.end());
+  const auto tension = std::minmax_element(result.rim_tension.begin(), result.rim_tension.end());
+  result.wave_generator_force_min = *force.first;
+  result.wave_generator_force_max = *force.second;
+  result.wave_generator_force_sum = sum(result.wave_generator_force);
+  result.teeth_in_contact = static_cast<int>(std::count_if(
+      result.wave_generator_force.begin(), result.wave_generator_force.end(), [](double f) { return f > 0.0; }));
+  result.tension_min = *tension.first;
+  result.tension_max = *tension.second;
+  result.radius_major_axis = result.radius.front();
+  result.radius_minor_axis = result.radius[result.radius.size() / 4];
+  for (const double force_of_tooth : result.bending_force)
+  {
+    result.bending_force_max = std::max(result.bending_force_max, std::abs(force_of_tooth));
+  }
+  return result;
+}
+
+std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
+                                           const std::vector<double>& torques)
+{
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  if (status.ok())
+  {
+    status = balanceOutput(ring, wave_generator_angle, 0.0);
+  }
+  const double unloaded = ring.position().output_angle;
+  std::vector<StiffnessRow> rows;
+  for (const double torque : torques)
+  {
+    if (status.ok())
+    {
+      status = balanceOutput(ring, wave_generator_angle, torque);
+    }
+    StiffnessRow row;
+    row.converged = status.ok();
+    row.torque = torque;
+    row.output_angle = ring.position().output_angle - unloaded;
+    row.wave_generator_torque = ring.forces().wave_generator_torque;
+    row.residual = status.residual;
+    for (int i = 0; i < model.rest.teeth(); ++i)
+    {
+      const double mesh = std::abs(model.mesh.flankForce(ring.shape(), ring.position(), i));
+      row.teeth_loaded += mesh > 0.0 ? 1 : 0;
+      row.mesh_force_max = std::max(row.mesh_force_max, mesh);
+      row.wave_generator_force_sum += model.contact.normalForce(ring.shape(), ring.position(), i);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
+                                 const std::function<void(int)>& progress)
+{
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  std::vector<TurnRow> rows;
+  for (int i = 0; i <= steps; ++i)
+  {
+    const double angle = angle_range * i / steps;
+    if (status.ok())
+    {
+      status = balanceOutput(ring, angle, load_torque);
+    }
+    rows.push_back({ status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque,
+                     status.residual });
+    if (progress)
+    {
+      progress(i);
+    }
+  }
+  return rows;
+}
+}  // namespace hjt
