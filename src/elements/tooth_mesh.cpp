@@ -118,6 +118,7 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     forces.teeth.segment<2>(2 * i) -= gradient;
     forces.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
     forces.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
+    forces.flank_force[i] = at.by_xi / cos_flank_;
     forces.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
     forces.energy += at.energy;
   }
@@ -187,12 +188,6 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
     const int shift = static_cast<int>(std::lround(std::atan2(tooth.xi, tooth.zeta) * spaces_ / TWO_PI));
     shape.space[i] = ((shape.space[i] + shift) % spaces_ + spaces_) % spaces_;
   }
-}
-
-double ToothMesh::flankForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept
-{
-  const Engagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
-  return law(tooth, i).by_xi / cos_flank_;
 }
 
 double ToothMesh::slidingSpeed(const RingShape& shape, const DrivePosition& position, int i,

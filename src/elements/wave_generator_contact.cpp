@@ -62,18 +62,6 @@ EllipseFoot WaveGeneratorContact::foot(const Frame& frame, double x, double y) c
   return foot;
 }
 
-double WaveGeneratorContact::normalForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept
-{
-  const EllipseFoot at = foot(Frame(mean_radius_, position), shape.points[2 * i], shape.points[2 * i + 1]);
-  return stiffness_[i] * ContactRamp(at.depth, smoothing_).force;
-}
-
-Eigen::Vector2d WaveGeneratorContact::normal(const RingShape& shape, const DrivePosition& position, int i) const noexcept
-{
-  const EllipseFoot at = foot(Frame(mean_radius_, position), shape.points[2 * i], shape.points[2 * i + 1]);
-  return { at.normal_x, at.normal_y };
-}
-
 void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const
     noexcept
 {
@@ -87,30 +75,33 @@ void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition
     const double force = stiffness_[i] * ramp.force;
     forces.teeth[2 * i] += force * at.normal_x;
     forces.teeth[2 * i + 1] += force * at.normal_y;
+    forces.contact_force[i] = force;
+    forces.contact_depth[i] = at.depth;
+    forces.contact_curvature[i] = at.curvature;
+    forces.contact_normal[2 * i] = at.normal_x;
+    forces.contact_normal[2 * i + 1] = at.normal_y;
     forces.wave_generator_torque -= force * (x * at.normal_y - y * at.normal_x);
     forces.energy += stiffness_[i] * ramp.energy;
   }
 }
 
-void WaveGeneratorContact::addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const
+void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const
     noexcept
 {
-  const Frame frame(mean_radius_, position);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
-    const EllipseFoot at = foot(frame, point.x(), point.y());
-    if (at.depth <= 0.0)
+    const double depth = forces.contact_depth[i];
+    if (depth <= 0.0)
     {
       continue;
     }
-    const ContactRamp ramp(at.depth, smoothing_);
-    const double force = stiffness_[i] * ramp.force;
-    const double stiffness = stiffness_[i] * ramp.tangent;
-    const Eigen::Vector2d n(at.normal_x, at.normal_y);
+    const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
+    const double force = forces.contact_force[i];
+    const double stiffness = stiffness_[i] * ContactRamp(depth, smoothing_).tangent;
+    const Eigen::Vector2d n = forces.contact_normal.segment<2>(2 * i);
     const Eigen::Vector2d t(-n.y(), n.x());
     // The normal turns with the point at this rate; the force follows it.
-    const double turn = at.curvature / (1.0 - at.curvature * at.depth);
+    const double turn = forces.contact_curvature[i] / (1.0 - forces.contact_curvature[i] * depth);
     tangent.addDiagonal(i, stiffness * n * n.transpose() - force * turn * t * t.transpose());
 
     const double lever = point.x() * n.y() - point.y() * n.x();

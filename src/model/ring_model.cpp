@@ -27,12 +27,13 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
   }
 }
 
-void RingModel::tangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept
+void RingModel::tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
+                        RingTangent& tangent) const noexcept
 {
   tangent.setZero();
   tension.addTangent(shape, tangent);
   bending.addTangent(shape, tangent);
-  contact.addTangent(shape, position, tangent);
+  contact.addTangent(shape, forces, tangent);
   cup.addTangent(shape, tangent);
   if (meshed)
   {

@@ -135,7 +135,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 
 bool RingEquilibrium::refactor() noexcept
 {
-  model_.tangent(shape_, position_, tangent_);
+  model_.tangent(shape_, position_, forces_, tangent_);
   return solver_.factor(tangent_);
 }
 

@@ -32,7 +32,7 @@ void fillTeeth(const RingEquilibrium& ring, InsertionResult& result)
     result.tooth_y.push_back(point.y());
     result.radius.push_back(point.norm());
     result.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
-    result.wave_generator_force.push_back(model.contact.normalForce(shape, ring.position(), i));
+    result.wave_generator_force.push_back(ring.forces().contact_force[i]);
     result.rim_tension.push_back(model.tension.tension(shape, i));
     result.bending_force.push_back(model.bending.bendingForce(shape, i));
   }
@@ -106,10 +106,10 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
     row.residual = status.residual;
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
-      const double mesh = std::abs(model.mesh.flankForce(ring.shape(), ring.position(), i));
+      const double mesh = std::abs(ring.forces().flank_force[i]);
       row.teeth_loaded += mesh > 0.0 ? 1 : 0;
       row.mesh_force_max = std::max(row.mesh_force_max, mesh);
-      row.wave_generator_force_sum += model.contact.normalForce(ring.shape(), ring.position(), i);
+      row.wave_generator_force_sum += ring.forces().contact_force[i];
     }
     rows.push_back(row);
   }

@@ -7,14 +7,24 @@
 
 namespace hjt
 {
-/// Sum of what the elements do: minus the gradient of the stored energy.
+/// Sum of what the elements do, minus the gradient of the stored energy, with the contacts it came from.
+/// Elements read their own entries again for the tangent at the same shape.
 struct RingForces
 {
-  explicit RingForces(int teeth) : teeth(2 * teeth) {}
+  explicit RingForces(int teeth)
+    : teeth(2 * teeth)
+    , contact_force(teeth)
+    , contact_depth(teeth)
+    , contact_curvature(teeth)
+    , contact_normal(2 * teeth)
+    , flank_force(teeth)
+  {
+  }
 
   void setZero() noexcept
   {
     teeth.setZero();
+    flank_force.setZero();
     wave_generator_torque = 0.0;
     output_torque = 0.0;
     energy = 0.0;
@@ -24,6 +34,11 @@ struct RingForces
   double wave_generator_torque{};  ///< on the wave generator [N.m]
   double output_torque{};          ///< on the circular spline [N.m]
   double energy{};                 ///< stored [J]
+  Eigen::VectorXd contact_force;   ///< N, normal force of the wave generator on each tooth, >= 0 [N]
+  Eigen::VectorXd contact_depth;   ///< N, depth of each tooth point inside the wave generator [m]
+  Eigen::VectorXd contact_curvature;  ///< N, of the wave generator there [1/m]
+  Eigen::VectorXd contact_normal;  ///< 2 N, its direction, outward [-]
+  Eigen::VectorXd flank_force;     ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
 };
 
 using Block2 = Eigen::Matrix2d;

@@ -31,9 +31,6 @@ public:
   /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
   void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
 
-  /// Normal force on the flank of tooth i; > 0 on the leading (counter-clockwise) flank, < 0 on the trailing one [N].
-  double flankForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
-
   /// Sliding of tooth i along the loaded flank [m/s] for speeds of the ring's points and of the output.
   double slidingSpeed(const RingShape& shape, const DrivePosition& position, int i, const Eigen::VectorXd& speeds,
                       double output_speed, bool leading) const noexcept;

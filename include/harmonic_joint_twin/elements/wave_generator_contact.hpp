@@ -23,13 +23,8 @@ public:
   WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear);
 
   void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
-  void addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
-
-  /// Normal force on tooth i, >= 0 [N].
-  double normalForce(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
-
-  /// Outward unit normal of the wave generator at tooth i [-].
-  Eigen::Vector2d normal(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
+  /// `forces`: of the same shape and position.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 

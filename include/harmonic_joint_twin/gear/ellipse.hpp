@@ -16,28 +16,30 @@ struct EllipseFoot
 
 /// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
 /// approximated): Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
-/// The start is off by the relative depth times the eccentricity; two steps reach rounding on a real wave generator.
+///
+/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
+/// step of size e leaves an error of 0.02 e^2: nearly always one step is enough for 1e-10.
 inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
 {
-  constexpr int MAX_STEPS = 8;
-  constexpr double ENOUGH = 1e-9;  // the next step's error is its square
+  constexpr int MAX_STEPS = 20;
+  constexpr double ENOUGH = 1e-4;
   double c = x * b;
   double s = y * a;
-  double scale = 1.0 / std::sqrt(c * c + s * s);
-  c *= scale;
-  s *= scale;
+  const double start = 1.0 / std::sqrt(c * c + s * s);
+  c *= start;
+  s *= start;
   const double focal = a * a - b * b;
   for (int i = 0; i < MAX_STEPS; ++i)
   {
     const double slope = focal * c * s - x * a * s + y * b * c;
     const double bend = focal * (c * c - s * s) - x * a * c - y * b * s;
     const double step = -slope / bend;
-    const double cn = c - step * s;
-    const double sn = s + step * c;
-    scale = 1.0 / std::sqrt(cn * cn + sn * sn);
-    c = cn * scale;
-    s = sn * scale;
-    if (std::abs(step) < ENOUGH)
+    const bool last = std::abs(step) < ENOUGH;
+    const double scale = last ? 1.0 - 0.5 * step * step : 1.0 / std::sqrt(1.0 + step * step);
+    const double cn = scale * (c - step * s);
+    s = scale * (s + step * c);
+    c = cn;
+    if (last)
     {
       break;
     }

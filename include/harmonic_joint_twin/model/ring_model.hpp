@@ -21,8 +21,9 @@ struct RingModel
   /// Forces and stored energy. The shape's geometry must be up to date.
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
 
-  /// Hessian of the stored energy.
-  void tangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
+  /// Hessian of the stored energy; `forces` of the same shape and position.
+  void tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
+               RingTangent& tangent) const noexcept;
 
   /// The ring at rest, every tooth paired with its nearest space.
   RingShape restShape(const DrivePosition& position) const;

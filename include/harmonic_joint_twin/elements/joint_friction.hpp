@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace hjt
+{
+/// One dry friction: a force against a slip. Power = strength * |slip . (motor speed, output speed)|.
+struct FrictionTerm
+{
+  double strength;       ///< >= 0 [N] or [N.m]
+  Eigen::Vector2d slip;  ///< slip speed by motor and output speed [m/rad] or [-]
+};
+
+/// All friction of the joint, seen through its two coordinates: dry terms and a viscous matrix.
+///
+/// The ring follows the two angles in equilibrium, so every slip in it is a combination of the two speeds, and friction
+/// acts on the angles by virtual power. Its feedback on the shape of the ring, of the order of the friction coefficient,
+/// is left out.
+struct JointFriction
+{
+  /// Room for one term a tooth and the motor shaft's.
+  explicit JointFriction(int teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 1); }
+
+  void setZero() noexcept
+  {
+    terms.clear();
+    viscous.setZero();
+  }
+
+  std::vector<FrictionTerm> terms;
+  Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
+};
+}  // namespace hjt

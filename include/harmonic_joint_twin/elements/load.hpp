@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// What hangs on the output: inertia, viscous friction and gravity (thesis eq. 7.37-7.38, brackets mended).
+///
+/// Gravity's energy:  U = -m g l cos(phi - phi_g), phi_g the angle at which the load hangs straight down. [J]
+class Load
+{
+public:
+  explicit Load(const OutputParameters& parameters) : parameters_(parameters) {}
+
+  double inertia() const noexcept { return parameters_.circular_spline_inertia + parameters_.load_inertia; }
+  double viscousFriction() const noexcept { return parameters_.viscous_friction; }
+
+  double gravityEnergy(double angle) const noexcept
+  {
+    return -parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);
+  }
+  /// Torque of gravity on the output: minus the derivative of its energy [N.m].
+  double gravityTorque(double angle) const noexcept
+  {
+    return -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
+  }
+
+private:
+  OutputParameters parameters_;
+};
+}  // namespace hjt

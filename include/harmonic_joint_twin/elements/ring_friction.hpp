@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/joint_friction.hpp"
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/elements/tooth_mesh.hpp"
+#include "harmonic_joint_twin/gear/ring_shape.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// How the ring's points move with the two angles of the joint.
+struct RingRates
+{
+  const Eigen::VectorXd& by_motor;   ///< 2 N, by wave generator angle [m/rad]
+  const Eigen::VectorXd& by_output;  ///< 2 N, by output angle [m/rad]
+};
+
+/// Friction on the tooth flanks: mu |F| against the sliding along the flank, mu falling from static to kinetic with the
+/// sliding speed (Stribeck, Gaussian).
+class MeshFriction
+{
+public:
+  explicit MeshFriction(const MeshParameters& parameters) : parameters_(parameters) {}
+
+  /// One term per loaded tooth. `speeds`: motor and output [rad/s], for the Stribeck curve.
+  void addTerms(const ToothMesh& mesh, const RingShape& shape, const DrivePosition& position, const RingForces& forces,
+                const RingRates& rates, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
+
+private:
+  MeshParameters parameters_;
+};
+
+/// Friction between the outer race of the wave generator's bearing and the flexspline.
+///
+/// The race does not slide in the rim: it rolls, held by mu F r >> bearing friction. What slips are the two surfaces as
+/// rim and race bend: their neutral fibres lie a lever apart, so the slip is the lever times the rate at which the rim
+/// tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed and gives 74 N.m on a 2.87 N.m motor.
+class InterfaceFriction
+{
+public:
+  explicit InterfaceFriction(const ContactParameters& parameters) : parameters_(parameters) {}
+
+  /// Size of the torque at the motor shaft, >= 0 [N.m]; `rates`: of the points by motor angle while running [m/rad].
+  double torque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& rates) const noexcept;
+
+private:
+  ContactParameters parameters_;
+};
+
+/// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33, signs mended), seen through the joint's two angles.
+class RingDamping
+{
+public:
+  RingDamping(const RingParameters& ring, const ContactParameters& contact)
+    : tension_(ring.tension_damping), tooth_(ring.tooth_damping), contact_(contact.damping)
+  {
+  }
+
+  /// Adds to the viscous matrix.
+  void add(const RingShape& shape, const RingForces& forces, const RingRates& rates, JointFriction& friction) const
+      noexcept;
+
+private:
+  double tension_;  // [N.s/m]
+  double tooth_;    // [N.s/m]
+  double contact_;  // [N.s/m]
+};
+}  // namespace hjt

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/bearing_friction.hpp"
+#include "harmonic_joint_twin/elements/joint_friction.hpp"
+#include "harmonic_joint_twin/elements/load.hpp"
+#include "harmonic_joint_twin/elements/motor.hpp"
+#include "harmonic_joint_twin/elements/ring_friction.hpp"
+#include "harmonic_joint_twin/model/ring_model.hpp"
+
+namespace hjt
+{
+/// What acts on the joint from outside, at one instant.
+struct JointInputs
+{
+  double motor_torque{};  ///< at the shaft, after the drive's limits [N.m]
+  double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
+  bool brake_engaged{};
+  double temperature{};   ///< of the drive [degC]
+};
+
+/// The whole joint: ring, motor, bearing, load, frictions. Constant after construction.
+struct JointModel
+{
+  explicit JointModel(const Parameters& parameters);
+
+  Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
+
+  /// Stored in ring and gravity [J].
+  double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
+  {
+    return forces.energy + load.gravityEnergy(position.output_angle);
+  }
+
+  /// All torques but friction, on motor and output [N.m].
+  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position, const JointInputs& inputs) const
+      noexcept
+  {
+    return { inputs.motor_torque + forces.wave_generator_torque,
+             forces.output_torque + load.gravityTorque(position.output_angle) - inputs.load_torque };
+  }
+
+  /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.
+  /// `follow`: output speed over motor speed at constant load, from the ring's own stiffness [-].
+  void friction(const RingShape& shape, const DrivePosition& position, const RingForces& forces, const RingRates& rates,
+                double follow, const Eigen::Vector2d& speeds, const JointInputs& inputs, Eigen::VectorXd& running,
+                JointFriction& friction) const noexcept;
+
+  RingModel ring;
+  Motor motor;
+  Load load;
+  BearingFriction bearing;
+  MeshFriction mesh_friction;
+  InterfaceFriction interface_friction;
+  RingDamping damping;
+  double brake_torque;  ///< holding torque of the engaged brake, motor side [N.m]
+};
+}  // namespace hjt

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
+#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "harmonic_joint_twin/ros_io/output_schedule.hpp"
+
+namespace hjt
+{
+/// Writes the twin's topics into a bag: the messages the node would publish, at the same simulated instants.
+class BagRecorder
+{
+public:
+  /// `joint_namespace`: of the node, e.g. "/joint_twin".
+  BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
+
+  /// To be called after every step of the twin.
+  void record(Twin& twin);
+
+private:
+  BagWriter& bag_;
+  OutputSchedule schedule_;
+  ToothForces tooth_forces_;
+  std::string prefix_;
+  sensor_msgs::JointState joint_states_;
+  harmonic_joint_twin::Encoders encoders_;
+  harmonic_joint_twin::ContactForces contact_forces_;
+  harmonic_joint_twin::Health health_;
+};
+}  // namespace hjt

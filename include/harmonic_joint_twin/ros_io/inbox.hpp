@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+
+namespace hjt
+{
+/// Hands inputs from the callbacks to the loop. Callbacks may wait for each other; the loop never waits.
+class Inbox
+{
+public:
+  static constexpr std::size_t CAPACITY = InputQueue::CAPACITY;
+
+  Inbox();
+
+  /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
+  void push(const Input& input);
+
+  /// From the loop only: swaps what has arrived, in order of arrival, into `inputs`, a vector made by `makeBuffer`.
+  /// If a callback holds the lock just now, `inputs` is empty and the next call gets them. Allocates nothing.
+  void take(std::vector<Input>& inputs) noexcept;
+
+  /// An empty vector with room for a whole inbox.
+  static std::vector<Input> makeBuffer();
+
+  std::uint64_t notFinite() const noexcept { return not_finite_; }
+  std::uint64_t overflow() const noexcept { return overflow_; }
+
+private:
+  std::mutex mutex_;
+  std::vector<Input> inputs_;
+  std::atomic<std::uint64_t> not_finite_{ 0 };
+  std::atomic<std::uint64_t> overflow_{ 0 };
+};
+}  // namespace hjt

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include <ros/node_handle.h>
+
+#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "harmonic_joint_twin/ros_io/output_channel.hpp"
+#include "harmonic_joint_twin/ros_io/output_schedule.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// Everything the twin publishes. The loop fills what is due and heard; serialising and sending, which allocate and
+/// lock, happen in a thread of their own.
+class OutputPublishers
+{
+public:
+  /// @throws ParameterError if a publish rate does not divide solver.rate.
+  OutputPublishers(ros::NodeHandle& node, const Twin& twin);
+
+  /// Stops the thread after the messages already filled.
+  ~OutputPublishers();
+
+  /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
+  void offer(Twin& twin) noexcept;
+
+  /// Per `Output`.
+  std::array<ChannelCounters, OUTPUT_COUNT> counters() const noexcept;
+
+private:
+  bool isWanted(Output output, bool heard, Stamp instant) const noexcept;
+  void run();
+  void refreshHeard();
+  void drain();
+
+  OutputSchedule schedule_;
+  ToothForces tooth_forces_;
+  OutputChannel<sensor_msgs::JointState> joint_states_;
+  OutputChannel<harmonic_joint_twin::Encoders> encoders_;
+  OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;
+  OutputChannel<harmonic_joint_twin::Health> health_;
+  std::atomic<bool> stopping_{ false };
+  std::thread thread_;
+};
+}  // namespace hjt

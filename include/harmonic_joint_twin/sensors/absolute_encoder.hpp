@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Absolute encoder at the joint's output: the position within one turn, in N bits.
+///
+/// Law:   n = floor(phi / q) mod 2^N,  q = 2 pi / 2^N
+/// where  phi  output angle                      [rad]
+///        N    bits                              [-]
+///        n    count, 0 ... 2^N - 1              [counts]
+///
+/// The count says nothing about whole turns. A drive counts them by watching the count jump, which fails when it looks
+/// less than twice a turn; here the turn is taken from the true angle, so that the unwrapped angle is right however
+/// seldom it is read.
+class AbsoluteEncoder
+{
+public:
+  explicit AbsoluteEncoder(const SensorParameters& parameters);
+
+  std::uint32_t count(double output_angle) const noexcept;
+
+  /// Turns of the true angle plus the count's part of a turn [rad].
+  double unwrappedAngle(double output_angle) const noexcept;
+
+private:
+  std::int64_t stepsFromZero(double output_angle) const noexcept;
+
+  std::int64_t counts_per_turn_;
+  double quantum_;  // one count [rad]
+};
+}  // namespace hjt

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/joint_friction.hpp"
+
+namespace hjt
+{
+/// Speeds after a time step with all friction taken implicitly: the minimum of
+///
+///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
+///
+/// Convex, so it has one solution whatever the step: friction sticks, slides and reverses without a mode switch.
+/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2.
+class DryFriction
+{
+public:
+  DryFriction(const Eigen::Vector2d& inertia, double stiction_velocity) : inertia_(inertia), width_(stiction_velocity) {}
+
+  /// `follow`: output speed over motor speed in plain running; scales the regularisation of slips at the output.
+  Eigen::Vector2d solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+                        const Eigen::Vector2d& free_speeds, double step) const noexcept;
+
+  /// Friction torque on motor and output at given speeds, explicit [N.m].
+  Eigen::Vector2d torque(const JointFriction& friction, double follow, const Eigen::Vector2d& speeds) const noexcept;
+
+private:
+  double width(const FrictionTerm& term, double follow) const noexcept;
+
+  Eigen::Vector2d inertia_;
+  double width_;
+};
+}  // namespace hjt

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/leapfrog.hpp"
+
+namespace hjt
+{
+/// Marches the joint with the configured stepper and keeps its energy ledger.
+class JointStepper
+{
+public:
+  /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
+  JointStepper(const Parameters& parameters, const JointModel& model);
+
+  /// At rest where the joint has settled. @returns false if it has not.
+  bool reset() noexcept;
+
+  /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
+  bool step(const JointInputs& inputs) noexcept;
+
+  double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
+  double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
+  const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
+  const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
+  double energyResidual() const noexcept;  ///< energy in - stored - dissipated since reset [J]
+  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
+  const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
+  const JointDynamics& dynamics() const noexcept { return dynamics_; }
+
+private:
+  using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
+                                                           boost::numeric::odeint::vector_space_algebra>;
+  bool stepRungeKutta() noexcept;
+  void checkStep(const Parameters& parameters);
+
+  StepperKind kind_;
+  double step_;  // [s]
+  JointDynamics dynamics_;
+  Leapfrog leapfrog_;
+  RungeKutta4 runge_kutta_;
+  JointState x_{ JointState::Zero() };
+  Eigen::Vector2d speeds_{ 0.0, 0.0 };
+  Eigen::Vector2d friction_{ 0.0, 0.0 };
+  double balance_{};         // motor work - load work - dissipated - kinetic energy [J]
+  double stored_at_start_{}; // [J]
+  double throughput_{};
+};
+}  // namespace hjt

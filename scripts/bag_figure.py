@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws a simulated joint: what it was asked, how it moved, and what its teeth carried."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
+import numpy as np  # noqa: E402
+
+# Okabe and Ito's colours: told apart by every eye, and in grey.
+BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
+STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
+         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
+         "lines.linewidth": 1.3, "legend.frameon": False, "legend.fontsize": 8, "figure.dpi": 120}
+MOST_POINTS = 4000  # per curve; more than the picture has pixels
+MAP_COLUMNS, MAP_ROWS = 360, 90
+
+
+def thin(series, name, factor=1.0):
+    """Time and values, no more points than the eye can tell apart."""
+    step = max(1, len(series) // MOST_POINTS)
+    return series.time[::step], series[name][::step] * factor
+
+
+def legend(axes):
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right", ncol=2)
+
+
+def steps(series, end):
+    """A stamped torque holds until the next one."""
+    return np.append(series.time, end), np.append(series["torque"], series["torque"][-1])
+
+
+def draw_torques(axes, recording, end):
+    axes.set_title("Torque at the joint [N·m]")
+    health, load = recording["health"], recording["load"]
+    if len(load):
+        axes.plot(*steps(load, end), color=ORANGE, drawstyle="steps-post", label="external load")
+    axes.plot(*thin(health, "joint_torque"), color=GREEN, label="through the teeth")
+    legend(axes)
+
+
+def draw_motor_torque(axes, recording, end):
+    axes.set_title("Torque at the motor [N·m]")
+    command = recording["command"]
+    if len(command):
+        axes.plot(*steps(command, end), color=GREY, lw=0.9, drawstyle="steps-post", label="commanded")
+    axes.plot(*thin(recording["health"], "motor_torque"), color=BLUE, label="applied")
+    axes.plot(*thin(recording["health"], "friction_torque"), color=RED, lw=1.0, label="all friction")
+    legend(axes)
+
+
+def draw_speed(axes, recording):
+    states = recording["joint_states"]
+    axes.set_title("Joint speed, as its encoders see it [rad/s]")
+    if len(states):
+        axes.plot(*thin(states, "output_velocity"), color=ORANGE, lw=0.8, alpha=0.8, label="output encoder")
+        axes.plot(*thin(states, "motor_velocity", 1.0 / recording.ratio), color=BLUE,
+                  label=f"motor encoder / {recording.ratio:g}")
+    legend(axes)
+
+
+def torsion(recording):
+    """Time and motor angle / ratio - joint angle [mrad], by the model's true angles."""
+    encoders = recording["encoders"]
+    if not len(encoders):
+        return thin(recording["health"], "torsion", 1e3)
+    time, motor = thin(encoders, "motor_angle_true", 1.0 / recording.ratio)
+    return time, (motor - thin(encoders, "output_angle_true")[1]) * 1e3
+
+
+def draw_torsion(axes, recording):
+    axes.set_title(f"Torsion: motor angle / {recording.ratio:g} − joint angle [mrad]")
+    axes.plot(*torsion(recording), color=BLUE)
+
+
+def wave_generator_frame(forces):
+    """Mesh force over time and angle from the wave generator's major axis: mean of what falls into each cell [N]."""
+    mesh = forces["mesh_force"]
+    teeth = np.arctan2(forces["tooth_y"], forces["tooth_x"])
+    angle = (teeth - forces["wave_generator_angle"][:, None] + np.pi) % (2.0 * np.pi) - np.pi
+    time = np.repeat(forces.time[:, None], mesh.shape[1], axis=1)
+    bins = [np.linspace(forces.time[0], forces.time[-1], min(MAP_COLUMNS, len(forces)) + 1),
+            np.linspace(-np.pi, np.pi, MAP_ROWS + 1)]
+    sums, _, _ = np.histogram2d(time.ravel(), angle.ravel(), bins=bins, weights=mesh.ravel())
+    counts, _, _ = np.histogram2d(time.ravel(), angle.ravel(), bins=bins)
+    return bins, (sums / np.maximum(counts, 1)).T
+
+
+def draw_tooth_map(axes, recording, figure):
+    forces = recording["contact_forces"]
+    axes.set_title("Mesh force per tooth, seen from the wave generator [N]  (+ leading, − trailing flank)")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("angle from\nmajor axis [°]")
+    if len(forces) < 2:
+        return
+    bins, force = wave_generator_frame(forces)
+    limit = max(np.abs(force).max(), 1e-9)
+    image = axes.pcolormesh(bins[0], np.degrees(bins[1]), force, cmap="RdBu_r", vmin=-limit, vmax=limit,
+                            rasterized=True)
+    axes.set_yticks([-180, -90, 0, 90, 180])
+    axes.grid(False)
+    inset = axes.inset_axes([0.83, 1.04, 0.17, 0.06])
+    bar = figure.colorbar(image, cax=inset, orientation="horizontal")
+    bar.set_ticks([-limit, 0, limit])
+    bar.set_ticklabels([f"{-limit:.0f}", "0", f"{limit:.0f}"])
+    bar.ax.xaxis.set_ticks_position("top")
+    bar.ax.tick_params(labelsize=7, length=2, pad=1)
+    bar.outline.set_visible(False)
+
+
+def draw_ring(axes, recording):
+    """All tooth forces at the instant of the largest mesh force."""
+    forces = recording["contact_forces"]
+    axes.set_yticklabels([])
+    axes.set_xticks(np.radians([0, 90, 180, 270]))
+    if not len(forces):
+        return
+    most = np.unravel_index(np.abs(forces["mesh_force"]).argmax(), forces["mesh_force"].shape)[0]
+    angle = np.arctan2(forces["tooth_y"][most], forces["tooth_x"][most])
+    contact, mesh = forces["wave_generator_force"][most], forces["mesh_force"][most]
+    base = 1.15 * max(contact.max(), np.abs(mesh).max())
+    loop = np.append(np.arange(len(angle)), 0)
+    axes.fill_between(angle[loop], base - contact[loop], base, color=BLUE, alpha=0.35, lw=0,
+                      label=f"wave generator, ≤ {contact.max():.0f} N")
+    axes.bar(angle, np.abs(mesh), width=2.0 * np.pi / len(angle), bottom=base, color=RED, lw=0,
+             label=f"mesh, ≤ {np.abs(mesh).max():.0f} N")
+    axes.plot(angle[loop], np.full(len(loop), base), color=GREY, lw=0.8)
+    major = forces["wave_generator_angle"][most]
+    axes.plot([major, major + np.pi], [base * 0.98, base * 0.98], color="black", lw=0.8, ls=":", label="major axis")
+    axes.set_ylim(0.0, 2.2 * base)
+    axes.set_title(f"Tooth forces at {forces.time[most]:.2f} s, the most loaded instant", loc="center", pad=14)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncol=3)
+
+
+def draw_loop(axes, recording):
+    health = recording["health"]
+    axes.set_title("Joint torque over torsion")
+    axes.set_xlabel("torsion [mrad]")
+    axes.set_ylabel("N·m")
+    axes.plot(*thin(health, "torsion", 1e3)[1:], *thin(health, "joint_torque")[1:], color=GREEN, lw=0.8,
+              marker=".", ms=3)
+    valid = health["torsional_stiffness_valid"].astype(bool)
+    if valid.any():
+        axes.text(0.04, 0.93, f"slope {health['torsional_stiffness'][valid][-1] * 1e-3:.1f} kN·m/rad",
+                  transform=axes.transAxes, va="top", fontsize=8, color=GREY)
+
+
+def draw_health(axes, recording):
+    health = recording["health"]
+    axes.set_title("Teeth loaded, and load of the wave generator's bearing [kN]")
+    axes.set_xlabel("time [s]")
+    axes.plot(*thin(health, "teeth_loaded"), color=BLUE, label="teeth (left)")
+    right = axes.twinx()
+    right.spines["right"].set_visible(True)
+    right.grid(False)
+    right.plot(*thin(health, "wave_generator_load", 1e-3), color=ORANGE, label="bearing (right)")
+    right.set_ylim(bottom=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.legend(*[a + b for a, b in zip(axes.get_legend_handles_labels(), right.get_legend_handles_labels())],
+                loc="upper right", ncol=2)
+
+
+def draw(recording, title, path):
+    """Writes the figure as PNG."""
+    plt.rcParams.update(STYLE)
+    figure = plt.figure(figsize=(13.5, 9.0), constrained_layout=True)
+    figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
+    left, right = figure.add_gridspec(1, 2, width_ratios=[1.75, 1.0])
+    rows = left.subgridspec(5, 1, height_ratios=[1, 1, 1, 1, 1.5])
+    axes = [figure.add_subplot(rows[0])]
+    axes += [figure.add_subplot(rows[row], sharex=axes[0]) for row in range(1, 5)]
+    end = recording["health"].time[-1]
+    draw_motor_torque(axes[0], recording, end)
+    draw_torques(axes[1], recording, end)
+    draw_speed(axes[2], recording)
+    draw_torsion(axes[3], recording)
+    draw_tooth_map(axes[4], recording, figure)
+    for one in axes[:-1]:
+        one.tick_params(labelbottom=False)
+    axes[0].set_xlim(0.0, end)
+    columns = right.subgridspec(3, 1, height_ratios=[2.1, 1.2, 1.0])
+    draw_ring(figure.add_subplot(columns[0], projection="polar"), recording)
+    draw_loop(figure.add_subplot(columns[1]), recording)
+    draw_health(figure.add_subplot(columns[2]), recording)
+    figure.savefig(path)
+    plt.close(figure)

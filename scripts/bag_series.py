@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Curves of one simulated joint out of a bag, as numpy arrays over the time of their stamps."""
+import sys
+
+import numpy as np
+import rosbag
+
+HEALTH_TYPE = "harmonic_joint_twin/Health"
+PROGRESS_EVERY = 5000  # messages
+
+
+class Series:
+    """What one topic said: `time` [s] since the start of the simulation, and one array per field."""
+
+    def __init__(self, time, fields):
+        self.time = time
+        self.fields = fields
+
+    def __getitem__(self, name):
+        return self.fields[name]
+
+    def __len__(self):
+        return len(self.time)
+
+
+def input_row(message, joint):
+    """Torque [N.m] of a stamped torque message that concerns this joint."""
+    for name in (joint, joint + "_motor"):
+        if name in message.name and len(message.effort) > message.name.index(name):
+            return {"torque": message.effort[message.name.index(name)]}
+    return None
+
+
+def joint_states_row(message, _joint):
+    """Motor first, then joint, as the node fills it."""
+    return {"motor_velocity": message.velocity[0], "output_velocity": message.velocity[1]}
+
+
+def slots_row(message, _joint):
+    return {name: getattr(message, name) for name in message.__slots__ if name != "header"}
+
+
+ROWS = {"command": input_row, "load": input_row, "joint_states": joint_states_row, "encoders": slots_row,
+        "contact_forces": slots_row, "health": slots_row}
+
+
+def find_namespaces(bag):
+    """Namespaces that hold a twin's output."""
+    topics = bag.get_type_and_topic_info().topics
+    return sorted(topic[:-len("/health")] for topic, info in topics.items()
+                  if info.msg_type == HEALTH_TYPE and topic.endswith("/health"))
+
+
+class Recording:
+    """A twin's topics in a bag; `joint` is the joint's name, `counts` the messages per topic."""
+
+    def __init__(self, path, namespace=None):
+        with rosbag.Bag(path) as bag:
+            found = find_namespaces(bag)
+            if not found:
+                raise ValueError(f"{path}: no topic of type {HEALTH_TYPE}: nothing was simulated here")
+            if namespace is not None and namespace not in found:
+                raise ValueError(f"{path}: no twin in {namespace}; there are {', '.join(found)}")
+            self.namespace = namespace if namespace is not None else found[0]
+            topics = {f"{self.namespace}/{name}": name for name in ROWS}
+            info = bag.get_type_and_topic_info(list(topics)).topics
+            self.counts = {topics[topic]: info[topic].message_count for topic in topics if topic in info}
+            _, first, _ = next(bag.read_messages([f"{self.namespace}/health"]))
+            self.joint = first.header.frame_id
+            self._read(bag, topics)
+
+    def _read(self, bag, topics):
+        stamps = {name: [] for name in ROWS}
+        rows = {name: [] for name in ROWS}
+        total = sum(self.counts.values())
+        shows_progress = sys.stderr.isatty() or total > PROGRESS_EVERY
+        for number, (topic, message, _) in enumerate(bag.read_messages(list(topics)), start=1):
+            name = topics[topic]
+            row = ROWS[name](message, self.joint)
+            if row is not None:
+                stamps[name].append(message.header.stamp.to_nsec())
+                rows[name].append(row)
+            if shows_progress and number % PROGRESS_EVERY == 0:
+                print(f"  read {number} of {total} messages", file=sys.stderr, flush=True)
+        start = min(stamp[0] for name, stamp in stamps.items() if stamp and name not in ("command", "load"))
+        self.series = {name: to_series(stamps[name], rows[name], start) for name in ROWS}
+
+    def __getitem__(self, name):
+        return self.series[name]
+
+
+def to_series(stamps, rows, start):
+    order = np.argsort(np.array(stamps, dtype=np.int64), kind="stable")
+    fields = rows[0].keys() if rows else []
+    time = (np.array(stamps, dtype=np.int64)[order] - start) * 1e-9
+    return Series(time, {name: np.array([row[name] for row in rows])[order] for name in fields})

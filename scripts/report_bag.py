@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads a bag with a simulated joint; prints a table of what came out and draws it."""
+import argparse
+import os
+import sys
+
+import numpy as np
+
+from bag_figure import draw
+from bag_series import Recording
+
+SOLVER_STATES = {0: "every step converged", 1: "some steps were cut", 2: "FAILED: last good state held"}
+
+
+def last_valid(health, name):
+    """The last value of an indicator that has a flag for being there; None if it never was."""
+    valid = health[name + "_valid"].astype(bool)
+    return health[name][valid][-1] if valid.any() else None
+
+
+def span(values, factor=1.0):
+    return f"{values.min() * factor:.3f} ... {values.max() * factor:.3f}"
+
+
+def shown(value, format_text, factor=1.0):
+    return "not yet" if value is None else format_text.format(value * factor)
+
+
+def joint_rows(recording):
+    encoders, states = recording["encoders"], recording["joint_states"]
+    rows = []
+    if len(encoders):
+        rows += [("joint angle", span(encoders["output_angle_true"]), "rad"),
+                 ("motor angle", span(encoders["motor_angle_true"]), "rad")]
+    if len(states):
+        rows += [("joint speed", span(states["output_velocity"]), "rad/s")]
+    return rows
+
+
+def health_rows(health):
+    return [
+        ("motor torque", span(health["motor_torque"]), "N.m"),
+        ("joint torque", span(health["joint_torque"]), "N.m"),
+        ("transmission ratio", shown(last_valid(health, "transmission_ratio"), "{:.4f}"), "-"),
+        ("torsion", span(health["torsion"], 1e3), "mrad"),
+        ("torsional stiffness, measured", shown(last_valid(health, "torsional_stiffness"), "{:.1f}", 1e-3), "kN.m/rad"),
+        ("kinematic error, last turn", shown(last_valid(health, "kinematic_error"), "{:.3f}", 1e3), "mrad"),
+        ("friction at the motor shaft", span(health["friction_torque"]), "N.m"),
+        ("efficiency, last known", shown(last_valid(health, "efficiency"), "{:.1f}", 100.0), "%"),
+        ("teeth loaded, most", f"{health['teeth_loaded'].max()}", "-"),
+        ("wave generator bearing load, most", f"{health['wave_generator_load'].max():.0f}", "N"),
+        ("energy unaccounted for, most", f"{np.abs(health['energy_residual']).max():.2g}", "J"),
+        ("solver failures", f"{health['solver_failures'].max()}", "-"),
+        ("solver", SOLVER_STATES.get(int(health["solver_state"].max()), "unknown state"), ""),
+    ]
+
+
+def force_rows(forces):
+    if not len(forces):
+        return []
+    return [("mesh force on a tooth, most", f"{np.abs(forces['mesh_force']).max():.1f}", "N"),
+            ("rim tension, most", f"{forces['rim_tension'].max():.1f}", "N")]
+
+
+def print_table(recording):
+    health = recording["health"]
+    counts = ", ".join(f"{name} {count}" for name, count in recording.counts.items())
+    rows = [("simulated", f"{max(series.time[-1] for series in recording.series.values() if len(series)):.2f}", "s")]
+    rows += joint_rows(recording) + health_rows(health) + force_rows(recording["contact_forces"])
+    print(f"{recording.joint} ({recording.namespace}); messages: {counts}")
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    for name, value, unit in rows:
+        print(f"  {name:<{widths[0]}}  {value:>{widths[1]}}  {unit}".rstrip())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("bag")
+    parser.add_argument("--plot", metavar="FILE.png", help="draw the figure into this file")
+    parser.add_argument("--namespace", help="namespace of the twin in the bag (default: the first one found)")
+    parser.add_argument("--title", help="title of the figure (default: the bag's name)")
+    options = parser.parse_args()
+    try:
+        recording = Recording(options.bag, options.namespace)
+    except (ValueError, OSError) as error:
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {error}")
+    print_table(recording)
+    if options.plot:
+        draw(recording, options.title or os.path.basename(options.bag), options.plot)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <exception>
+#include <iostream>
+
+#include "tool/commands.hpp"
+#include "tool/interrupt.hpp"
+
+int main(int argc, char** argv)
+{
+  CLI::App app("Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles in rad.",
+               "joint_twin");
+  app.set_version_flag("--version", "joint_twin " HJT_VERSION);
+  app.require_subcommand(1);
+  int exit_code = hjt::EXIT_DONE;
+  hjt::addInsertCommand(app, exit_code);
+  hjt::addStiffnessCommand(app, exit_code);
+  hjt::addTurnCommand(app, exit_code);
+  hjt::addSimulateCommand(app, exit_code);
+  hjt::addImportCommand(app, exit_code);
+  hjt::addReplayCommand(app, exit_code);
+  hjt::addParametersCommand(app, exit_code);
+
+  hjt::catchInterrupts();
+  try
+  {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    return app.exit(error) == 0 ? hjt::EXIT_DONE : hjt::EXIT_USAGE;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "joint_twin: " << error.what() << '\n';
+    return hjt::EXIT_FAILED;
+  }
+  return exit_code;
+}

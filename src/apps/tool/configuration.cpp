@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "configuration.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+/// The default configuration, one file per stage.
+constexpr std::array<const char*, 7> STAGES{ "gear.yaml",    "elements.yaml", "joint.yaml", "solver.yaml",
+                                             "sensors.yaml", "health.yaml",   "node.yaml" };
+
+fs::path installedConfigDirectory()
+{
+  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin/config.
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  return executable.parent_path() / "../../share/harmonic_joint_twin/config";
+}
+
+fs::path findConfigDirectory(const CommonOptions& options)
+{
+  if (!options.config_dir.empty())
+  {
+    return options.config_dir;
+  }
+  if (const char* from_environment = std::getenv("HJT_CONFIG_DIR"))
+  {
+    return from_environment;
+  }
+  const fs::path installed = installedConfigDirectory();
+  return fs::exists(installed / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_CONFIG_DIR);
+}
+
+/// As given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from anywhere.
+fs::path findOverlay(const std::string& name, const fs::path& config_directory)
+{
+  for (const fs::path& candidate : { fs::path(name), config_directory.parent_path() / name, config_directory / name })
+  {
+    if (fs::exists(candidate))
+    {
+      return candidate;
+    }
+  }
+  return name;
+}
+}  // namespace
+
+void addCommonOptions(CLI::App& command, CommonOptions& options)
+{
+  constexpr const char* GROUP = "Common options";
+  command.add_option("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group(GROUP);
+  command.add_option("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
+      ->type_name("section.key=value")
+      ->allow_extra_args(false)
+      ->group(GROUP);
+  command.add_option("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
+      ->type_name("DIR")
+      ->group(GROUP);
+  command.add_flag("--json", options.json, "one JSON document on stdout and nothing else there")->group(GROUP);
+  command.add_flag("--force", options.force, "overwrite existing output files")->group(GROUP);
+}
+
+ParameterMap loadParameterMap(const CommonOptions& options)
+{
+  const fs::path directory = findConfigDirectory(options);
+  if (!fs::exists(directory / STAGES.front()))
+  {
+    throw ParameterError("no default configuration in '" + directory.string() +
+                         "': name its directory with --config-dir or HJT_CONFIG_DIR");
+  }
+  ParameterMap map;
+  for (const char* stage : STAGES)
+  {
+    readYamlFile((directory / stage).string(), map);
+  }
+  for (const std::string& overlay : options.configs)
+  {
+    readYamlFile(findOverlay(overlay, fs::absolute(directory)).string(), map);
+  }
+  for (const std::string& assignment : options.assignments)
+  {
+    readAssignment(assignment, map);
+  }
+  return map;
+}
+
+Parameters loadParameters(const CommonOptions& options)
+{
+  return parseParameters(loadParameterMap(options));
+}
+}  // namespace hjt

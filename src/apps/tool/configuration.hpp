@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// What every subcommand of the tool takes.
+struct CommonOptions
+{
+  std::string config_dir;            ///< where the default configuration lies; empty: found by itself
+  std::vector<std::string> configs;  ///< overlays, later wins
+  std::vector<std::string> assignments;
+  bool json{};
+  bool force{};
+};
+
+void addCommonOptions(CLI::App& command, CommonOptions& options);
+
+/// The default configuration with the overlays and assignments over it. @throws ParameterError.
+ParameterMap loadParameterMap(const CommonOptions& options);
+
+/// The same, checked. @throws ParameterError.
+Parameters loadParameters(const CommonOptions& options);
+}  // namespace hjt

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "interrupt.hpp"
+#include "number_table.hpp"
+#include "output_file.hpp"
+#include "progress.hpp"
+#include "run_summary.hpp"
+#include "text_table.hpp"
+#include "validators.hpp"
+
+#include <sensor_msgs/JointState.h>
+
+#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int JOINTS = 6;
+/// In the order of the recording; as the UR driver names them.
+const std::array<std::string, JOINTS> JOINT_NAMES{ "shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+                                                   "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint" };
+constexpr const char* TELEMETRY_TOPIC = "/joint_states";
+/// Torque at the joint per motor current, of the size 3 joints, measured at rest [N.m/A].
+constexpr double DEFAULT_GAIN = 10.7;
+constexpr double DEFAULT_RATIO = 101.0;
+
+struct ImportOptions : CommonOptions
+{
+  std::string csv;
+  int joint{};
+  std::string out;
+  double gain{ DEFAULT_GAIN };
+  double ratio{ DEFAULT_RATIO };
+  double start_time{ static_cast<double>(SIMULATION_EPOCH) * 1e-9 };
+  std::string joint_namespace{ DEFAULT_NAMESPACE };
+};
+
+/// The columns of a UR controller's real-time interface: timestamp, then per joint position, speed, current, torque.
+constexpr std::array<const char*, 4> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment" };
+enum Quantity
+{
+  POSITION,
+  VELOCITY,
+  CURRENT,
+  MOMENT
+};
+constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * JOINTS;
+using Row = std::array<double, COLUMNS>;
+
+constexpr std::size_t column(Quantity quantity, int joint)
+{
+  return 1 + static_cast<std::size_t>(quantity) * JOINTS + static_cast<std::size_t>(joint);
+}
+
+NumberTable<COLUMNS>::Names columnNames()
+{
+  NumberTable<COLUMNS>::Names names;
+  names[0] = "timestamp";
+  for (const Quantity quantity : { POSITION, VELOCITY, CURRENT, MOMENT })
+  {
+    for (int joint = 0; joint < JOINTS; ++joint)
+    {
+      names[column(quantity, joint)] = std::string(QUANTITIES[quantity]) + "_" + std::to_string(joint);
+    }
+  }
+  return names;
+}
+
+/// Turns rows into messages: the telemetry of all joints, the motor torque command and the load of one.
+class RowWriter
+{
+public:
+  RowWriter(const ImportOptions& options, BagWriter& bag)
+    : bag_(bag)
+    , joint_(options.joint)
+    , torque_per_current_(options.gain / options.ratio)
+    , start_(static_cast<Stamp>(std::llround(options.start_time * 1e9)))
+    , prefix_(options.joint_namespace + "/")
+  {
+    telemetry_.name.assign(JOINT_NAMES.begin(), JOINT_NAMES.end());
+    telemetry_.position.resize(JOINTS);
+    telemetry_.velocity.resize(JOINTS);
+    telemetry_.effort.resize(JOINTS);
+    command_.name = { JOINT_NAMES[static_cast<std::size_t>(joint_)] };
+    command_.effort.resize(1);
+    load_ = command_;
+  }
+
+  void write(const Row& row)
+  {
+    const Stamp stamp = start_ + static_cast<Stamp>(std::llround(row[0] * 1e9));
+    for (int joint = 0; joint < JOINTS; ++joint)
+    {
+      const auto i = static_cast<std::size_t>(joint);
+      telemetry_.position[i] = row[column(POSITION, joint)];
+      telemetry_.velocity[i] = row[column(VELOCITY, joint)];
+      telemetry_.effort[i] = row[column(CURRENT, joint)];  // [A], as UR's driver publishes it
+    }
+    command_.effort[0] = row[column(CURRENT, joint_)] * torque_per_current_;
+    load_.effort[0] = row[column(MOMENT, joint_)];
+    writeStamped(TELEMETRY_TOPIC, stamp, telemetry_);
+    writeStamped(prefix_ + topics::COMMAND, stamp, command_);
+    writeStamped(prefix_ + topics::LOAD, stamp, load_);
+  }
+
+private:
+  void writeStamped(const std::string& topic, Stamp stamp, sensor_msgs::JointState& message)
+  {
+    message.header.stamp = toRosTime(stamp);
+    bag_.write(topic, stamp, message);
+  }
+
+  BagWriter& bag_;
+  int joint_;
+  double torque_per_current_;
+  Stamp start_;
+  std::string prefix_;
+  sensor_msgs::JointState telemetry_;
+  sensor_msgs::JointState command_;
+  sensor_msgs::JointState load_;
+};
+
+/// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
+std::uint64_t importRows(const ImportOptions& options, NumberTable<COLUMNS>& table, BagWriter& bag)
+{
+  RowWriter writer(options, bag);
+  Row row{};
+  std::uint64_t rows = 0;
+  try
+  {
+    for (double last = -HUGE_VAL; interruptSignal() == 0 && table.read(row); last = row[0])
+    {
+      if (row[0] <= last)
+      {
+        throw InputError(table.place() + ": time goes back: timestamp " + shortNumber(row[0]) + " s after " +
+                         shortNumber(last) + " s");
+      }
+      if (options.start_time + row[0] < 1e-9)
+      {
+        throw InputError(table.place() + ": timestamp " + shortNumber(row[0]) + " s lies before the ROS epoch");
+      }
+      writer.write(row);
+      ++rows;
+    }
+  }
+  catch (const InputError& error)
+  {
+    bag.close();
+    throw InputError(std::string(error.what()) +
+                     (rows == 0 ? "; nothing was written" :
+                                  "; " + options.out + " is readable and holds the " + std::to_string(rows) +
+                                      " rows before it"));
+  }
+  bag.close();
+  return rows;
+}
+
+int import(const ImportOptions& options)
+{
+  requireWritable(options.out, options.force, options.csv);
+  NumberTable<COLUMNS> table(options.csv, columnNames());
+  BagWriter bag(options.out);
+  const std::uint64_t rows = importRows(options, table, bag);
+  if (rows == 0)
+  {
+    throw InputError(options.csv + " has no rows; nothing was written");
+  }
+  const std::string& joint = JOINT_NAMES[static_cast<std::size_t>(options.joint)];
+  if (options.json)
+  {
+    const nlohmann::ordered_json summary{ { "output", options.out },
+                                          { "joint", joint },
+                                          { "rows", rows },
+                                          { "messages", bag.messages() } };
+    std::cout << summary.dump(2) << '\n';
+  }
+  else
+  {
+    printValues({ { "joint", joint, "" }, { "rows", std::to_string(rows), "" } });
+    std::cout << "written: " << options.out << '\n';
+  }
+  if (interruptSignal() != 0)
+  {
+    std::cerr << "joint_twin: interrupted; " << options.out << " is readable up to here\n";
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  return EXIT_DONE;
+}
+}  // namespace
+
+void addImportCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<ImportOptions>();
+  auto* command = app.add_subcommand("import", "turn a UR controller's CSV recording (columns timestamp, actual_q_N, "
+                                               "actual_qd_N, actual_current_N, target_moment_N) into a bag for replay");
+  command->add_option("csv", options->csv, "the recording")->required()->type_name("FILE.csv");
+  command->add_option("--joint", options->joint, "0 ... 5: base, shoulder, elbow, wrists")
+      ->required()
+      ->check(CLI::Range(0, JOINTS - 1));
+  command->add_option("--out", options->out, "the bag")->required()->type_name("FILE.bag")->check(BAG);
+  command->add_option("--gain", options->gain, "torque at the joint per current [N.m/A]")
+      ->capture_default_str()
+      ->check(FINITE);
+  command->add_option("--ratio", options->ratio, "of the gear [-]")
+      ->capture_default_str()
+      ->check(FINITE)
+      ->check(CLI::PositiveNumber);
+  command->add_option("--start-time", options->start_time, "ROS time of timestamp 0 [s]")
+      ->check(FINITE)
+      ->check(CLI::Range(0.0, 4e9));
+  addNamespaceOption(*command, options->joint_namespace);
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] { exit_code = import(*options); });
+}
+}  // namespace hjt

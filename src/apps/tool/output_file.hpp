@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hjt
+{
+/// @throws InputError if `path` exists and `force` is not given, or is the file that is read from.
+void requireWritable(const std::string& path, bool force, const std::string& input = "");
+
+/// A CSV file of numbers; every number can be read back exactly.
+class CsvWriter
+{
+public:
+  /// @throws InputError if the file cannot be written.
+  CsvWriter(const std::string& path, const std::vector<std::string>& columns);
+
+  void writeRow(const std::vector<double>& values);
+
+  /// @throws InputError if not all could be written.
+  void close();
+
+private:
+  [[noreturn]] void fail() const;
+
+  std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+};
+}  // namespace hjt

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <rosbag/exceptions.h>
+#include <rosbag/view.h>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "interrupt.hpp"
+#include "output_file.hpp"
+#include "progress.hpp"
+#include "run_summary.hpp"
+#include "validators.hpp"
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
+
+namespace hjt
+{
+namespace
+{
+struct ReplayOptions : CommonOptions
+{
+  std::string bag;
+  std::string out;
+  std::string joint_namespace{ DEFAULT_NAMESPACE };
+};
+
+std::string joined(const std::vector<std::string>& texts)
+{
+  std::string all;
+  for (const std::string& text : texts)
+  {
+    all += (all.empty() ? "" : ", ") + text;
+  }
+  return all;
+}
+
+void openForReading(rosbag::Bag& bag, const std::string& path)
+{
+  try
+  {
+    bag.open(path, rosbag::bagmode::Read);
+  }
+  catch (const rosbag::BagUnindexedException&)
+  {
+    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
+  }
+  catch (const std::exception& error)
+  {
+    throw InputError(path + " cannot be read as a bag: " + error.what());
+  }
+}
+
+/// An original message under an output's name could not be told from a simulated one.
+void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
+{
+  rosbag::View view(bag, rosbag::TopicQuery(outputTopics(options.joint_namespace)));
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  {
+    throw InputError(options.bag + " holds " + connection->topic +
+                     " already; leave it out, or choose another --joint-namespace");
+  }
+}
+
+/// The joint's name is the bag's own business unless the user has said which joint is meant.
+void adoptJointName(const rosbag::Bag& bag, const ReplayOptions& options, ParameterMap& map)
+{
+  CommonOptions defaults;
+  defaults.config_dir = options.config_dir;
+  const bool chosen = map.at("joint.name").origin != loadParameterMap(defaults).at("joint.name").origin;
+  const Parameters parameters = parseParameters(map);
+  const BagInputs found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
+  if (!chosen && found.inputs.empty() && found.other_joints.size() == 1)
+  {
+    const std::string& name = *found.other_joints.begin();
+    map["joint.name"] = { name, options.bag };
+    std::cerr << "joint_twin: joint.name = " << name << ", the one joint that " << options.bag << " commands\n";
+  }
+}
+
+BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const JointNames& names)
+{
+  BagInputs found = readBagInputs(bag, options.joint_namespace, names);
+  if (found.without_effort > 0)
+  {
+    std::cerr << "joint_twin: " << found.without_effort << " messages name " << names.joint
+              << " but give no effort for it; ignored\n";
+  }
+  if (!found.inputs.empty())
+  {
+    return found;
+  }
+  if (!found.other_joints.empty())
+  {
+    throw InputError(options.bag + " commands other joints (" +
+                     joined({ found.other_joints.begin(), found.other_joints.end() }) + ") than joint.name = " +
+                     names.joint + "; choose one with --set joint.name=NAME or an overlay of config/joints");
+  }
+  throw InputError(options.bag + " has no message on an input topic (" + joined(inputTopics(options.joint_namespace)) +
+                   "); it holds:" + listTopics(bag));
+}
+
+/// The twin beside the recording: copies each original message, and up to its time the simulated ones.
+class Replay
+{
+public:
+  Replay(const rosbag::Bag& bag, Twin& twin, const std::vector<Input>& inputs, const ReplayOptions& options)
+    : view_(bag), twin_(twin), inputs_(inputs), writer_(options.out), recorder_(twin, options.joint_namespace, writer_)
+  {
+    // The last input may be stamped after the last message was recorded, but the recording ends there.
+    end_ = fromRosTime(view_.getEndTime());
+    begin_ = twin.stamp();
+  }
+
+  void run()
+  {
+    Progress progress("replaying");
+    for (const rosbag::MessageInstance& message : view_)
+    {
+      advance(fromRosTime(message.getTime()), progress);
+      if (interruptSignal() != 0)
+      {
+        break;
+      }
+      writer_.copy(message);
+    }
+    writer_.close();
+  }
+
+  void close() { writer_.close(); }
+
+private:
+  void advance(Stamp until, Progress& progress)
+  {
+    feed();
+    while (interruptSignal() == 0 && twin_.step(until))
+    {
+      recorder_.record(twin_);
+      progress.update(static_cast<double>(twin_.stamp() - begin_) / static_cast<double>(end_ - begin_));
+      feed();
+    }
+  }
+
+  /// What is due at the twin's next instant.
+  void feed()
+  {
+    const Stamp instant = twin_.stamp() + twin_.stepLength();
+    for (; next_ < inputs_.size() && inputs_[next_].stamp <= instant; ++next_)
+    {
+      const Input& input = inputs_[next_];
+      if (input.kind == InputKind::MOTOR_TORQUE)
+      {
+        twin_.commandMotorTorque(input.stamp, input.value);
+      }
+      else
+      {
+        twin_.commandLoadTorque(input.stamp, input.value);
+      }
+    }
+  }
+
+  rosbag::View view_;
+  Twin& twin_;
+  const std::vector<Input>& inputs_;
+  BagWriter writer_;
+  BagRecorder recorder_;
+  std::size_t next_{};
+  Stamp begin_{};
+  Stamp end_{};
+};
+
+int replay(const ReplayOptions& options)
+{
+  ParameterMap map = loadParameterMap(options);
+  parseParameters(map);
+  requireWritable(options.out, options.force, options.bag);
+  rosbag::Bag bag;
+  openForReading(bag, options.bag);
+  refuseTakenTopics(bag, options);
+  adoptJointName(bag, options, map);
+  const Parameters parameters = parseParameters(map);
+  const BagInputs found = requireInputs(bag, options, JointNames(parameters.joint.name));
+  Twin twin(parameters);
+  twin.reset(found.inputs.front().stamp);
+  const RunSummary summary{ options.out, twin.stamp() };
+  Replay run(bag, twin, found.inputs, options);
+  try
+  {
+    run.run();
+  }
+  catch (const std::exception& error)
+  {
+    run.close();
+    throw InputError(options.bag + " is damaged: " + error.what() + "; " + options.out +
+                     " is readable and holds what came before");
+  }
+  return summary.report(twin, options.json);
+}
+}  // namespace
+
+void addReplayCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<ReplayOptions>();
+  auto* command = app.add_subcommand("replay", "run the twin through a bag; every original message is kept as it is");
+  command->add_option("bag", options->bag, "the recording")->required()->type_name("IN.bag");
+  command->add_option("--out", options->out, "the bag with the simulated topics added")
+      ->required()
+      ->type_name("OUT.bag")
+      ->check(BAG);
+  addNamespaceOption(*command, options->joint_namespace);
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] { exit_code = replay(*options); });
+}
+}  // namespace hjt

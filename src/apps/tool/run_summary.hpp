@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// Start of the simulated time where no recording gives one, so that stamps are valid ROS times: 2001-09-09 01:46:40 UTC.
+constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
+
+/// How a run of the twin ended, for the user and for programs.
+struct RunSummary
+{
+  std::string output;   ///< file written
+  Stamp begin{};
+  std::chrono::steady_clock::time_point started{ std::chrono::steady_clock::now() };
+
+  /// Prints (JSON on stdout if asked), warns on stderr of all that was not as it should be, and gives the exit code.
+  int report(const Twin& twin, bool json) const;
+};
+}  // namespace hjt

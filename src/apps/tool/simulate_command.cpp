@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "interrupt.hpp"
+#include "output_file.hpp"
+#include "progress.hpp"
+#include "run_summary.hpp"
+#include "torque_profile.hpp"
+#include "validators.hpp"
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
+
+namespace hjt
+{
+namespace
+{
+struct SimulateOptions : CommonOptions
+{
+  std::optional<double> duration;
+  std::optional<double> torque;
+  std::string profile;
+  std::optional<double> load;
+  std::string out;
+  std::string joint_namespace{ DEFAULT_NAMESPACE };
+};
+
+TorqueProfile makeProfile(const SimulateOptions& options)
+{
+  TorqueProfile profile =
+      options.torque ? TorqueProfile::constant(*options.torque) : TorqueProfile::fromFile(options.profile);
+  if (options.load)
+  {
+    if (profile.hasLoad())
+    {
+      throw InputError(options.profile + " has a column 'load_torque'; leave out --load");
+    }
+    profile.setLoad(*options.load);
+  }
+  return profile;
+}
+
+/// One row per instant of joint_states.
+class CsvRecorder
+{
+public:
+  CsvRecorder(const Twin& twin, const std::string& path, Stamp begin)
+    : schedule_(twin.parameters())
+    , begin_(begin)
+    , csv_(path, { "time", "motor_angle", "motor_velocity", "output_angle", "output_velocity", "motor_angle_encoder",
+                   "motor_velocity_encoder", "output_angle_encoder", "output_velocity_encoder", "motor_torque",
+                   "load_torque", "wave_generator_torque", "joint_torque", "friction_torque", "torsional_stiffness",
+                   "energy_residual", "brake", "converged" })
+  {
+  }
+
+  void record(Twin& twin)
+  {
+    const JointOutputs& o = twin.outputs();
+    if (!schedule_.isDue(Output::JOINT_STATES, o.stamp))
+    {
+      return;
+    }
+    const EncoderReadings e = twin.encoders();
+    csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity,
+                    e.motor_angle, e.motor_velocity, e.output_angle, e.output_velocity, o.motor_torque, o.load_torque,
+                    o.wave_generator_torque, o.joint_torque, o.friction_torque, o.torsional_stiffness,
+                    o.energy_residual, o.brake_engaged ? 1.0 : 0.0, o.converged ? 1.0 : 0.0 });
+  }
+
+  void close() { csv_.close(); }
+
+private:
+  OutputSchedule schedule_;
+  Stamp begin_;
+  CsvWriter csv_;
+};
+
+template <class Recorder>
+void run(Twin& twin, TorqueProfile& profile, Stamp end, Recorder& recorder)
+{
+  const Stamp begin = twin.stamp();
+  Progress progress("simulating");
+  profile.feed(twin, begin);
+  while (interruptSignal() == 0 && twin.step(end))
+  {
+    recorder.record(twin);
+    progress.update(static_cast<double>(twin.stamp() - begin) / static_cast<double>(end - begin));
+    profile.feed(twin, begin);
+  }
+}
+
+int simulate(const SimulateOptions& options)
+{
+  const std::string extension = std::filesystem::path(options.out).extension().string();
+  const Parameters parameters = loadParameters(options);
+  requireWritable(options.out, options.force, options.profile);
+  TorqueProfile profile = makeProfile(options);
+  Twin twin(parameters);
+  twin.reset(SIMULATION_EPOCH);
+  const RunSummary summary{ options.out, twin.stamp() };
+  const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
+  if (extension == ".csv")
+  {
+    CsvRecorder recorder(twin, options.out, twin.stamp());
+    run(twin, profile, end, recorder);
+    recorder.close();
+  }
+  else
+  {
+    BagWriter bag(options.out);
+    BagRecorder recorder(twin, options.joint_namespace, bag);
+    run(twin, profile, end, recorder);
+    bag.close();
+  }
+  return summary.report(twin, options.json);
+}
+}  // namespace
+
+void addSimulateCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<SimulateOptions>();
+  auto* command = app.add_subcommand("simulate", "run the twin under a given torque");
+  command->add_option("--duration", options->duration, "simulated time [s]; default: up to the profile's last row")
+      ->check(FINITE)
+      ->check(CLI::PositiveNumber);
+  auto* source = command->add_option_group("drive", "one of");
+  source->add_option("--torque", options->torque, "constant motor torque [N.m]")->check(FINITE);
+  source
+      ->add_option("--profile", options->profile,
+                   "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); "
+                   "each row holds until the next")
+      ->type_name("FILE.csv");
+  source->require_option(1);
+  command->add_option("--load", options->load, "constant external torque at the output; > 0 resists positive motion [N.m]")
+      ->check(FINITE);
+  command->add_option("--out", options->out, "bag with the node's topics, or CSV with a row per joint_states")
+      ->required()
+      ->type_name("FILE.bag|FILE.csv")
+      ->check(BAG_OR_CSV);
+  addNamespaceOption(*command, options->joint_namespace);
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] {
+    if (options->torque && !options->duration)
+    {
+      throw CLI::RequiredError("--duration");
+    }
+    exit_code = simulate(*options);
+  });
+}
+}  // namespace hjt

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "output_file.hpp"
+#include "progress.hpp"
+#include "text_table.hpp"
+#include "validators.hpp"
+
+#include "harmonic_joint_twin/twin/static_analysis.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+int notConverged(const std::string& what, double residual)
+{
+  std::cerr << "joint_twin: no equilibrium found for " << what << " (largest out-of-balance force " << residual
+            << " N); see solver.max_iterations and solver.max_step_cuts\n";
+  return EXIT_FAILED;
+}
+
+struct InsertOptions : CommonOptions
+{
+  std::string csv;
+};
+
+void writeTeeth(const std::string& path, const InsertionResult& result)
+{
+  CsvWriter csv(path, { "tooth", "tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
+                        "rim_tension", "bending_force" });
+  for (std::size_t i = 0; i < result.tooth_x.size(); ++i)
+  {
+    csv.writeRow({ static_cast<double>(i), result.tooth_x[i], result.tooth_y[i], result.radius[i],
+                   result.angle_deviation[i], result.wave_generator_force[i], result.rim_tension[i],
+                   result.bending_force[i] });
+  }
+  csv.close();
+}
+
+int insert(const InsertOptions& options)
+{
+  const Parameters parameters = loadParameters(options);
+  if (!options.csv.empty())
+  {
+    requireWritable(options.csv, options.force);
+  }
+  const InsertionResult result = analyseInsertion(parameters);
+  if (!result.converged)
+  {
+    return notConverged("the insertion", result.residual);
+  }
+  if (!options.csv.empty())
+  {
+    writeTeeth(options.csv, result);
+  }
+  if (options.json)
+  {
+    const Json json{ { "wave_generator_force_max", result.wave_generator_force_max },
+                     { "wave_generator_force_min", result.wave_generator_force_min },
+                     { "wave_generator_force_sum", result.wave_generator_force_sum },
+                     { "teeth_in_contact", result.teeth_in_contact },
+                     { "tension_min", result.tension_min },
+                     { "tension_max", result.tension_max },
+                     { "radius_major_axis", result.radius_major_axis },
+                     { "radius_minor_axis", result.radius_minor_axis },
+                     { "bending_force_max", result.bending_force_max },
+                     { "residual", result.residual },
+                     { "iterations", result.iterations },
+                     { "solve_time", result.solve_time } };
+    std::cout << json.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printValues({ { "wave generator force, largest", shortNumber(result.wave_generator_force_max), "N" },
+                { "wave generator force, smallest", shortNumber(result.wave_generator_force_min), "N" },
+                { "wave generator force, sum", shortNumber(result.wave_generator_force_sum), "N" },
+                { "teeth in contact", std::to_string(result.teeth_in_contact), "" },
+                { "rim tension, smallest", shortNumber(result.tension_min), "N" },
+                { "rim tension, largest", shortNumber(result.tension_max), "N" },
+                { "radius at the major axis", shortNumber(result.radius_major_axis), "m" },
+                { "radius at the minor axis", shortNumber(result.radius_minor_axis), "m" },
+                { "bending force, largest", shortNumber(result.bending_force_max), "N" },
+                { "residual", shortNumber(result.residual), "N" },
+                { "iterations", std::to_string(result.iterations), "" },
+                { "solve time", shortNumber(result.solve_time), "s" } });
+  return EXIT_DONE;
+}
+
+struct StiffnessOptions : CommonOptions
+{
+  std::vector<double> torques;
+  double angle{};
+};
+
+int stiffness(const StiffnessOptions& options)
+{
+  const auto rows = analyseStiffness(loadParameters(options), options.angle, options.torques);
+  Json json_rows = Json::array();
+  std::vector<std::vector<double>> table;
+  for (const StiffnessRow& row : rows)
+  {
+    if (!row.converged)
+    {
+      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.residual);
+    }
+    json_rows.push_back({ { "torque", row.torque },
+                          { "output_angle", row.output_angle },
+                          { "wave_generator_torque", row.wave_generator_torque },
+                          { "teeth_loaded", row.teeth_loaded },
+                          { "mesh_force_max", row.mesh_force_max },
+                          { "wave_generator_force_sum", row.wave_generator_force_sum },
+                          { "residual", row.residual } });
+    table.push_back({ row.torque, row.output_angle, row.wave_generator_torque, static_cast<double>(row.teeth_loaded),
+                      row.mesh_force_max, row.wave_generator_force_sum, row.residual });
+  }
+  if (options.json)
+  {
+    std::cout << Json{ { "wave_generator_angle", options.angle }, { "rows", json_rows } }.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printTable({ "torque [N.m]", "output angle [rad]", "WG torque [N.m]", "teeth loaded [-]", "mesh force max [N]",
+               "WG force sum [N]", "residual [N]" },
+             table);
+  return EXIT_DONE;
+}
+
+struct TurnOptions : CommonOptions
+{
+  double load{};
+  double angle_range{};
+  int steps{};
+};
+
+int turn(const TurnOptions& options)
+{
+  const Parameters parameters = loadParameters(options);
+  std::vector<TurnRow> rows;
+  {
+    Progress progress("turning");
+    rows = analyseTurn(parameters, options.load, options.angle_range, options.steps,
+                       [&](int step) { progress.update(static_cast<double>(step) / options.steps); });
+  }
+  Json json_rows = Json::array();
+  std::vector<std::vector<double>> table;
+  for (const TurnRow& row : rows)
+  {
+    if (!row.converged)
+    {
+      return notConverged("the row of wave generator angle " + shortNumber(row.wave_generator_angle) + " rad",
+                          row.residual);
+    }
+    json_rows.push_back({ { "wave_generator_angle", row.wave_generator_angle },
+                          { "output_angle", row.output_angle },
+                          { "wave_generator_torque", row.wave_generator_torque } });
+    table.push_back({ row.wave_generator_angle, row.output_angle, row.wave_generator_torque });
+  }
+  if (options.json)
+  {
+    std::cout << Json{ { "load", options.load }, { "rows", json_rows } }.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printTable({ "WG angle [rad]", "output angle [rad]", "WG torque [N.m]" }, table);
+  return EXIT_DONE;
+}
+}  // namespace
+
+void addInsertCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<InsertOptions>();
+  auto* command = app.add_subcommand("insert", "static equilibrium after the wave generator's insertion, circular spline "
+                                               "left out");
+  command->add_option("--csv", options->csv, "write positions and forces of every tooth")->type_name("FILE");
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] { exit_code = insert(*options); });
+}
+
+void addStiffnessCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<StiffnessOptions>();
+  auto* command = app.add_subcommand("stiffness", "torsion under load, wave generator locked");
+  command->add_option("--torques", options->torques, "loads on the circular spline, e.g. 5,14,48 [N.m]")
+      ->required()
+      ->delimiter(',')
+      ->check(FINITE);
+  command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] { exit_code = stiffness(*options); });
+}
+
+void addTurnCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<TurnOptions>();
+  auto* command = app.add_subcommand("turn", "quasi-static turning at constant load, friction left out");
+  command->add_option("--load", options->load, "load on the circular spline [N.m]")->required()->check(FINITE);
+  command->add_option("--angle-range", options->angle_range, "wave generator turns from 0 to this [rad]")
+      ->required()
+      ->check(FINITE);
+  command->add_option("--steps", options->steps, "steps of equal size")->required()->check(CLI::Range(1, 100000000));
+  addCommonOptions(*command, *options);
+  command->callback([options, &exit_code] { exit_code = turn(*options); });
+}
+}  // namespace hjt

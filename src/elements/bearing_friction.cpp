@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/elements/bearing_friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+
+namespace hjt
+{
+double BearingFriction::torque(double speed, double load, double temperature) const noexcept
+{
+  constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
+  const double degrees = temperature - parameters_.viscosity_temperature;
+  const double viscosity = 1e6 * parameters_.viscosity * std::exp(-parameters_.viscosity_slope * degrees);
+  const double product = viscosity * std::abs(speed) * 60.0 / TWO_PI;
+  const double diameter = 1e3 * parameters_.pitch_diameter;
+  const double root = std::cbrt(std::max(product, LOW_SPEED));
+  const double rolling = product < LOW_SPEED ? 160.0 : root * root;
+  const double speed_part = parameters_.lubricant_factor * rolling * diameter * diameter * diameter * 1e-7;
+  const double load_part = parameters_.load_factor * load * diameter;
+  return 1e-3 * (speed_part + load_part);
+}
+}  // namespace hjt

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/turn_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int MARKS_PER_TOOTH = 16;
+}
+
+TurnWindow::TurnWindow(const GearParameters& gear)
+  : nominal_ratio_(nominalRatio(gear))
+  , marks_per_turn_(MARKS_PER_TOOTH * gear.teeth_flexspline)
+  , marks_per_radian_(static_cast<double>(marks_per_turn_) / TWO_PI)
+  , torsions_(static_cast<std::size_t>(marks_per_turn_) + 2)
+{
+}
+
+void TurnWindow::reset() noexcept
+{
+  started_ = false;
+  count_ = 0;
+}
+
+void TurnWindow::update(double motor_angle, double torsion) noexcept
+{
+  double place = direction_ * motor_angle * marks_per_radian_;
+  if (!started_)
+  {
+    started_ = true;
+    newest_mark_ = static_cast<std::int64_t>(std::floor(place));
+  }
+  else if (place <= static_cast<double>(newest_mark_ - 1))
+  {
+    direction_ = -direction_;
+    place = -place;
+    place_ = -place_;
+    newest_mark_ = static_cast<std::int64_t>(std::floor(place_));
+    count_ = 0;
+  }
+  const auto mark = static_cast<std::int64_t>(std::floor(place));
+  if (mark > newest_mark_)
+  {
+    const double slope = (torsion - torsion_) / (place - place_);
+    const std::int64_t first = std::max(newest_mark_ + 1, mark - marks_per_turn_ - 1);
+    for (std::int64_t i = first; i <= mark; ++i)
+    {
+      keep(torsion_ + slope * (static_cast<double>(i) - place_));
+    }
+    newest_mark_ = mark;
+  }
+  place_ = place;
+  torsion_ = torsion;
+}
+
+Indicator TurnWindow::transmissionRatio() const noexcept
+{
+  if (!full())
+  {
+    return {};
+  }
+  const double back = static_cast<double>(newest_mark_ + marks_per_turn_) - place_;
+  const auto later = static_cast<std::int64_t>(std::floor(back));
+  const double share = back - static_cast<double>(later);
+  const double torsion_then = (1.0 - share) * torsionAt(later) + share * torsionAt(later + 1);
+  const double motor_travel = direction_ * TWO_PI;
+  const double output_travel = motor_travel / nominal_ratio_ - (torsion_ - torsion_then);
+  if (output_travel == 0.0)
+  {
+    return {};
+  }
+  return { true, motor_travel / output_travel };
+}
+
+Indicator TurnWindow::kinematicError() const noexcept
+{
+  if (!full())
+  {
+    return {};
+  }
+  const double end = torsionAt(0);
+  const double slope = (torsionAt(marks_per_turn_) - end) / static_cast<double>(marks_per_turn_);
+  double lowest = 0.0;  // the ends lie on the line
+  double highest = 0.0;
+  for (std::int64_t i = 1; i < marks_per_turn_; ++i)
+  {
+    const double error = torsionAt(i) - end - slope * static_cast<double>(i);
+    lowest = std::min(lowest, error);
+    highest = std::max(highest, error);
+  }
+  return { true, highest - lowest };
+}
+
+void TurnWindow::keep(double torsion) noexcept
+{
+  newest_ = newest_ + 1 == torsions_.size() ? 0 : newest_ + 1;
+  torsions_[newest_] = torsion;
+  count_ = std::min(count_ + 1, torsions_.size());
+}
+
+double TurnWindow::torsionAt(std::int64_t marks_back) const noexcept
+{
+  const auto back = static_cast<std::size_t>(marks_back);
+  return torsions_[newest_ >= back ? newest_ - back : newest_ + torsions_.size() - back];
+}
+}  // namespace hjt

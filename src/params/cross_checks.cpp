@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/params/cross_checks.hpp"
+
+#include <cmath>
+
+#include "harmonic_joint_twin/params/number_text.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double NANOSECONDS_PER_SECOND = 1e9;
+
+/// True if `rate` fits a whole number of times into `of`.
+bool divides(double rate, double of)
+{
+  const double times = std::round(of / rate);
+  return times >= 1.0 && std::abs(times * rate - of) <= 1e-9 * of;
+}
+
+/// Collects contradictions, each with the places of the keys it is about.
+class Contradictions
+{
+public:
+  explicit Contradictions(const ParameterMap& map) : map_(map) {}
+
+  void require(bool holds, const std::vector<std::string>& keys, const std::string& what)
+  {
+    if (holds)
+    {
+      return;
+    }
+    std::string places;
+    for (const std::string& key : keys)
+    {
+      const auto found = map_.find(key);
+      places += (places.empty() ? "" : ", ") + (found == map_.end() ? key : found->second.origin);
+    }
+    texts_.push_back(places + ": " + what);
+  }
+
+  std::vector<std::string> take() { return std::move(texts_); }
+
+private:
+  const ParameterMap& map_;
+  std::vector<std::string> texts_;
+};
+
+void checkGear(const Parameters& p, Contradictions& check)
+{
+  const std::string flexspline = "gear.teeth_flexspline = " + std::to_string(p.gear.teeth_flexspline) + " [-]";
+  check.require(p.gear.teeth_flexspline % 2 == 0, { "gear.teeth_flexspline" }, flexspline + " must be even");
+  check.require(p.gear.teeth_circular_spline == p.gear.teeth_flexspline + 2,
+                { "gear.teeth_circular_spline", "gear.teeth_flexspline" },
+                "gear.teeth_circular_spline = " + std::to_string(p.gear.teeth_circular_spline) +
+                    " [-] must be two more than " + flexspline);
+  check.require(p.gear.wave_amplitude < p.gear.flexspline_inner_radius,
+                { "gear.wave_amplitude", "gear.flexspline_inner_radius" },
+                "gear.wave_amplitude = " + numberText(p.gear.wave_amplitude) +
+                    " [m] must be less than gear.flexspline_inner_radius = " +
+                    numberText(p.gear.flexspline_inner_radius) + " [m]");
+}
+
+void checkElements(const Parameters& p, Contradictions& check)
+{
+  const auto& breakpoints = p.cup.torsion_breakpoints;
+  check.require(breakpoints[0] < breakpoints[1], { "cup.torsion_breakpoints" },
+                "cup.torsion_breakpoints = [" + numberText(breakpoints[0]) + ", " + numberText(breakpoints[1]) +
+                    "] [N.m] must ascend");
+  check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
+                "mesh.friction_kinetic = " + numberText(p.mesh.friction_kinetic) +
+                    " [-] must not exceed mesh.friction_static = " + numberText(p.mesh.friction_static) + " [-]");
+}
+
+void checkRates(const Parameters& p, Contradictions& check)
+{
+  // The clock of the messages counts nanoseconds; a step that is no whole number of them would drift.
+  const double step = std::round(NANOSECONDS_PER_SECOND / p.solver.rate);
+  check.require(step * p.solver.rate == NANOSECONDS_PER_SECOND, { "solver.rate" },
+                "solver.rate = " + numberText(p.solver.rate) +
+                    " [Hz] must make a step of whole nanoseconds, as 1000, 8000 or 10000 do");
+
+  const auto check_rate = [&](const std::string& key, double rate) {
+    check.require(divides(rate, p.solver.rate), { key, "solver.rate" },
+                  key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) +
+                      " [Hz]");
+  };
+  check_rate("publish.joint_states_rate", p.publish.joint_states_rate);
+  check_rate("publish.encoders_rate", p.publish.encoders_rate);
+  check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
+  check_rate("publish.health_rate", p.publish.health_rate);
+}
+}  // namespace
+
+std::vector<std::string> contradictions(const Parameters& parameters, const ParameterMap& map)
+{
+  Contradictions check(map);
+  checkGear(parameters, check);
+  checkElements(parameters, check);
+  checkRates(parameters, check);
+  return check.take();
+}
+}  // namespace hjt

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "harmonic_joint_twin/params/choices.hpp"
+#include "harmonic_joint_twin/params/cross_checks.hpp"
+#include "harmonic_joint_twin/params/field_table.hpp"
+#include "harmonic_joint_twin/params/number_text.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::string valueText(const ParameterValue& configured)
+{
+  struct
+  {
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return std::to_string(value); }
+    std::string operator()(double value) const { return numberText(value); }
+    std::string operator()(const std::string& value) const { return "'" + value + "'"; }
+    std::string operator()(const std::vector<double>& value) const
+    {
+      std::string text;
+      for (const double number : value)
+      {
+        text += (text.empty() ? "" : ", ") + numberText(number);
+      }
+      return "[" + text + "]";
+    }
+  } write;
+  return std::visit(write, configured.value);
+}
+
+/// Single edits (insert, delete, replace) between two texts (Levenshtein).
+std::size_t editDistance(const std::string& from, const std::string& to)
+{
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{ 0 });
+  for (std::size_t i = 1; i <= from.size(); ++i)
+  {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j)
+    {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({ replaced, row[j] + 1, row[j - 1] + 1 });
+    }
+  }
+  return row.back();
+}
+
+std::string withoutSection(const std::string& key)
+{
+  return key.substr(key.find('.') + 1);
+}
+
+/// " (did you mean gear.wave_amplitude?)", or nothing if no key is near.
+std::string suggestion(const std::string& unknown, const std::set<std::string>& known)
+{
+  std::string nearest;
+  std::size_t distance = std::max<std::size_t>(2, withoutSection(unknown).size() / 3) + 1;
+  for (const std::string& key : known)
+  {
+    // The right name in the wrong section counts as one edit.
+    const bool other_section = withoutSection(key) == withoutSection(unknown);
+    const std::size_t edits = other_section ? 1 : editDistance(unknown, key);
+    if (edits < distance)
+    {
+      distance = edits;
+      nearest = key;
+    }
+  }
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
+/// Fills one field after the other from the map; collects what is wrong, so that the user sees all of it at once.
+class FieldReader
+{
+public:
+  explicit FieldReader(const ParameterMap& map) : map_(map) {}
+
+  void operator()(const std::string& key, const char* unit, double& field, const Range& range, const char* meaning)
+  {
+    const ParameterValue* configured = find(key, numberKind("a number", unit, range), meaning);
+    if (configured != nullptr)
+    {
+      readNumber(key, unit, *configured, range, field);
+    }
+  }
+
+  void operator()(const std::string& key, const char* unit, int& field, const Range& range, const char* meaning)
+  {
+    const std::string kind = numberKind("a whole number", unit, range);
+    const ParameterValue* configured = find(key, kind, meaning);
+    if (configured == nullptr)
+    {
+      return;
+    }
+    const auto* whole = std::get_if<std::int64_t>(&configured->value);
+    if (whole == nullptr)
+    {
+      mistyped(key, *configured, kind);
+      return;
+    }
+    if (inRange(key, unit, *configured, static_cast<double>(*whole), range))
+    {
+      field = static_cast<int>(*whole);
+    }
+  }
+
+  template <std::size_t N>
+  void operator()(const std::string& key, const char* unit, std::array<double, N>& field, const Range& range,
+                  const char* meaning)
+  {
+    const std::string kind = numberKind("a list of " + std::to_string(N) + " numbers", unit, range);
+    const ParameterValue* configured = find(key, kind, meaning);
+    if (configured == nullptr)
+    {
+      return;
+    }
+    const auto* list = std::get_if<std::vector<double>>(&configured->value);
+    if (list == nullptr || list->size() != N)
+    {
+      mistyped(key, *configured, kind);
+      return;
+    }
+    for (std::size_t i = 0; i < N; ++i)
+    {
+      if (inRange(key, unit, *configured, (*list)[i], range))
+      {
+        field[i] = (*list)[i];
+      }
+    }
+  }
+
+  void operator()(const std::string& key, bool& field, const char* meaning)
+  {
+    readAs<bool>(key, field, "true or false, without quotes", meaning);
+  }
+
+  void operator()(const std::string& key, std::string& field, const char* meaning)
+  {
+    readAs<std::string>(key, field, "a text (in quotes if it looks like a number)", meaning);
+    const auto found = map_.find(key);
+    if (found != map_.end() && std::holds_alternative<std::string>(found->second.value) && field.empty())
+    {
+      errors_.push_back(found->second.origin + ": " + key + " must not be empty");
+    }
+  }
+
+  template <class Choice>
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice& field, const char* meaning)
+  {
+    std::string names;
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      names += (names.empty() ? "" : " or ") + std::string(name);
+    }
+    std::string chosen;
+    if (!readAs<std::string>(key, chosen, names, meaning))
+    {
+      return;
+    }
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      if (chosen == name)
+      {
+        field = choice;
+        return;
+      }
+    }
+    mistyped(key, map_.at(key), names);
+  }
+
+  void refuseUnknownKeys()
+  {
+    for (const auto& [key, configured] : map_)
+    {
+      if (known_.count(key) == 0)
+      {
+        errors_.push_back(configured.origin + ": unknown parameter " + key + " = " + valueText(configured) +
+                          suggestion(key, known_));
+      }
+    }
+  }
+
+  const std::vector<std::string>& errors() const { return errors_; }
+
+private:
+  static std::string numberKind(const std::string& what, const char* unit, const Range& range)
+  {
+    return what + " [" + unit + "], " + rangeText(range);
+  }
+
+  const ParameterValue* find(const std::string& key, const std::string& kind, const char* meaning)
+  {
+    known_.insert(key);
+    const auto found = map_.find(key);
+    if (found == map_.end())
+    {
+      errors_.push_back("parameter " + key + " is missing; expected " + kind + " (" + meaning + ")");
+      return nullptr;
+    }
+    return &found->second;
+  }
+
+  template <class T>
+  bool readAs(const std::string& key, T& field, const std::string& kind, const char* meaning)
+  {
+    const ParameterValue* configured = find(key, kind, meaning);
+    if (configured == nullptr)
+    {
+      return false;
+    }
+    const T* value = std::get_if<T>(&configured->value);
+    if (value == nullptr)
+    {
+      mistyped(key, *configured, kind);
+      return false;
+    }
+    field = *value;
+    return true;
+  }
+
+  void readNumber(const std::string& key, const char* unit, const ParameterValue& configured, const Range& range,
+                  double& field)
+  {
+    double value{};
+    if (const auto* number = std::get_if<double>(&configured.value))
+    {
+      value = *number;
+    }
+    else if (const auto* whole = std::get_if<std::int64_t>(&configured.value))
+    {
+      value = static_cast<double>(*whole);
+    }
+    else
+    {
+      mistyped(key, configured, numberKind("a number", unit, range));
+      return;
+    }
+    if (inRange(key, unit, configured, value, range))
+    {
+      field = value;
+    }
+  }
+
+  bool inRange(const std::string& key, const char* unit, const ParameterValue& configured, double value,
+               const Range& range)
+  {
+    // Written so that NaN fails.
+    if (std::isfinite(value) && value >= range.min && value <= range.max)
+    {
+      return true;
+    }
+    errors_.push_back(configured.origin + ": " + key + " = " + valueText(configured) + " [" + unit + "] is " +
+                      (std::isfinite(value) ? "out of range" : "not a finite number") + ", allowed: " +
+                      rangeText(range) + " [" + unit + "]");
+    return false;
+  }
+
+  void mistyped(const std::string& key, const ParameterValue& configured, const std::string& kind)
+  {
+    std::string hint;
+    const auto* text = std::get_if<std::string>(&configured.value);
+    if (text != nullptr && looseNumber(*text))
+    {
+      hint = "; write " + numberText(*looseNumber(*text)) +
+             " (a number has a dot, a sign in its exponent and no quotes, else rosparam takes it for a text)";
+    }
+    errors_.push_back(configured.origin + ": " + key + " = " + valueText(configured) + " must be " + kind + hint);
+  }
+
+  const ParameterMap& map_;
+  std::set<std::string> known_;
+  std::vector<std::string> errors_;
+};
+
+void throwIfAny(const std::vector<std::string>& errors)
+{
+  if (errors.empty())
+  {
+    return;
+  }
+  std::string text;
+  for (const std::string& error : errors)
+  {
+    text += (text.empty() ? "" : "\n") + error;
+  }
+  throw ParameterError(text);
+}
+}  // namespace
+
+Parameters parseParameters(const ParameterMap& map)
+{
+  Parameters parameters;
+  FieldReader reader(map);
+  visitFields(parameters, reader);
+  reader.refuseUnknownKeys();
+  throwIfAny(reader.errors());
+  // Only values that are right by themselves can be held against each other.
+  throwIfAny(contradictions(parameters, map));
+  return parameters;
+}
+}  // namespace hjt

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <sstream>
+
+#include "harmonic_joint_twin/params/choices.hpp"
+#include "harmonic_joint_twin/params/field_table.hpp"
+#include "harmonic_joint_twin/params/number_text.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Writes each field as `section.key: value  # [unit] meaning`.
+class FieldWriter
+{
+public:
+  void operator()(const std::string& key, const char* unit, double value, const Range&, const char* meaning)
+  {
+    write(key, numberText(value), unit, meaning);
+  }
+
+  void operator()(const std::string& key, const char* unit, int value, const Range&, const char* meaning)
+  {
+    write(key, std::to_string(value), unit, meaning);
+  }
+
+  template <std::size_t N>
+  void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range&,
+                  const char* meaning)
+  {
+    std::string list;
+    for (const double value : values)
+    {
+      list += (list.empty() ? "" : ", ") + numberText(value);
+    }
+    write(key, "[" + list + "]", unit, meaning);
+  }
+
+  void operator()(const std::string& key, bool value, const char* meaning)
+  {
+    write(key, value ? "true" : "false", "-", meaning);
+  }
+
+  void operator()(const std::string& key, const std::string& value, const char* meaning)
+  {
+    write(key, "\"" + value + "\"", "-", meaning);
+  }
+
+  template <class Choice>
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice value, const char* meaning)
+  {
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      if (choice == value)
+      {
+        write(key, name, "-", meaning);
+      }
+    }
+  }
+
+  std::string text() const { return text_.str(); }
+
+private:
+  void write(const std::string& key, const std::string& value, const char* unit, const char* meaning)
+  {
+    text_ << key << ": " << value << "  # [" << unit << "] " << meaning << '\n';
+  }
+
+  std::ostringstream text_;
+};
+
+/// Writes each field as a row of a Markdown table.
+class TableWriter
+{
+public:
+  TableWriter() { table_ << "| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n"; }
+
+  void operator()(const std::string& key, const char* unit, double, const Range& range, const char* meaning)
+  {
+    row(key, "float", unit, rangeText(range), meaning);
+  }
+
+  void operator()(const std::string& key, const char* unit, int, const Range& range, const char* meaning)
+  {
+    row(key, "int", unit, rangeText(range), meaning);
+  }
+
+  template <std::size_t N>
+  void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
+                  const char* meaning)
+  {
+    row(key, std::to_string(N) + " floats", unit, rangeText(range), meaning);
+  }
+
+  void operator()(const std::string& key, bool, const char* meaning) { row(key, "bool", "-", "true, false", meaning); }
+
+  void operator()(const std::string& key, const std::string&, const char* meaning)
+  {
+    row(key, "text", "-", "not empty", meaning);
+  }
+
+  template <class Choice>
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const char* meaning)
+  {
+    std::string names;
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    row(key, "text", "-", names, meaning);
+  }
+
+  std::string text() const { return table_.str(); }
+
+private:
+  void row(const std::string& key, const std::string& type, const std::string& unit, const std::string& range,
+           const std::string& meaning)
+  {
+    table_ << "| `" << key << "` | " << type << " | " << unit << " | " << range << " | " << meaning << " |\n";
+  }
+
+  std::ostringstream table_;
+};
+}  // namespace
+
+std::string describeParameters(const Parameters& parameters)
+{
+  FieldWriter writer;
+  visitFields(parameters, writer);
+  return writer.text();
+}
+
+std::string parameterTableMarkdown()
+{
+  TableWriter writer;
+  const Parameters parameters;
+  visitFields(parameters, writer);
+  return writer.text();
+}
+}  // namespace hjt

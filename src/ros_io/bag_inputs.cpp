@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <rosbag/view.h>
+#include <std_msgs/Float64.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Between a stamp and the time of recording; farther apart, two clocks that do not agree were at work [s].
+constexpr double LONGEST_DELAY = 10.0;
+
+/// Sorts the messages of one bag into inputs.
+class InputReader
+{
+public:
+  InputReader(const std::string& joint_namespace, const JointNames& names)
+    : prefix_(joint_namespace + "/"), names_(names)
+  {
+  }
+
+  void read(const rosbag::MessageInstance& message)
+  {
+    const std::string& topic = message.getTopic();
+    if (topic == prefix_ + topics::COMMAND)
+    {
+      readStamped(message, InputKind::MOTOR_TORQUE, readMotorTorque);
+    }
+    else if (topic == prefix_ + topics::LOAD)
+    {
+      readStamped(message, InputKind::LOAD_TORQUE, readLoadTorque);
+    }
+    else
+    {
+      const bool command = topic == prefix_ + topics::MOTOR_TORQUE_COMMAND;
+      const auto value = instantiate<std_msgs::Float64>(message);
+      result_.inputs.push_back(
+          { fromRosTime(message.getTime()), command ? InputKind::MOTOR_TORQUE : InputKind::LOAD_TORQUE, value->data });
+    }
+  }
+
+  BagInputs take()
+  {
+    std::stable_sort(result_.inputs.begin(), result_.inputs.end(),
+                     [](const Input& a, const Input& b) { return a.stamp < b.stamp; });
+    return std::move(result_);
+  }
+
+private:
+  template <class Message>
+  static boost::shared_ptr<Message> instantiate(const rosbag::MessageInstance& message)
+  {
+    auto instance = message.instantiate<Message>();
+    if (!instance)
+    {
+      throw InputError(message.getTopic() + " has type " + message.getDataType() + ", expected " +
+                       ros::message_traits::datatype<Message>());
+    }
+    return instance;
+  }
+
+  template <class ReadTorque>
+  void readStamped(const rosbag::MessageInstance& instance, InputKind kind, ReadTorque read_torque)
+  {
+    const auto message = instantiate<sensor_msgs::JointState>(instance);
+    const Stamp recorded = fromRosTime(instance.getTime());
+    const Stamp stamp = message->header.stamp.isZero() ? recorded : fromRosTime(message->header.stamp);
+    const double delay = toSeconds(recorded - stamp);
+    if (std::abs(delay) > LONGEST_DELAY)
+    {
+      throw InputError(instance.getTopic() + ": a message is stamped " + std::to_string(std::abs(delay)) + " s " +
+                       (delay > 0.0 ? "before" : "after") + " the time it was recorded at; the clocks do not agree");
+    }
+    double torque{};
+    switch (read_torque(*message, names_, torque))
+    {
+      case EffortStatus::FOUND:
+        result_.inputs.push_back({ stamp, kind, torque });
+        break;
+      case EffortStatus::MISSING_EFFORT:
+        ++result_.without_effort;
+        break;
+      case EffortStatus::UNKNOWN_JOINT:
+        result_.other_joints.insert(message->name.begin(), message->name.end());
+        break;
+    }
+  }
+
+  std::string prefix_;
+  JointNames names_;
+  BagInputs result_;
+};
+}  // namespace
+
+std::vector<std::string> inputTopics(const std::string& joint_namespace)
+{
+  const std::string prefix = joint_namespace + "/";
+  return { prefix + topics::COMMAND, prefix + topics::MOTOR_TORQUE_COMMAND, prefix + topics::LOAD,
+           prefix + topics::LOAD_TORQUE };
+}
+
+std::vector<std::string> outputTopics(const std::string& joint_namespace)
+{
+  const std::string prefix = joint_namespace + "/";
+  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS, prefix + topics::CONTACT_FORCES,
+           prefix + topics::HEALTH };
+}
+
+BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const JointNames& names)
+{
+  InputReader reader(joint_namespace, names);
+  rosbag::View view(bag, rosbag::TopicQuery(inputTopics(joint_namespace)));
+  for (const rosbag::MessageInstance& message : view)
+  {
+    reader.read(message);
+  }
+  return reader.take();
+}
+
+std::string listTopics(const rosbag::Bag& bag)
+{
+  std::map<std::string, std::string> types;
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  {
+    types[connection->topic] = connection->datatype;
+  }
+  std::string text;
+  for (const auto& [topic, type] : types)
+  {
+    text += "\n  " + topic + " (" + type + ")";
+  }
+  return text;
+}
+}  // namespace hjt

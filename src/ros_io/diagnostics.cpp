@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/diagnostics.hpp"
+
+#include <ros/console.h>
+
+#include "harmonic_joint_twin/ros_io/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+/// Between two looks at the levels [s].
+constexpr double LOOK_PERIOD = 0.05;
+/// A clock that stands longer than this by the wall clock is said to stand [s].
+constexpr double CLOCK_STANDS_AFTER = 1.0;
+/// The twin is said to be behind beyond this [s].
+constexpr double LAG_WARNING = 1.0;
+/// Command stamps further ahead of the clock than this are said to be [s].
+constexpr double AHEAD_WARNING = 1.0;
+
+constexpr std::size_t DRIVE = 0;
+constexpr std::size_t INPUT = 1;
+constexpr std::size_t TIMING = 2;
+
+const char* stateText(LoopState state)
+{
+  switch (state)
+  {
+    case LoopState::WAITING_FOR_CLOCK:
+      return "at rest, waiting for the clock";
+    case LoopState::WAITING_FOR_INPUT:
+      return "at rest, waiting for the first input";
+    case LoopState::RUNNING:
+      return "running";
+  }
+  return "";
+}
+
+/// Keys of one output's counters, in the order of `Output`.
+constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders", "contact_forces", "health" };
+}  // namespace
+
+Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop, const Inbox& inbox,
+                         const InputSubscribers& subscribers, const OutputPublishers& publishers)
+  : loop_(loop)
+  , inbox_(inbox)
+  , subscribers_(subscribers)
+  , publishers_(publishers)
+  , command_timeout_(parameters.input.command_timeout)
+  , clock_moved_(ros::WallTime::now())
+{
+  updater_.setHardwareID(parameters.joint.hardware_id);
+  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportDrive(status); });
+  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportInput(status); });
+  updater_.add("Timing", [this](DiagnosticStatusWrapper& status) { reportTiming(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
+}
+
+void Diagnostics::look()
+{
+  readSnapshot();
+  logClockJumps();
+  const std::array<Verdict, 3> verdicts{ judgeDrive(), judgeInput(), judgeTiming() };
+  bool changed = false;
+  for (std::size_t task = 0; task < verdicts.size(); ++task)
+  {
+    changed = changed || verdicts[task].level != verdicts_[task].level;
+  }
+  verdicts_ = verdicts;
+  // By the wall clock: a simulated clock may stand, and that is one of the things to be said.
+  const ros::WallTime now = ros::WallTime::now();
+  if (changed || (now - last_report_).toSec() >= updater_.getPeriod())
+  {
+    last_report_ = now;
+    updater_.force_update();
+  }
+}
+
+void Diagnostics::readSnapshot()
+{
+  snapshot_ = { loop_.status(), subscribers_.counters(), inbox_.notFinite(), inbox_.overflow(),
+                publishers_.counters() };
+  const LoopStatus& loop = snapshot_.loop;
+  const TwinCounters& twin = loop.counters;
+  const ros::WallTime now = ros::WallTime::now();
+  solver_failures_.update(twin.solver_failures, now);
+  step_cuts_.update(twin.step_cuts, now);
+  speed_limits_.update(twin.speed_limited, now);
+  clamps_.update(twin.torque_clamped + twin.load_clamped, now);
+  late_inputs_.update(twin.input.late, now);
+  timeouts_.update(twin.command_timeouts, now);
+  lost_inputs_.update(twin.input.overflow + snapshot_.overflow + loop.waiting_overflow, now);
+  refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort, now);
+  clock_jumps_.update(loop.clock_jumps, now);
+  std::uint64_t dropped = 0;
+  for (const ChannelCounters& output : snapshot_.outputs)
+  {
+    dropped += output.dropped;
+  }
+  drops_.update(dropped, now);
+  if (loop.clock != last_clock_)
+  {
+    last_clock_ = loop.clock;
+    clock_moved_ = now;
+  }
+}
+
+void Diagnostics::logClockJumps()
+{
+  for (; logged_clock_jumps_ < snapshot_.loop.clock_jumps; ++logged_clock_jumps_)
+  {
+    ROS_WARN("The clock jumped back: the twin starts anew");
+  }
+}
+
+Verdict Diagnostics::judgeDrive() const
+{
+  if (!snapshot_.loop.outputs.converged || solver_failures_.areRecent())
+  {
+    return { DiagnosticStatus::ERROR, "The solver did not converge: the last good state is held" };
+  }
+  if (step_cuts_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Steps had to be cut to converge" };
+  }
+  if (speed_limits_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Motor at its speed limit" };
+  }
+  return { DiagnosticStatus::OK, stateText(snapshot_.loop.state) };
+}
+
+Verdict Diagnostics::judgeInput() const
+{
+  if (refusals_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Inputs refused: not finite, or not for this joint" };
+  }
+  if (lost_inputs_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Inputs lost: more came than can be kept" };
+  }
+  if (clamps_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Torque beyond its limit, clamped" };
+  }
+  if (late_inputs_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.hold_back" };
+  }
+  if (!snapshot_.loop.command_seen)
+  {
+    return { DiagnosticStatus::WARN, "No motor torque command yet" };
+  }
+  const double age = toSeconds(snapshot_.loop.clock - snapshot_.loop.last_command);
+  if (age > command_timeout_ || timeouts_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" };
+  }
+  if (age < -AHEAD_WARNING)
+  {
+    return { DiagnosticStatus::WARN, "Command stamps are ahead of the clock" };
+  }
+  return { DiagnosticStatus::OK, "Commands arrive" };
+}
+
+Verdict Diagnostics::judgeTiming() const
+{
+  if (snapshot_.loop.clock == 0)
+  {
+    return { DiagnosticStatus::WARN, "No time on /clock yet" };
+  }
+  if (clock_jumps_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "The clock jumped back: started anew" };
+  }
+  if (drops_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Messages dropped: publishing cannot keep up" };
+  }
+  if (toSeconds(snapshot_.loop.lag) > LAG_WARNING)
+  {
+    return { DiagnosticStatus::WARN, "Behind the clock and catching up; ~reset starts anew at the current instant" };
+  }
+  if ((ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER)
+  {
+    return { DiagnosticStatus::WARN, "The clock stands" };
+  }
+  return { DiagnosticStatus::OK, "In time" };
+}
+
+void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
+{
+  const JointOutputs& outputs = snapshot_.loop.outputs;
+  const TwinCounters& counters = snapshot_.loop.counters;
+  status.summary(verdicts_[DRIVE].level, verdicts_[DRIVE].text);
+  status.add("State", stateText(snapshot_.loop.state));
+  status.add("Motor angle [rad]", outputs.motor_angle);
+  status.add("Motor velocity [rad/s]", outputs.motor_velocity);
+  status.add("Output angle [rad]", outputs.output_angle);
+  status.add("Output velocity [rad/s]", outputs.output_velocity);
+  status.add("Motor torque [N.m]", outputs.motor_torque);
+  status.add("Joint torque [N.m]", outputs.joint_torque);
+  status.add("Load torque [N.m]", outputs.load_torque);
+  status.add("Brake engaged", outputs.brake_engaged);
+  status.add("Energy residual [J]", outputs.energy_residual);
+  status.add("Solver residual [N]", outputs.residual);
+  status.add("Solver iterations", outputs.iterations);
+  status.add("Steps", counters.steps);
+  status.add("Steps cut", counters.step_cuts);
+  status.add("Steps failed", counters.solver_failures);
+  status.add("Steps at the speed limit", counters.speed_limited);
+}
+
+void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
+{
+  const LoopStatus& loop = snapshot_.loop;
+  const TwinCounters& counters = loop.counters;
+  status.summary(verdicts_[INPUT].level, verdicts_[INPUT].text);
+  if (loop.command_seen)
+  {
+    status.add("Age of the last command [s]", toSeconds(loop.clock - loop.last_command));
+  }
+  status.add("Accepted", counters.input.accepted);
+  status.add("Not finite, refused", snapshot_.not_finite + counters.input.not_finite);
+  status.add("Unknown joint, refused", snapshot_.messages.unknown_joint);
+  status.add("Missing effort, refused", snapshot_.messages.missing_effort);
+  status.add("Too late for their stamp", counters.input.late);
+  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow + loop.waiting_overflow);
+  status.add("Steps with motor torque clamped", counters.torque_clamped);
+  status.add("Steps with load torque clamped", counters.load_clamped);
+  status.add("Command timeouts", counters.command_timeouts);
+}
+
+void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
+{
+  const LoopStatus& loop = snapshot_.loop;
+  status.summary(verdicts_[TIMING].level, verdicts_[TIMING].text);
+  status.add("Clock", ros::Time::isSimTime() ? "/clock" : "system");
+  status.addf("Clock [s]", "%.4f", toSeconds(loop.clock));
+  status.addf("Simulated instant [s]", "%.4f", toSeconds(loop.twin_stamp));
+  status.add("Lag [s]", toSeconds(loop.lag));
+  status.add("Largest lag [s]", toSeconds(loop.largest_lag));
+  status.add("Cycles", loop.cycles);
+  status.add("Cycles overrun", loop.overruns);
+  status.add("Clock jumps back", loop.clock_jumps);
+  status.add("Resets on request", loop.resets);
+  for (std::size_t output = 0; output < OUTPUT_COUNT; ++output)
+  {
+    const std::string name = OUTPUT_NAMES[output];
+    status.add(name + " computed", snapshot_.outputs[output].computed);
+    status.add(name + " dropped", snapshot_.outputs[output].dropped);
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/output_publishers.hpp"
+
+#include <chrono>
+
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+using std::chrono::milliseconds;
+
+/// Between two looks at the rings: well under the shortest publish period in use.
+constexpr milliseconds DRAIN_PERIOD{ 1 };
+/// How long a new subscriber may go unnoticed, in drain periods.
+constexpr int HEARD_REFRESH = 5;
+/// Slots for messages of a few numbers: seconds of joint states at 1 kHz.
+constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
+/// Slots for messages with per-tooth arrays.
+constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
+}  // namespace
+
+OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
+  : schedule_(twin.parameters())
+  , tooth_forces_(twin.makeToothForces())
+  , joint_states_(node, topics::JOINT_STATES, SMALL_MESSAGE_SLOTS,
+                  makeJointStates(JointNames(twin.parameters().joint.name)))
+  , encoders_(node, topics::ENCODERS, SMALL_MESSAGE_SLOTS, makeEncoders(JointNames(twin.parameters().joint.name)))
+  , contact_forces_(node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
+                    makeContactForces(JointNames(twin.parameters().joint.name),
+                                      twin.parameters().gear.teeth_flexspline))
+  , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
+  , thread_([this] { run(); })
+{
+}
+
+OutputPublishers::~OutputPublishers()
+{
+  stopping_ = true;
+  thread_.join();
+}
+
+bool OutputPublishers::isWanted(Output output, bool heard, Stamp instant) const noexcept
+{
+  return heard && schedule_.isDue(output, instant);
+}
+
+void OutputPublishers::offer(Twin& twin) noexcept
+{
+  const JointOutputs& outputs = twin.outputs();
+  const bool joint_states = isWanted(Output::JOINT_STATES, joint_states_.isHeard(), outputs.stamp);
+  const bool encoders = isWanted(Output::ENCODERS, encoders_.isHeard(), outputs.stamp);
+  if (joint_states || encoders)
+  {
+    const EncoderReadings readings = twin.encoders();
+    if (joint_states)
+    {
+      joint_states_.write([&](auto& message) { fillJointStates(outputs, readings, message); });
+    }
+    if (encoders)
+    {
+      encoders_.write([&](auto& message) { fillEncoders(outputs, readings, message); });
+    }
+  }
+  if (isWanted(Output::CONTACT_FORCES, contact_forces_.isHeard(), outputs.stamp))
+  {
+    contact_forces_.write([&](auto& message) {
+      twin.toothForces(tooth_forces_);
+      fillContactForces(outputs, tooth_forces_, message);
+    });
+  }
+  if (isWanted(Output::HEALTH, health_.isHeard(), outputs.stamp))
+  {
+    health_.write([&](auto& message) { fillHealth(outputs, twin.health(), message); });
+  }
+}
+
+std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
+{
+  return { joint_states_.counters(), encoders_.counters(), contact_forces_.counters(), health_.counters() };
+}
+
+void OutputPublishers::run()
+{
+  for (int round = 0; !stopping_; ++round)
+  {
+    if (round % HEARD_REFRESH == 0)
+    {
+      refreshHeard();
+    }
+    drain();
+    std::this_thread::sleep_for(DRAIN_PERIOD);
+  }
+  drain();
+}
+
+void OutputPublishers::refreshHeard()
+{
+  joint_states_.refreshHeard();
+  encoders_.refreshHeard();
+  contact_forces_.refreshHeard();
+  health_.refreshHeard();
+}
+
+void OutputPublishers::drain()
+{
+  joint_states_.drain();
+  encoders_.drain();
+  contact_forces_.drain();
+  health_.drain();
+}
+}  // namespace hjt

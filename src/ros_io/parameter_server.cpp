@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/parameter_server.hpp"
+
+#include <cstdint>
+#include <vector>
+
+#include <ros/param.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+namespace
+{
+using XmlRpc::XmlRpcValue;
+
+/// Read by diagnostic_updater itself from the same namespace.
+constexpr const char* DIAGNOSTIC_PERIOD = "diagnostic_period";
+
+// XmlRpcValue converts by reference to non-const only.
+template <class T>
+T valueOf(XmlRpcValue& value)
+{
+  return static_cast<T&>(value);
+}
+
+std::vector<double> readNumbers(const std::string& key, XmlRpcValue& list)
+{
+  std::vector<double> numbers;
+  for (int i = 0; i < list.size(); ++i)
+  {
+    XmlRpcValue& entry = list[i];
+    if (entry.getType() == XmlRpcValue::TypeInt)
+    {
+      numbers.push_back(valueOf<int>(entry));
+    }
+    else if (entry.getType() == XmlRpcValue::TypeDouble)
+    {
+      numbers.push_back(valueOf<double>(entry));
+    }
+    else
+    {
+      throw ParameterError(key + ": entry " + std::to_string(i) + " of the list on the parameter server is not a number");
+    }
+  }
+  return numbers;
+}
+
+void addLeaf(const std::string& key, XmlRpcValue& leaf, const std::string& origin, ParameterMap& map)
+{
+  ParameterValue& parameter = map[key];
+  parameter.origin = origin;
+  switch (leaf.getType())
+  {
+    case XmlRpcValue::TypeBoolean:
+      parameter.value = valueOf<bool>(leaf);
+      break;
+    case XmlRpcValue::TypeInt:
+      parameter.value = static_cast<std::int64_t>(valueOf<int>(leaf));
+      break;
+    case XmlRpcValue::TypeDouble:
+      parameter.value = valueOf<double>(leaf);
+      break;
+    case XmlRpcValue::TypeString:
+      parameter.value = valueOf<std::string>(leaf);
+      break;
+    case XmlRpcValue::TypeArray:
+      parameter.value = readNumbers(key, leaf);
+      break;
+    default:
+      throw ParameterError(key + ": " + origin + " holds neither a number, a text, a boolean nor a list of numbers");
+  }
+}
+
+void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& origin, ParameterMap& map)
+{
+  for (auto& [name, value] : tree)
+  {
+    const std::string key = prefix.empty() ? name : prefix + '.' + name;
+    if (value.getType() == XmlRpcValue::TypeStruct)
+    {
+      addTree(key, value, origin + '/' + name, map);
+    }
+    else if (key != DIAGNOSTIC_PERIOD)
+    {
+      addLeaf(key, value, origin + '/' + name, map);
+    }
+  }
+}
+}  // namespace
+
+ParameterMap readParameterServer(const std::string& parameter_namespace)
+{
+  ParameterMap map;
+  XmlRpcValue tree;
+  if (ros::param::get(parameter_namespace, tree) && tree.getType() == XmlRpcValue::TypeStruct)
+  {
+    addTree("", tree, parameter_namespace, map);
+  }
+  return map;
+}
+}  // namespace hjt

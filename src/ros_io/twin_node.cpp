@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/twin_node.hpp"
+
+#include "harmonic_joint_twin/ros_io/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+Stamp now()
+{
+  return fromRosTime(ros::Time::now());
+}
+}  // namespace
+
+TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
+  : twin_(parameters)
+  , publishers_(node, twin_)
+  , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
+  , subscribers_(node, JointNames(parameters.joint.name), inbox_)
+  , diagnostics_(node, parameters, loop_, inbox_, subscribers_, publishers_)
+  , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))
+  , brake_service_(node.advertiseService("brake", &TwinNode::setBrake, this))
+{
+}
+
+bool TwinNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  response.success = loop_.reset();
+  response.message = response.success ? "the twin starts anew at the current instant" : "the loop does not answer";
+  return true;
+}
+
+bool TwinNode::setBrake(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
+{
+  inbox_.push({ now(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
+  response.success = true;
+  response.message = request.data ? "brake engages" : "brake releases";
+  return true;
+}
+}  // namespace hjt

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/joint_stepper.hpp"
+
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+using namespace joint_state;
+
+JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
+  : kind_(parameters.solver.stepper), step_(1.0 / parameters.solver.rate), dynamics_(model, parameters.solver)
+{
+  if (!reset())
+  {
+    throw ParameterError("these parameters have no equilibrium: the insertion of the wave generator did not converge "
+                         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
+                         std::to_string(dynamics_.status.residual) + " N)");
+  }
+  checkStep(parameters);
+}
+
+void JointStepper::checkStep(const Parameters& parameters)
+{
+  constexpr double MAX_PHASE = 1.5;  // rad a step; the leapfrog is stable below 2
+  // Stiffest motion: the lighter of output and (reduced) motor against the stiffest slope of the cup.
+  const Eigen::Vector2d inertia = dynamics_.model().inertia();
+  const double stiffness = parameters.cup.torsion_stiffness[2];
+  const double frequency = std::sqrt(stiffness / inertia[1]);
+  if (frequency * step_ > MAX_PHASE)
+  {
+    std::ostringstream text;
+    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with output inertia " << inertia[1]
+         << " kg.m^2 the joint can swing at " << frequency << " rad/s, which needs at least " << frequency / MAX_PHASE
+         << " Hz (or a larger output.load_inertia)";
+    throw ParameterError(text.str());
+  }
+  if (kind_ == StepperKind::RUNGE_KUTTA4)
+  {
+    constexpr double MARGIN = 0.5;  // friction's slope times the step over the inertia; 2.78 is the stability limit
+    const double needed = step_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
+    if (parameters.solver.stiction_velocity < needed)
+    {
+      std::ostringstream text;
+      text << "solver.stiction_velocity = " << parameters.solver.stiction_velocity
+           << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least " << needed
+           << " rad/s at this solver.rate (brake.holding_torque counts)";
+      throw ParameterError(text.str());
+    }
+  }
+}
+
+bool JointStepper::reset() noexcept
+{
+  dynamics_.inputs = {};
+  const bool settled = dynamics_.settle().ok();
+  x_.setZero();
+  x_[OUTPUT_ANGLE] = dynamics_.ring().position().output_angle;
+  speeds_.setZero();
+  friction_.setZero();
+  balance_ = 0.0;
+  throughput_ = 0.0;
+  stored_at_start_ = dynamics_.storedEnergy();
+  return settled;
+}
+
+bool JointStepper::step(const JointInputs& inputs) noexcept
+{
+  dynamics_.inputs = inputs;
+  dynamics_.status = {};
+  const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
+  bool good = true;
+  if (kind_ == StepperKind::LEAPFROG)
+  {
+    leapfrog_.do_step(dynamics_, x_, 0.0, step_);
+    good = dynamics_.status.ok();
+    speeds_ = leapfrog_.speeds();
+    friction_ = leapfrog_.frictionTorque();
+    balance_ = leapfrog_.balance();
+  }
+  else
+  {
+    good = stepRungeKutta();
+  }
+  throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
+  return good;
+}
+
+bool JointStepper::stepRungeKutta() noexcept
+{
+  const JointState start = x_;
+  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, step_);
+  if (!dynamics_.status.ok() || !dynamics_.place(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]).ok())
+  {
+    x_ = start;
+    x_.segment<2>(MOTOR_SPEED).setZero();
+    speeds_.setZero();
+    return false;
+  }
+  speeds_ = x_.segment<2>(MOTOR_SPEED);
+  dynamics_.updateFriction(speeds_);
+  friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.follow(), speeds_);
+  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
+  balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - x_[DISSIPATED] - kinetic;
+  return true;
+}
+
+double JointStepper::energyResidual() const noexcept
+{
+  return balance_ - (dynamics_.storedEnergy() - stored_at_start_);
+}
+}  // namespace hjt

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/leapfrog.hpp"
+
+namespace hjt
+{
+void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) noexcept
+{
+  using namespace joint_state;
+  const Eigen::Vector2d before = x.segment<2>(MOTOR_SPEED);
+  const Eigen::Vector2d angles = x.segment<2>(MOTOR_ANGLE) + dt * before;
+  if (!system.place(angles[0], angles[1]).ok())
+  {
+    x.segment<2>(MOTOR_SPEED).setZero();
+    speeds_.setZero();
+    return;
+  }
+  const Eigen::Vector2d inertia = system.model().inertia();
+  const Eigen::Vector2d torque = system.torque();
+  system.updateFriction(before);
+  const Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
+  const Eigen::Vector2d after = system.dryFriction().solve(system.friction(), system.follow(), before, free, dt);
+  speeds_ = 0.5 * (before + after);
+  friction_ = inertia.cwiseProduct(after - free) / dt;
+  x.segment<2>(MOTOR_ANGLE) = angles;
+  x.segment<2>(MOTOR_SPEED) = after;
+
+  // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
+  const double motor_work = dt * system.inputs.motor_torque * speeds_[0];
+  const double load_work = dt * system.inputs.load_torque * speeds_[1];
+  const double dissipated = -dt * friction_.dot(speeds_);
+  const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
+  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic;
+  x[MOTOR_WORK] += motor_work;
+  x[LOAD_WORK] += load_work;
+  x[DISSIPATED] += dissipated;
+}
+}  // namespace hjt

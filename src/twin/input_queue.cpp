@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+
+#include <cmath>
+
+namespace hjt
+{
+void InputQueue::clear() noexcept
+{
+  first_ = 0;
+  size_ = 0;
+  counters_ = {};
+}
+
+void InputQueue::push(const Input& input, Stamp now) noexcept
+{
+  if (!std::isfinite(input.value))
+  {
+    ++counters_.not_finite;
+    return;
+  }
+  if (size_ == CAPACITY)
+  {
+    ++counters_.overflow;
+    if (input.stamp < inputs_[first_].stamp)
+    {
+      return;  // the oldest is the new one
+    }
+    first_ = (first_ + 1) % CAPACITY;
+    --size_;
+  }
+  ++counters_.accepted;
+  if (input.stamp < now)
+  {
+    ++counters_.late;
+  }
+
+  // From the back: stamps nearly always ascend.
+  std::size_t place = size_;
+  while (place > 0)
+  {
+    const Input& earlier = inputs_[(first_ + place - 1) % CAPACITY];
+    if (earlier.stamp <= input.stamp)
+    {
+      break;
+    }
+    inputs_[(first_ + place) % CAPACITY] = earlier;
+    --place;
+  }
+  inputs_[(first_ + place) % CAPACITY] = input;
+  ++size_;
+}
+
+bool InputQueue::pop(Stamp instant, Input& input) noexcept
+{
+  if (size_ == 0 || inputs_[first_].stamp > instant)
+  {
+    return false;
+  }
+  input = inputs_[first_];
+  first_ = (first_ + 1) % CAPACITY;
+  --size_;
+  return true;
+}
+}  // namespace hjt

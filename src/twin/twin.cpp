@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonic_joint_twin/health/health_monitor.hpp"
+#include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
+#include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
+#include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
+#include "harmonic_joint_twin/solver/joint_stepper.hpp"
+
+namespace hjt
+{
+struct Twin::Impl
+{
+  explicit Impl(const Parameters& given)
+    : parameters(given)
+    , model(given)
+    , stepper(given, model)
+    , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
+    , motor_encoder(given.sensors)
+    , output_encoder(given.sensors)
+    , motor_velocity(given.sensors.velocity_window, 1.0 / given.solver.rate)
+    , output_velocity(given.sensors.velocity_window, 1.0 / given.solver.rate)
+    , monitor(given.health, given.gear)
+    , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
+                                              (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
+  {
+    reset(0);
+  }
+
+  void reset(Stamp stamp) noexcept
+  {
+    stepper.reset();
+    queue.clear();
+    counters = {};
+    now = ((stamp + step_length - 1) / step_length) * step_length;
+    command = 0.0;
+    command_stamp = now;
+    commanded = false;
+    load_torque = 0.0;
+    brake_engaged = parameters.brake.engaged_at_start;
+    motor_velocity.reset();
+    output_velocity.reset();
+    monitor.reset();
+    outputs = {};
+    steps_at_report = {};
+    fillOutputs(0.0, true);
+    observe();
+  }
+
+  void step() noexcept;
+  void takeInputs() noexcept;
+  double commandInForce() noexcept;
+  void fillOutputs(double motor_torque, bool converged) noexcept;
+  void observe() noexcept;
+  SolverState solverState() noexcept;
+
+  Parameters parameters;
+  JointModel model;
+  JointStepper stepper;
+  Stamp step_length;
+  Stamp now{};
+  InputQueue queue;
+  TwinCounters counters;
+  double command{};        // last motor torque command [N.m]
+  Stamp command_stamp{};
+  bool commanded{};        // a command is in force, not timed out
+  double load_torque{};    // last load torque, clamped [N.m]
+  bool load_clamped{};
+  bool brake_engaged{};
+  JointOutputs outputs;
+  IncrementalEncoder motor_encoder;
+  AbsoluteEncoder output_encoder;
+  VelocityEstimate motor_velocity;
+  VelocityEstimate output_velocity;
+  HealthMonitor monitor;
+  Eigen::VectorXd tooth_angles;  // at rest [rad]
+  TwinCounters steps_at_report;  // counters when health was last asked for
+};
+
+void Twin::Impl::takeInputs() noexcept
+{
+  Input input;
+  while (queue.pop(now, input))
+  {
+    switch (input.kind)
+    {
+      case InputKind::MOTOR_TORQUE:
+        command = input.value;
+        command_stamp = input.stamp;
+        commanded = true;
+        break;
+      case InputKind::LOAD_TORQUE:
+        load_torque = std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit);
+        load_clamped = load_torque != input.value;
+        break;
+      case InputKind::BRAKE:
+        brake_engaged = input.value != 0.0;
+        break;
+    }
+  }
+  counters.input = queue.counters();
+}
+
+/// The latest command, or zero when it has timed out.
+double Twin::Impl::commandInForce() noexcept
+{
+  const auto timeout = static_cast<double>(parameters.input.command_timeout) * 1e9;
+  if (commanded && static_cast<double>(now - command_stamp) > timeout)
+  {
+    commanded = false;
+    ++counters.command_timeouts;
+  }
+  return commanded ? command : 0.0;
+}
+
+void Twin::Impl::step() noexcept
+{
+  now += step_length;
+  takeInputs();
+  const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
+  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
+  ++counters.steps;
+  counters.torque_clamped += drive.clamped ? 1 : 0;
+  counters.speed_limited += drive.held ? 1 : 0;
+  counters.load_clamped += load_clamped ? 1 : 0;
+  counters.solver_failures += converged ? 0 : 1;
+  counters.step_cuts += stepper.status().cuts > 0 ? 1 : 0;
+  fillOutputs(drive.torque, converged);
+  observe();
+}
+
+void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
+{
+  const RingForces& forces = stepper.dynamics().ring().forces();
+  const Eigen::Vector2d& friction = stepper.frictionTorque();
+  outputs.stamp = now;
+  outputs.motor_angle = stepper.motorAngle();
+  outputs.motor_velocity = stepper.speeds()[0];
+  outputs.output_angle = stepper.outputAngle();
+  outputs.output_velocity = stepper.speeds()[1];
+  outputs.motor_torque = motor_torque;
+  outputs.load_torque = load_torque;
+  outputs.wave_generator_torque = -forces.wave_generator_torque;
+  outputs.joint_torque = forces.output_torque;
+  outputs.friction_torque = std::abs(friction[0] + stepper.dynamics().follow() * friction[1]);
+  outputs.torsional_stiffness = stepper.dynamics().ring().stiffness()(1, 1);
+  outputs.energy_residual = stepper.energyResidual();
+  outputs.brake_engaged = brake_engaged;
+  outputs.converged = converged;
+  outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
+  outputs.residual = stepper.status().residual;
+}
+
+/// What watches the joint step by step: encoder speeds and health.
+void Twin::Impl::observe() noexcept
+{
+  motor_velocity.update(motor_encoder.angle(motor_encoder.count(outputs.motor_angle)));
+  output_velocity.update(output_encoder.unwrappedAngle(outputs.output_angle));
+  monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
+                   outputs.motor_torque, outputs.joint_torque });
+}
+
+SolverState Twin::Impl::solverState() noexcept
+{
+  const bool failed = counters.solver_failures > steps_at_report.solver_failures;
+  const bool cut = counters.step_cuts > steps_at_report.step_cuts;
+  steps_at_report = counters;
+  return failed ? SolverState::FAILED : cut ? SolverState::DEGRADED : SolverState::OK;
+}
+
+Twin::Twin(const Parameters& parameters)
+{
+  if (parameters.contact.law == ContactLaw::POLAR)
+  {
+    throw ParameterError("contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
+                         "allowed for the running twin: normal");
+  }
+  impl_ = std::make_unique<Impl>(parameters);
+}
+
+Twin::~Twin() = default;
+Twin::Twin(Twin&&) noexcept = default;
+Twin& Twin::operator=(Twin&&) noexcept = default;
+
+const Parameters& Twin::parameters() const noexcept
+{
+  return impl_->parameters;
+}
+
+void Twin::reset(Stamp stamp) noexcept
+{
+  impl_->reset(stamp);
+}
+
+void Twin::commandMotorTorque(Stamp stamp, double torque) noexcept
+{
+  impl_->queue.push({ stamp, InputKind::MOTOR_TORQUE, torque }, impl_->now);
+}
+
+void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
+{
+  impl_->queue.push({ stamp, InputKind::LOAD_TORQUE, torque }, impl_->now);
+}
+
+void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
+{
+  impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->now);
+}
+
+bool Twin::step(Stamp until) noexcept
+{
+  if (impl_->now + impl_->step_length > until)
+  {
+    return false;
+  }
+  impl_->step();
+  return true;
+}
+
+Stamp Twin::stamp() const noexcept
+{
+  return impl_->now;
+}
+
+Stamp Twin::stepLength() const noexcept
+{
+  return impl_->step_length;
+}
+
+const JointOutputs& Twin::outputs() const noexcept
+{
+  return impl_->outputs;
+}
+
+const TwinCounters& Twin::counters() const noexcept
+{
+  return impl_->counters;
+}
+
+EncoderReadings Twin::encoders() const noexcept
+{
+  const JointOutputs& joint = impl_->outputs;
+  EncoderReadings readings;
+  readings.motor_count = impl_->motor_encoder.count(joint.motor_angle);
+  readings.motor_angle = impl_->motor_encoder.angle(readings.motor_count);
+  readings.motor_velocity = impl_->motor_velocity.velocity();
+  readings.output_count = impl_->output_encoder.count(joint.output_angle);
+  readings.output_angle = impl_->output_encoder.unwrappedAngle(joint.output_angle);
+  readings.output_velocity = impl_->output_velocity.velocity();
+  return readings;
+}
+
+HealthReport Twin::health() noexcept
+{
+  const JointOutputs& joint = impl_->outputs;
+  const RingForces& forces = impl_->stepper.dynamics().ring().forces();
+  const MotionIndicators motion = impl_->monitor.indicators();
+  const LobeLoads lobes = lobeLoads({ forces.flank_force, forces.contact_force, impl_->tooth_angles, joint.motor_angle });
+  HealthReport report;
+  report.transmission_ratio_valid = motion.transmission_ratio.valid;
+  report.transmission_ratio = motion.transmission_ratio.value;
+  report.torsion = motion.torsion;
+  report.torsional_stiffness_valid = motion.torsional_stiffness.valid;
+  report.torsional_stiffness = motion.torsional_stiffness.value;
+  report.torsional_stiffness_model = joint.torsional_stiffness;
+  report.teeth_loaded = static_cast<std::uint32_t>(lobes.teeth_loaded);
+  report.lobe_mesh_force = lobes.mesh_force;
+  report.lobe_asymmetry = lobes.asymmetry;
+  report.wave_generator_load = lobes.wave_generator_force;
+  report.friction_torque = joint.friction_torque;
+  report.efficiency_valid = motion.efficiency.valid;
+  report.efficiency = motion.efficiency.value;
+  report.kinematic_error_valid = motion.kinematic_error.valid;
+  report.kinematic_error = motion.kinematic_error.value;
+  report.motor_torque = joint.motor_torque;
+  report.joint_torque = joint.joint_torque;
+  report.energy_residual = joint.energy_residual;
+  report.solver_iterations = joint.iterations;
+  report.solver_residual = joint.residual;
+  report.solver_failures = impl_->counters.solver_failures;
+  report.solver_state = impl_->solverState();
+  return report;
+}
+
+ToothForces Twin::makeToothForces() const
+{
+  const std::vector<double> zeros(static_cast<std::size_t>(impl_->parameters.gear.teeth_flexspline), 0.0);
+  return { zeros, zeros, zeros, zeros, zeros, zeros };
+}
+
+void Twin::toothForces(ToothForces& out) const noexcept
+{
+  const RingEquilibrium& ring = impl_->stepper.dynamics().ring();
+  const RingModel& model = ring.model();
+  const RingShape& shape = ring.shape();
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    out.wave_generator_force[i] = ring.forces().contact_force[i];
+    out.rim_tension[i] = model.tension.tension(shape, i);
+    out.bending_force[i] = model.bending.bendingForce(shape, i);
+    out.mesh_force[i] = ring.forces().flank_force[i];
+    out.tooth_x[i] = shape.points[2 * i];
+    out.tooth_y[i] = shape.points[2 * i + 1];
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""launch/: every argument a launch file declares says what it is for."""
+import os
+import xml.etree.ElementTree as xml
+
+import project
+
+
+def check(root):
+    problems = []
+    paths = project.files(root, "launch", [".launch"])
+    for path in paths:
+        tree = xml.parse(os.path.join(root, path))
+        handed_on = {arg for include in tree.iter("include") for arg in include.iter("arg")}
+        for arg in tree.iter("arg"):
+            if arg not in handed_on and not arg.get("doc", "").strip():
+                problems.append(f"{path}: argument '{arg.get('name')}' has no doc")
+    return problems if paths else ["launch: no launch files found"]
+
+
+if __name__ == "__main__":
+    project.run(check)

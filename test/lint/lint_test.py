@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each check of this folder passes on a faultless file and speaks up on a faulty one."""
+import contextlib
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import catkin_lint
+import clang_tidy
+import config_files
+import launch_docs
+import layering
+import message_comments
+import project
+import spdx
+
+
+class Tree(unittest.TestCase):
+    """A package of a few files in a temporary folder."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = folder.name
+
+    def write(self, path, content):
+        full = os.path.join(self.root, path)
+        os.makedirs(os.path.dirname(full), exist_ok=True)
+        with open(full, "w", encoding="utf-8") as file:
+            file.write(content)
+        return full
+
+    def assert_fault(self, check, *words):
+        """Exactly one problem, that names all `words`."""
+        problems = check(self.root)
+        self.assertEqual(len(problems), 1, problems)
+        for word in words:
+            self.assertIn(word, problems[0])
+
+    def assert_clean(self, check):
+        self.assertEqual(check(self.root), [])
+
+
+class Layering(Tree):
+    def source(self, folder, header):
+        self.write(f"src/{folder}/one.cpp", f"#include <vector>\n#include {header}\n")
+
+    def test_left_is_allowed(self):
+        for folder, header in [("gear", '"harmonic_joint_twin/params/parameters.hpp"'), ("gear", "<Eigen/Core>"),
+                               ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'), ("ros_io", "<ros/ros.h>"),
+                               ("ros_io", '"harmonic_joint_twin/Health.h"'), ("apps", "<ros/ros.h>")]:
+            with self.subTest(folder=folder, header=header):
+                self.source(folder, header)
+                self.assert_clean(layering.check)
+
+    def test_right_and_ros_are_not(self):
+        for folder, header in [("params", '"harmonic_joint_twin/gear/angle.hpp"'), ("twin", "<ros/time.h>"),
+                               ("sensors", '"harmonic_joint_twin/health/health.hpp"'),
+                               ("twin", '"harmonic_joint_twin/Health.h"'), ("model", "<sensor_msgs/JointState.h>"),
+                               ("solver", '"newton.hpp"'), ("solver", '"harmonic_joint_twin/stray/a.hpp"')]:
+            with self.subTest(folder=folder, header=header):
+                self.source(folder, header)
+                self.assert_fault(layering.check, f"src/{folder}/one.cpp:2", header)
+                os.remove(os.path.join(self.root, f"src/{folder}/one.cpp"))
+
+    def test_headers_are_read_too(self):
+        self.write("include/harmonic_joint_twin/gear/angle.hpp", "#include <ros/ros.h>\n")
+        self.assert_fault(layering.check, "angle.hpp:1")
+
+    def test_unknown_folder(self):
+        self.write("src/misc/one.cpp", "")
+        self.assert_fault(layering.check, "src/misc/one.cpp")
+
+    def test_nothing_to_check(self):
+        self.assert_fault(layering.check, "no sources")
+
+
+class Spdx(Tree):
+    def test_present(self):
+        self.write("src/one.cpp", f"// {spdx.LICENCE}\n")
+        self.write("scripts/run", f"#!/bin/sh\n# {spdx.LICENCE}\n")
+        self.write("README.md", "text\n")
+        self.write("build/generated.cpp", "int i;\n")
+        self.assert_clean(spdx.check)
+
+    def test_missing(self):
+        for path in ["src/one.cpp", "scripts/run", "msg/A.msg", "launch/a.launch", "config/a.yaml", "CMakeLists.txt"]:
+            with self.subTest(path=path):
+                full = self.write(path, "\n\n\n" + spdx.LICENCE)
+                self.assert_fault(spdx.check, path)
+                os.remove(full)
+
+
+class ConfigFiles(Tree):
+    def yaml(self, value, comment="# Length [m]."):
+        self.write("config/a.yaml", f"gear:\n  {comment}\n  length: {value}\n")
+
+    def test_numbers_and_texts(self):
+        for value in ["1.0e-3", "5", "0.25", "[31.0e+3, 50.0e+3]", "name", '"1e-3"', "true"]:
+            with self.subTest(value=value):
+                self.yaml(value)
+                self.assert_clean(config_files.check)
+
+    def test_numbers_that_are_texts_to_rosparam(self):
+        for value in ["1e-3", "1e3", "1.0e4", "[31.0e+3, 5e4]"]:
+            with self.subTest(value=value):
+                self.yaml(value)
+                self.assert_fault(config_files.check, "config/a.yaml:3", "gear.length")
+
+    def test_key_without_unit(self):
+        self.yaml("0.25", comment="# Length.")
+        self.assert_fault(config_files.check, "config/a.yaml:3", "unit")
+
+
+class MessageComments(Tree):
+    def test_units(self):
+        self.write("msg/A.msg", "# Of one instant.\nuint8 OK=0  # all is well\nfloat64[] force  # per tooth [N]\n")
+        self.assert_clean(message_comments.check)
+
+    def test_missing_unit_or_comment(self):
+        for line in ["float64 force", "float64 force  # per tooth", "uint8 OK=0", "float64[2] a  # []"]:
+            with self.subTest(line=line):
+                self.write("msg/A.msg", line + "\n")
+                self.assert_fault(message_comments.check, "msg/A.msg:1")
+
+
+class LaunchDocs(Tree):
+    def test_doc(self):
+        self.write("launch/a.launch", '<launch><arg name="bag" doc="Recording."/><include file="b.launch">'
+                                      '<arg name="bag" value="$(arg bag)"/></include></launch>')
+        self.assert_clean(launch_docs.check)
+
+    def test_no_doc(self):
+        self.write("launch/a.launch", '<launch><arg name="bag" default=""/></launch>')
+        self.assert_fault(launch_docs.check, "'bag'")
+
+
+class Format(Tree):
+    def result(self, content):
+        path = self.write("one.cpp", content)
+        os.symlink(os.path.join(project.ROOT, ".clang-format"), os.path.join(self.root, ".clang-format"))
+        command = [os.path.join(project.ROOT, "scripts", "format"), "--check", path]
+        return subprocess.run(command, stderr=subprocess.DEVNULL, check=False).returncode
+
+    def test_house_style(self):
+        self.assertEqual(self.result("int f()\n{\n  return 1;\n}\n"), 0)
+
+    def test_another_style(self):
+        self.assertNotEqual(self.result("int f() {\n    return 1;\n}\n"), 0)
+
+
+class ClangTidy(Tree):
+    def problems(self, content):
+        path = self.write("src/one.cpp", content)
+        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", "-c", path]}
+        self.write("build/compile_commands.json", json.dumps([entry]))
+        os.symlink(os.path.join(project.ROOT, ".clang-tidy"), os.path.join(self.root, ".clang-tidy"))
+        with contextlib.redirect_stdout(io.StringIO()):
+            return clang_tidy.check(os.path.join(self.root, "build"), os.path.realpath(self.root))
+
+    def test_house_names(self):
+        self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
+                                       "{ return value_; }\n};\nconstexpr int TEETH = 200;\n"), [])
+
+    def test_other_names(self):
+        for content in ["class rim_tension\n{\n};\n", "class A\n{\n  int value = 0;\n};\n", "int Read();\n",
+                        "constexpr int kTeeth = 200;\n"]:
+            with self.subTest(content=content):
+                self.setUp()
+                self.assertIn("naming", "".join(self.problems(content)))
+
+
+class CatkinLint(Tree):
+    def test_fault(self):
+        self.write("package.xml", "<package format='3'><name>harmonic_joint_twin</name><version>0.1.0</version>"
+                                  "<description>d</description><maintainer email='a@b.cc'>a</maintainer>"
+                                  "<license>BSD</license></package>")
+        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.16)\nproject(another)\n")
+        code, said = catkin_lint.lint(self.root)
+        self.assertNotEqual(code, 0)
+        self.assertIn("error", said)
+
+
+class Run(Tree):
+    def test_exit_codes(self):
+        for problems, code in [([], 0), (["a.cpp:1: wrong"], 1)]:
+            with self.assertRaises(SystemExit) as ended, contextlib.redirect_stdout(io.StringIO()) as said:
+                project.run(lambda root, found=problems: found, self.root)
+            self.assertEqual(ended.exception.code, code)
+            self.assertEqual(said.getvalue().splitlines()[:-1], problems)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
