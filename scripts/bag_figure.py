@@ -12,7 +12,9 @@ STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axe
          "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
          "lines.linewidth": 1.3, "legend.frameon": False, "legend.fontsize": 8, "figure.dpi": 120}
 MOST_POINTS = 4000  # per curve; more than the picture has pixels
-MAP_COLUMNS, MAP_ROWS = 360, 90
+MAP_COLUMNS = 400
+MAP_TEETH = 10  # to each side of the major axis
+RING_STRETCH = 13.0  # the flexspline's deformation is drawn this much larger
 
 
 def thin(series, name, factor=1.0):
@@ -23,7 +25,7 @@ def thin(series, name, factor=1.0):
 
 def legend(axes):
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper right", ncol=2)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.005, 0.93), ncol=3, borderpad=0.2, handlelength=1.5)
 
 
 def steps(series, end):
@@ -33,10 +35,10 @@ def steps(series, end):
 
 def draw_torques(axes, recording, end):
     axes.set_title("Torque at the joint [N·m]")
-    health, load = recording["health"], recording["load"]
+    load = recording["load"]
+    axes.plot(*thin(recording["joint_states"], "joint_torque"), color=GREEN, label="through the teeth")
     if len(load):
         axes.plot(*steps(load, end), color=ORANGE, drawstyle="steps-post", label="external load")
-    axes.plot(*thin(health, "joint_torque"), color=GREEN, label="through the teeth")
     legend(axes)
 
 
@@ -44,27 +46,26 @@ def draw_motor_torque(axes, recording, end):
     axes.set_title("Torque at the motor [N·m]")
     command = recording["command"]
     if len(command):
-        axes.plot(*steps(command, end), color=GREY, lw=0.9, drawstyle="steps-post", label="commanded")
-    axes.plot(*thin(recording["health"], "motor_torque"), color=BLUE, label="applied")
+        axes.plot(*steps(command, end), color=GREY, lw=2.6, alpha=0.4, drawstyle="steps-post", label="commanded")
+    axes.plot(*thin(recording["joint_states"], "motor_torque"), color=BLUE, label="applied")
     axes.plot(*thin(recording["health"], "friction_torque"), color=RED, lw=1.0, label="all friction")
     legend(axes)
 
 
 def draw_speed(axes, recording):
-    states = recording["joint_states"]
+    states, measured = recording["joint_states"], recording["measured"]
     axes.set_title("Joint speed, as its encoders see it [rad/s]")
-    if len(states):
-        axes.plot(*thin(states, "output_velocity"), color=ORANGE, lw=0.8, alpha=0.8, label="output encoder")
-        axes.plot(*thin(states, "motor_velocity", 1.0 / recording.ratio), color=BLUE,
-                  label=f"motor encoder / {recording.ratio:g}")
+    if len(measured):
+        axes.plot(*thin(measured, "velocity"), color=GREY, lw=2.6, alpha=0.4, label="robot, measured")
+    axes.plot(*thin(states, "motor_velocity", 1.0 / recording.ratio), color=BLUE, lw=2.0, alpha=0.6,
+              label=f"motor encoder / {recording.ratio:g}")
+    axes.plot(*thin(states, "output_velocity"), color=ORANGE, lw=0.8, label="output encoder")
     legend(axes)
 
 
 def torsion(recording):
     """Time and motor angle / ratio - joint angle [mrad], by the model's true angles."""
     encoders = recording["encoders"]
-    if not len(encoders):
-        return thin(recording["health"], "torsion", 1e3)
     time, motor = thin(encoders, "motor_angle_true", 1.0 / recording.ratio)
     return time, (motor - thin(encoders, "output_angle_true")[1]) * 1e3
 
@@ -75,13 +76,14 @@ def draw_torsion(axes, recording):
 
 
 def wave_generator_frame(forces):
-    """Mesh force over time and angle from the wave generator's major axis: mean of what falls into each cell [N]."""
+    """Mesh force over time and angle from the nearer end of the major axis, mean of both lobes [N]."""
     mesh = forces["mesh_force"]
     teeth = np.arctan2(forces["tooth_y"], forces["tooth_x"])
-    angle = (teeth - forces["wave_generator_angle"][:, None] + np.pi) % (2.0 * np.pi) - np.pi
+    angle = (teeth - forces["wave_generator_angle"][:, None] + 0.5 * np.pi) % np.pi - 0.5 * np.pi
     time = np.repeat(forces.time[:, None], mesh.shape[1], axis=1)
-    bins = [np.linspace(forces.time[0], forces.time[-1], min(MAP_COLUMNS, len(forces)) + 1),
-            np.linspace(-np.pi, np.pi, MAP_ROWS + 1)]
+    pitch = 2.0 * np.pi / mesh.shape[1]
+    bins = [np.linspace(forces.time[0], forces.time[-1], max(1, min(MAP_COLUMNS, len(forces) // 2)) + 1),
+            (np.arange(2 * MAP_TEETH + 2) - MAP_TEETH - 0.5) * pitch]
     sums, _, _ = np.histogram2d(time.ravel(), angle.ravel(), bins=bins, weights=mesh.ravel())
     counts, _, _ = np.histogram2d(time.ravel(), angle.ravel(), bins=bins)
     return bins, (sums / np.maximum(counts, 1)).T
@@ -89,18 +91,15 @@ def wave_generator_frame(forces):
 
 def draw_tooth_map(axes, recording, figure):
     forces = recording["contact_forces"]
-    axes.set_title("Mesh force per tooth, seen from the wave generator [N]  (+ leading, − trailing flank)")
+    axes.set_title("Mesh force of each tooth around the lobes [N]: + leading, − trailing flank")
     axes.set_xlabel("time [s]")
-    axes.set_ylabel("angle from\nmajor axis [°]")
-    if len(forces) < 2:
-        return
+    axes.set_ylabel("from the major\naxis [°]")
     bins, force = wave_generator_frame(forces)
     limit = max(np.abs(force).max(), 1e-9)
     image = axes.pcolormesh(bins[0], np.degrees(bins[1]), force, cmap="RdBu_r", vmin=-limit, vmax=limit,
                             rasterized=True)
-    axes.set_yticks([-180, -90, 0, 90, 180])
     axes.grid(False)
-    inset = axes.inset_axes([0.83, 1.04, 0.17, 0.06])
+    inset = axes.inset_axes([0.8, 1.035, 0.2, 0.05])
     bar = figure.colorbar(image, cax=inset, orientation="horizontal")
     bar.set_ticks([-limit, 0, limit])
     bar.set_ticklabels([f"{-limit:.0f}", "0", f"{limit:.0f}"])
@@ -110,55 +109,55 @@ def draw_tooth_map(axes, recording, figure):
 
 
 def draw_ring(axes, recording):
-    """All tooth forces at the instant of the largest mesh force."""
+    """All tooth forces at the instant of the largest mesh force, on the deformed flexspline."""
     forces = recording["contact_forces"]
-    axes.set_yticklabels([])
+    axes.set_yticks([])
     axes.set_xticks(np.radians([0, 90, 180, 270]))
-    if not len(forces):
-        return
+    axes.spines["polar"].set_visible(False)
     most = np.unravel_index(np.abs(forces["mesh_force"]).argmax(), forces["mesh_force"].shape)[0]
-    angle = np.arctan2(forces["tooth_y"][most], forces["tooth_x"][most])
-    contact, mesh = forces["wave_generator_force"][most], forces["mesh_force"][most]
-    base = 1.15 * max(contact.max(), np.abs(mesh).max())
+    x, y = forces["tooth_x"][most], forces["tooth_y"][most]
+    contact, mesh = forces["wave_generator_force"][most], np.abs(forces["mesh_force"][most])
+    radius = np.hypot(x, y)
+    angle = np.arctan2(y, x)
+    ring = 1.4 * max(contact.max(), mesh.max(), 1e-9) * (1.0 + RING_STRETCH * (radius / radius.mean() - 1.0))
     loop = np.append(np.arange(len(angle)), 0)
-    axes.fill_between(angle[loop], base - contact[loop], base, color=BLUE, alpha=0.35, lw=0,
-                      label=f"wave generator, ≤ {contact.max():.0f} N")
-    axes.bar(angle, np.abs(mesh), width=2.0 * np.pi / len(angle), bottom=base, color=RED, lw=0,
-             label=f"mesh, ≤ {np.abs(mesh).max():.0f} N")
-    axes.plot(angle[loop], np.full(len(loop), base), color=GREY, lw=0.8)
+    axes.fill_between(angle[loop], (ring - contact)[loop], ring[loop], color=BLUE, alpha=0.4, lw=0,
+                      label=f"wave generator (up to {contact.max():.0f} N)")
+    axes.bar(angle, mesh, width=2.0 * np.pi / len(angle), bottom=ring, color=RED, lw=0,
+             label=f"mesh (up to {mesh.max():.0f} N)")
+    axes.plot(angle[loop], ring[loop], color="black", lw=1.0, label=f"flexspline, deformation × {RING_STRETCH:g}")
     major = forces["wave_generator_angle"][most]
-    axes.plot([major, major + np.pi], [base * 0.98, base * 0.98], color="black", lw=0.8, ls=":", label="major axis")
-    axes.set_ylim(0.0, 2.2 * base)
-    axes.set_title(f"Tooth forces at {forces.time[most]:.2f} s, the most loaded instant", loc="center", pad=14)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncol=3)
+    axes.plot([major, major + np.pi], [ring.max() * 0.97] * 2, color=GREY, lw=0.8, ls=":", label="major axis")
+    axes.set_ylim(0.0, 1.05 * (ring + mesh).max())
+    axes.set_title(f"Tooth forces at the most loaded instant, {forces.time[most]:.2f} s", loc="center", pad=12)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=2)
 
 
 def draw_loop(axes, recording):
-    health = recording["health"]
-    axes.set_title("Joint torque over torsion")
-    axes.set_xlabel("torsion [mrad]")
-    axes.set_ylabel("N·m")
-    axes.plot(*thin(health, "torsion", 1e3)[1:], *thin(health, "joint_torque")[1:], color=GREEN, lw=0.8,
-              marker=".", ms=3)
+    health, states = recording["health"], recording["joint_states"]
+    axes.set_title("Joint torque [N·m] over torsion [mrad]")
+    time, angle = torsion(recording)
+    torque = np.interp(time, states.time, states["joint_torque"])
+    axes.plot(angle, torque, color=GREEN, lw=0.7)
     valid = health["torsional_stiffness_valid"].astype(bool)
     if valid.any():
-        axes.text(0.04, 0.93, f"slope {health['torsional_stiffness'][valid][-1] * 1e-3:.1f} kN·m/rad",
+        axes.text(0.04, 0.93, f"slope at the end: {health['torsional_stiffness'][valid][-1] * 1e-3:.1f} kN·m/rad",
                   transform=axes.transAxes, va="top", fontsize=8, color=GREY)
 
 
 def draw_health(axes, recording):
     health = recording["health"]
-    axes.set_title("Teeth loaded, and load of the wave generator's bearing [kN]")
+    axes.set_title("Teeth loaded; bearing load [kN]")
     axes.set_xlabel("time [s]")
-    axes.plot(*thin(health, "teeth_loaded"), color=BLUE, label="teeth (left)")
+    axes.plot(*thin(health, "teeth_loaded"), color=BLUE, label="teeth")
     right = axes.twinx()
     right.spines["right"].set_visible(True)
     right.grid(False)
-    right.plot(*thin(health, "wave_generator_load", 1e-3), color=ORANGE, label="bearing (right)")
+    right.plot(*thin(health, "wave_generator_load", 1e-3), color=ORANGE, label="bearing")
     right.set_ylim(bottom=0.0)
     axes.set_ylim(bottom=0.0)
-    axes.legend(*[a + b for a, b in zip(axes.get_legend_handles_labels(), right.get_legend_handles_labels())],
-                loc="upper right", ncol=2)
+    handles = [a + b for a, b in zip(axes.get_legend_handles_labels(), right.get_legend_handles_labels())]
+    axes.legend(*handles, loc="lower right", bbox_to_anchor=(1.0, 0.95), ncol=2, borderpad=0.2, handlelength=1.5)
 
 
 def draw(recording, title, path):

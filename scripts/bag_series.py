@@ -31,9 +31,17 @@ def input_row(message, joint):
     return None
 
 
+def measured_row(message, joint):
+    """Speed [rad/s] of this joint in a robot's own telemetry."""
+    if joint in message.name and len(message.velocity) > message.name.index(joint):
+        return {"velocity": message.velocity[message.name.index(joint)]}
+    return None
+
+
 def joint_states_row(message, _joint):
     """Motor first, then joint, as the node fills it."""
-    return {"motor_velocity": message.velocity[0], "output_velocity": message.velocity[1]}
+    return {"motor_velocity": message.velocity[0], "output_velocity": message.velocity[1],
+            "motor_torque": message.effort[0], "joint_torque": message.effort[1]}
 
 
 def slots_row(message, _joint):
@@ -41,7 +49,10 @@ def slots_row(message, _joint):
 
 
 ROWS = {"command": input_row, "load": input_row, "joint_states": joint_states_row, "encoders": slots_row,
-        "contact_forces": slots_row, "health": slots_row}
+        "contact_forces": slots_row, "health": slots_row, "measured": measured_row}
+
+TELEMETRY = "/joint_states"  # of the robot beside the twin, if the bag is a recording
+OUTPUTS = ["joint_states", "encoders", "contact_forces", "health"]
 
 
 def find_namespaces(bag):
@@ -52,7 +63,8 @@ def find_namespaces(bag):
 
 
 class Recording:
-    """A twin's topics in a bag; `joint` is the joint's name, `counts` the messages per topic."""
+    """A twin's topics in a bag; `joint` is the joint's name, `ratio` its nominal ratio, `counts` the
+    messages per topic."""
 
     def __init__(self, path, namespace=None):
         with rosbag.Bag(path) as bag:
@@ -62,9 +74,13 @@ class Recording:
             if namespace is not None and namespace not in found:
                 raise ValueError(f"{path}: no twin in {namespace}; there are {', '.join(found)}")
             self.namespace = namespace if namespace is not None else found[0]
-            topics = {f"{self.namespace}/{name}": name for name in ROWS}
+            topics = {f"{self.namespace}/{name}": name for name in ROWS if name != "measured"}
+            topics[TELEMETRY] = "measured"
             info = bag.get_type_and_topic_info(list(topics)).topics
             self.counts = {topics[topic]: info[topic].message_count for topic in topics if topic in info}
+            missing = [name for name in OUTPUTS if not self.counts.get(name)]
+            if missing:
+                raise ValueError(f"{path}: nothing on {self.namespace}/{missing[0]}")
             _, first, _ = next(bag.read_messages([f"{self.namespace}/health"]))
             self.joint = first.header.frame_id
             self._read(bag, topics)
@@ -82,8 +98,10 @@ class Recording:
                 rows[name].append(row)
             if shows_progress and number % PROGRESS_EVERY == 0:
                 print(f"  read {number} of {total} messages", file=sys.stderr, flush=True)
-        start = min(stamp[0] for name, stamp in stamps.items() if stamp and name not in ("command", "load"))
+        start = min(stamps[name][0] for name in OUTPUTS)
         self.series = {name: to_series(stamps[name], rows[name], start) for name in ROWS}
+        # The circular spline has two teeth more than the flexspline, and turns with the output.
+        self.ratio = 0.5 * (self.series["contact_forces"]["mesh_force"].shape[1] + 2)
 
     def __getitem__(self, name):
         return self.series[name]

@@ -30,6 +30,7 @@ fail()
 # Brings an environment of ROS into this shell. Its files are not written for `set -u`.
 source_ros()
 {
+  [ -f "$1" ] || fail "no $1: run scripts/build first"
   set +eu
   # shellcheck disable=SC1090
   source "$1"

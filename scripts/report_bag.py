@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads a bag with a simulated joint; prints a table of what came out and draws it."""
 import argparse
@@ -6,17 +6,19 @@ import os
 import sys
 
 import numpy as np
+import rosbag
 
 from bag_figure import draw
 from bag_series import Recording
 
+MOST_MISSING = 1.0  # of simulated time at the end [s]
 SOLVER_STATES = {0: "every step converged", 1: "some steps were cut", 2: "FAILED: last good state held"}
 
 
-def last_valid(health, name):
-    """The last value of an indicator that has a flag for being there; None if it never was."""
+def typical(health, name):
+    """Median of an indicator that has a flag for being there; None if it never was."""
     valid = health[name + "_valid"].astype(bool)
-    return health[name][valid][-1] if valid.any() else None
+    return np.median(health[name][valid]) if valid.any() else None
 
 
 def span(values, factor=1.0):
@@ -29,25 +31,23 @@ def shown(value, format_text, factor=1.0):
 
 def joint_rows(recording):
     encoders, states = recording["encoders"], recording["joint_states"]
-    rows = []
-    if len(encoders):
-        rows += [("joint angle", span(encoders["output_angle_true"]), "rad"),
-                 ("motor angle", span(encoders["motor_angle_true"]), "rad")]
-    if len(states):
-        rows += [("joint speed", span(states["output_velocity"]), "rad/s")]
-    return rows
+    return [
+        ("joint angle", span(encoders["output_angle_true"]), "rad"),
+        ("motor angle", span(encoders["motor_angle_true"]), "rad"),
+        ("joint speed", span(states["output_velocity"]), "rad/s"),
+    ]
 
 
 def health_rows(health):
     return [
         ("motor torque", span(health["motor_torque"]), "N.m"),
         ("joint torque", span(health["joint_torque"]), "N.m"),
-        ("transmission ratio", shown(last_valid(health, "transmission_ratio"), "{:.4f}"), "-"),
+        ("transmission ratio, median", shown(typical(health, "transmission_ratio"), "{:.4f}"), "-"),
         ("torsion", span(health["torsion"], 1e3), "mrad"),
-        ("torsional stiffness, measured", shown(last_valid(health, "torsional_stiffness"), "{:.1f}", 1e-3), "kN.m/rad"),
-        ("kinematic error, last turn", shown(last_valid(health, "kinematic_error"), "{:.3f}", 1e3), "mrad"),
+        ("torsional stiffness, median", shown(typical(health, "torsional_stiffness"), "{:.1f}", 1e-3), "kN.m/rad"),
+        ("kinematic error, median", shown(typical(health, "kinematic_error"), "{:.3f}", 1e3), "mrad"),
         ("friction at the motor shaft", span(health["friction_torque"]), "N.m"),
-        ("efficiency, last known", shown(last_valid(health, "efficiency"), "{:.1f}", 100.0), "%"),
+        ("efficiency, median", shown(typical(health, "efficiency"), "{:.1f}", 100.0), "%"),
         ("teeth loaded, most", f"{health['teeth_loaded'].max()}", "-"),
         ("wave generator bearing load, most", f"{health['wave_generator_load'].max():.0f}", "N"),
         ("energy unaccounted for, most", f"{np.abs(health['energy_residual']).max():.2g}", "J"),
@@ -57,21 +57,29 @@ def health_rows(health):
 
 
 def force_rows(forces):
-    if not len(forces):
-        return []
-    return [("mesh force on a tooth, most", f"{np.abs(forces['mesh_force']).max():.1f}", "N"),
-            ("rim tension, most", f"{forces['rim_tension'].max():.1f}", "N")]
+    return [
+        ("mesh force on a tooth, most", f"{np.abs(forces['mesh_force']).max():.1f}", "N"),
+        ("rim tension, most", f"{forces['rim_tension'].max():.1f}", "N"),
+    ]
 
 
 def print_table(recording):
     health = recording["health"]
     counts = ", ".join(f"{name} {count}" for name, count in recording.counts.items())
-    rows = [("simulated", f"{max(series.time[-1] for series in recording.series.values() if len(series)):.2f}", "s")]
+    rows = [("simulated", f"{recording['joint_states'].time[-1]:.2f}", "s")]
     rows += joint_rows(recording) + health_rows(health) + force_rows(recording["contact_forces"])
     print(f"{recording.joint} ({recording.namespace}); messages: {counts}")
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     for name, value, unit in rows:
         print(f"  {name:<{widths[0]}}  {value:>{widths[1]}}  {unit}".rstrip())
+
+
+def check_complete(recording):
+    """Complains if the twin fell silent before its commands did."""
+    commands = recording["command"]
+    missing = commands.time[-1] - recording["joint_states"].time[-1] if len(commands) else 0.0
+    if missing > MOST_MISSING:
+        sys.exit(f"the twin's output ends {missing:.1f} s before its commands")
 
 
 def main():
@@ -83,11 +91,12 @@ def main():
     options = parser.parse_args()
     try:
         recording = Recording(options.bag, options.namespace)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, rosbag.ROSBagException) as error:
         sys.exit(f"{os.path.basename(sys.argv[0])}: {error}")
     print_table(recording)
     if options.plot:
         draw(recording, options.title or os.path.basename(options.bag), options.plot)
+    check_complete(recording)
 
 
 if __name__ == "__main__":

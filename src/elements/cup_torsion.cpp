@@ -69,6 +69,7 @@ double CupTorsion::stiffness(double rotation) const noexcept
 void CupTorsion::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
   const double rotation = meanRotation(shape);
+  forces.cup_rotation = rotation;
   const double share = torque(rotation) / shape.teeth();
   for (int i = 0; i < shape.teeth(); ++i)
   {
@@ -81,9 +82,9 @@ void CupTorsion::addForces(const RingShape& shape, RingForces& forces) const noe
   forces.energy += storedEnergy(rotation);
 }
 
-void CupTorsion::addTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+void CupTorsion::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
-  const double rotation = meanRotation(shape);
+  const double rotation = forces.cup_rotation;
   const double share = torque(rotation) / shape.teeth();
   const double part = 1.0 / shape.teeth();
   tangent.cup_stiffness = stiffness(rotation);

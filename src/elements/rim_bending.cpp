@@ -55,86 +55,77 @@ double RimBending::bend(const RingShape& shape, int i) const noexcept
   return smallAngle(rx * y - ry * x, rx * x + ry * y);
 }
 
-double RimBending::bendingForce(const RingShape& shape, int i) const noexcept
+/// Couple that turns segment i back [N.m].
+double RimBending::couple(const RingForces& forces, int i, int next) const noexcept
 {
-  double couple = stiffness_[i] * bend(shape, i);
-  if (law_ == BendingLaw::CURVATURE)
-  {
-    const int j = shape.next(i);
-    couple -= stiffness_[j] * bend(shape, j);
-  }
-  return couple / shape.lengths[i];
+  return law_ == BendingLaw::ABSOLUTE ? forces.bending_moment[i] :
+                                        forces.bending_moment[i] - forces.bending_moment[next];
+}
+
+double RimBending::bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept
+{
+  return couple(forces, i, shape.next(i)) / shape.lengths[i];
 }
 
 void RimBending::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
-  const int n = shape.teeth();
-  double moment = stiffness_[0] * bend(shape, 0);
-  const double first_moment = moment;
-  forces.energy += stiffness_[0] > 0.0 ? 0.5 * moment * moment / stiffness_[0] : 0.0;
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const double angle = bend(shape, i);
+    forces.bending_moment[i] = stiffness_[i] * angle;
+    forces.energy += 0.5 * forces.bending_moment[i] * angle;
+  }
+  for (int i = 0; i < shape.teeth(); ++i)
   {
     const int j = shape.next(i);
-    double next_moment = first_moment;
-    if (j != 0)
-    {
-      const double angle = bend(shape, j);
-      next_moment = stiffness_[j] * angle;
-      forces.energy += 0.5 * next_moment * angle;
-    }
-    const double couple = law_ == BendingLaw::ABSOLUTE ? moment : moment - next_moment;
-    const double scale = couple / shape.lengths[i];
+    const double scale = couple(forces, i, j) / shape.lengths[i];
     const double fx = -scale * shape.directions[2 * i + 1];
     const double fy = scale * shape.directions[2 * i];
     forces.teeth[2 * i] += fx;
     forces.teeth[2 * i + 1] += fy;
     forces.teeth[2 * j] -= fx;
     forces.teeth[2 * j + 1] -= fy;
-    moment = next_moment;
   }
 }
 
-void RimBending::addTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+void RimBending::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   if (law_ == BendingLaw::ABSOLUTE)
   {
-    addAbsoluteTangent(shape, tangent);
+    addAbsoluteTangent(shape, forces, tangent);
   }
   else
   {
-    addCurvatureTangent(shape, tangent);
+    addCurvatureTangent(shape, forces, tangent);
   }
 }
 
-void RimBending::addAbsoluteTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+void RimBending::addAbsoluteTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   for (int i = 0; i < shape.teeth(); ++i)
   {
     const int j = shape.next(i);
     const Eigen::Vector2d g = turnGradient(shape, i);
-    const Block2 block = stiffness_[i] * (g * g.transpose() + bend(shape, i) * turnHessian(shape, i));
+    const Block2 block = stiffness_[i] * g * g.transpose() + forces.bending_moment[i] * turnHessian(shape, i);
     tangent.addDiagonal(i, block);
     tangent.addDiagonal(j, block);
     tangent.addPair(i, j, -block);
   }
 }
 
-void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+void RimBending::addCurvatureTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
   Eigen::Vector2d g_before = turnGradient(shape, n - 1);
-  double moment = stiffness_[0] * bend(shape, 0);
-  const double first_moment = moment;
   for (int i = 0; i < n; ++i)
   {
     const int h = shape.previous(i);
     const int j = shape.next(i);
-    const double next_moment = j == 0 ? first_moment : stiffness_[j] * bend(shape, j);
     const Eigen::Vector2d g = turnGradient(shape, i);
     // Gradient of the bend at tooth i: g at j, g_before at h, minus both at i.
     const Eigen::Vector2d at_tooth = -(g + g_before);
     const double k = stiffness_[i];
-    const Block2 turn = (moment - next_moment) * turnHessian(shape, i);
+    const Block2 turn = couple(forces, i, j) * turnHessian(shape, i);
     tangent.addDiagonal(h, k * g_before * g_before.transpose());
     tangent.addDiagonal(i, k * at_tooth * at_tooth.transpose() + turn);
     tangent.addDiagonal(j, k * g * g.transpose() + turn);
@@ -142,7 +133,6 @@ void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangen
     tangent.addPair(i, j, k * at_tooth * g.transpose() - turn);
     tangent.addPair(h, j, k * g_before * g.transpose());
     g_before = g;
-    moment = next_moment;
   }
 }
 }  // namespace hjt

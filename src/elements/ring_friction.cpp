@@ -35,9 +35,10 @@ double InterfaceFriction::torque(const RingShape& shape, const RingForces& force
   {
     const int j = shape.next(i);
     const int h = shape.previous(i);
-    const double tilt = (shape.normals[2 * i] * (rates[2 * j] - rates[2 * h]) +
-                         shape.normals[2 * i + 1] * (rates[2 * j + 1] - rates[2 * h + 1])) /
-                        shape.chords[i];
+    const Chord chord = shape.chord(i);
+    const double tilt = (chord.normal.x() * (rates[2 * j] - rates[2 * h]) +
+                         chord.normal.y() * (rates[2 * j + 1] - rates[2 * h + 1])) /
+                        chord.length;
     sum += forces.contact_force[i] * std::abs(tilt);
   }
   return parameters_.friction_coefficient * parameters_.slip_lever * sum;

@@ -13,6 +13,7 @@ struct ToothMesh::Engagement
 {
   Eigen::Vector2d radial;   // axis of the space
   Eigen::Vector2d across;   // counter-clockwise of it
+  Chord chord;
   double xi;
   double zeta;
 };
@@ -33,6 +34,7 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   : spaces_(gear.teeth_circular_spline)
   , mid_height_(gear.toothMidHeight())
   , tip_offset_(0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline)
+  , reach_(-tip_offset_ - mid_height_)
   , depth_(parameters.engagement_depth)
   , smoothing_(parameters.smoothing)
   , cos_flank_(std::cos(parameters.flank_angle))
@@ -56,9 +58,16 @@ ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_outpu
   const double ay = axes_[2 * k + 1];
   const double rx = cos_output * ax - sin_output * ay;
   const double ry = sin_output * ax + cos_output * ay;
-  const double px = shape.points[2 * i] + mid_height_ * shape.normals[2 * i];
-  const double py = shape.points[2 * i + 1] + mid_height_ * shape.normals[2 * i + 1];
-  return { { rx, ry }, { -ry, rx }, py * rx - px * ry, px * rx + py * ry };
+  const Chord chord = shape.chord(i);
+  const double px = shape.points[2 * i] + mid_height_ * chord.normal.x();
+  const double py = shape.points[2 * i + 1] + mid_height_ * chord.normal.y();
+  return { { rx, ry }, { -ry, rx }, chord, py * rx - px * ry, px * rx + py * ry };
+}
+
+/// A tooth whose tip does not reach the circular spline however it is tilted.
+bool ToothMesh::outOfReach(const RingShape& shape, int i) const noexcept
+{
+  return shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_;
 }
 
 ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
@@ -105,6 +114,10 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
   const double sin_output = std::sin(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
+    if (outOfReach(shape, i))
+    {
+      continue;
+    }
     const Engagement tooth = engage(shape, cos_output, sin_output, i);
     const Law at = law(tooth, i);
     if (!at.contact)
@@ -113,46 +126,48 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     }
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
     // The tooth tilts with the chord: its couple acts on the two neighbours, along the chord's normal.
-    const Eigen::Vector2d normal = shape.normals.segment<2>(2 * i);
-    const double couple = mid_height_ / shape.chords[i] * (-normal.y() * gradient.x() + normal.x() * gradient.y());
+    const Eigen::Vector2d& normal = tooth.chord.normal;
+    const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
     forces.teeth.segment<2>(2 * i) -= gradient;
     forces.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
     forces.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
+    forces.meshed[i] = 1;
     forces.flank_force[i] = at.by_xi / cos_flank_;
     forces.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
     forces.energy += at.energy;
   }
 }
 
-void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept
+void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
+                           RingTangent& tangent) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    const Law at = law(tooth, i);
-    if (!at.contact)
+    if (!forces.meshed[i])
     {
       continue;
     }
+    const Engagement tooth = engage(shape, cos_output, sin_output, i);
+    const Law at = law(tooth, i);
     const Eigen::Vector2d& er = tooth.radial;
     const Eigen::Vector2d& et = tooth.across;
     const Eigen::Vector2d gradient = at.by_xi * et + at.by_zeta * er;
     const Block2 hessian = at.by_xi_xi * et * et.transpose() + at.by_zeta_zeta * er * er.transpose() +
                            at.by_xi_zeta * (et * er.transpose() + er * et.transpose());
-    const Eigen::Vector2d n = shape.normals.segment<2>(2 * i);
+    const Eigen::Vector2d& n = tooth.chord.normal;
     const Eigen::Vector2d q(-n.y(), n.x());  // along the chord
-    const double lever = mid_height_ / shape.chords[i];
+    const double lever = mid_height_ / tooth.chord.length;
     const double along = q.dot(gradient);
     const double outward = n.dot(gradient);
 
     // P = X_i + z n(Q), dn = -q (n . dQ) / |Q|, Q = X_{i+1} - X_{i-1}.
     const Eigen::Vector2d hq = hessian * q;
     const Block2 mixed = -lever * hq * n.transpose();
-    const double by_turn = lever * lever * q.dot(hq) - lever / shape.chords[i] * outward;
+    const double by_turn = lever * lever * q.dot(hq) - lever / tooth.chord.length * outward;
     const Block2 chord = by_turn * n * n.transpose() +
-                         lever / shape.chords[i] * along * (n * q.transpose() + q * n.transpose());
+                         lever / tooth.chord.length * along * (n * q.transpose() + q * n.transpose());
     const int h = shape.previous(i);
     const int j = shape.next(i);
     tangent.addDiagonal(i, hessian);
@@ -178,8 +193,17 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
+  const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
+  const double turned = position.output_angle * spaces_ / TWO_PI;
+  const double first = 0.5 + spaces_ * (1.0 + std::floor(turned / spaces_)) - turned;
   for (int i = 0; i < shape.teeth(); ++i)
   {
+    if (outOfReach(shape, i))
+    {
+      // The tooth's angle at rest is near enough while it cannot touch.
+      shape.space[i] = static_cast<int>(first + i * spaces_a_tooth) % spaces_;
+      continue;
+    }
     const Engagement tooth = engage(shape, cos_output, sin_output, i);
     if (std::abs(tooth.xi) <= half_space_ * tooth.zeta || law(tooth, i).contact)
     {
@@ -194,9 +218,9 @@ double ToothMesh::slidingSpeed(const RingShape& shape, const DrivePosition& posi
                                const Eigen::VectorXd& speeds, double output_speed, bool leading) const noexcept
 {
   const Engagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
-  const Eigen::Vector2d n = shape.normals.segment<2>(2 * i);
+  const Eigen::Vector2d& n = tooth.chord.normal;
   const Eigen::Vector2d chord_speed = speeds.segment<2>(2 * shape.next(i)) - speeds.segment<2>(2 * shape.previous(i));
-  const double tilt = n.dot(chord_speed) / shape.chords[i];
+  const double tilt = n.dot(chord_speed) / tooth.chord.length;
   const Eigen::Vector2d speed = speeds.segment<2>(2 * i) - mid_height_ * tilt * Eigen::Vector2d(-n.y(), n.x());
   const double xi_speed = tooth.across.dot(speed) - output_speed * tooth.zeta;
   const double zeta_speed = tooth.radial.dot(speed) + output_speed * tooth.xi;

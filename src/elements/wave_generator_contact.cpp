@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/elements/wave_generator_contact.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "harmonic_joint_twin/elements/contact_ramp.hpp"
@@ -25,22 +26,6 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
 }
 }  // namespace
 
-struct WaveGeneratorContact::Frame
-{
-  Frame(double mean_radius, const DrivePosition& position) noexcept
-    : cos(std::cos(position.wave_generator_angle))
-    , sin(std::sin(position.wave_generator_angle))
-    , a(mean_radius + position.wave_amplitude)
-    , b(mean_radius - position.wave_amplitude)
-  {
-  }
-
-  double cos;
-  double sin;
-  double a;
-  double b;
-};
-
 WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear)
   : law_(parameters.law)
   , smoothing_(parameters.smoothing)
@@ -49,38 +34,72 @@ WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, 
 {
 }
 
-/// Foot of the normal from a tooth point; the normal in the housing's axes.
-EllipseFoot WaveGeneratorContact::foot(const Frame& frame, double x, double y) const noexcept
+/// Feet of the normals from all tooth points, in the housing's axes.
+void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position, RingForces& forces) const
+    noexcept
 {
-  const double own_x = frame.cos * x + frame.sin * y;
-  const double own_y = frame.cos * y - frame.sin * x;
-  EllipseFoot foot = law_ == ContactLaw::NORMAL ? closestPoint(frame.a, frame.b, own_x, own_y) :
-                                                  polarPoint(frame.a, frame.b, own_x, own_y);
-  const double nx = foot.normal_x;
-  foot.normal_x = frame.cos * nx - frame.sin * foot.normal_y;
-  foot.normal_y = frame.sin * nx + frame.cos * foot.normal_y;
-  return foot;
+  const double c = std::cos(position.wave_generator_angle);
+  const double s = std::sin(position.wave_generator_angle);
+  const double a = mean_radius_ + position.wave_amplitude;
+  const double b = mean_radius_ - position.wave_amplitude;
+  const int n = shape.teeth();
+  const double* point = shape.points.data();
+  double* normal = forces.contact_normal.data();
+  double* depth = forces.contact_depth.data();
+  double* curvature = forces.contact_curvature.data();
+  const auto store = [&](int i, const EllipseFoot& foot) {
+    normal[2 * i] = c * foot.normal_x - s * foot.normal_y;
+    normal[2 * i + 1] = s * foot.normal_x + c * foot.normal_y;
+    depth[i] = foot.depth;
+    curvature[i] = foot.curvature;
+  };
+  const auto own = [&](int i, double& x, double& y) {
+    x = c * point[2 * i] + s * point[2 * i + 1];
+    y = c * point[2 * i + 1] - s * point[2 * i];
+  };
+  double x;
+  double y;
+  if (law_ == ContactLaw::POLAR)
+  {
+    for (int i = 0; i < n; ++i)
+    {
+      own(i, x, y);
+      store(i, polarPoint(a, b, x, y));
+    }
+    return;
+  }
+  double largest = 0.0;
+  for (int i = 0; i < n; ++i)
+  {
+    double step;
+    own(i, x, y);
+    store(i, closestPointNear(a, b, x, y, step));
+    largest = std::max(largest, std::abs(step));
+  }
+  if (!(largest < NEAR_STEP))
+  {
+    for (int i = 0; i < n; ++i)
+    {
+      own(i, x, y);
+      store(i, closestPoint(a, b, x, y));
+    }
+  }
 }
 
 void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const
     noexcept
 {
-  const Frame frame(mean_radius_, position);
+  findFeet(shape, position, forces);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    const double x = shape.points[2 * i];
-    const double y = shape.points[2 * i + 1];
-    const EllipseFoot at = foot(frame, x, y);
-    const ContactRamp ramp(at.depth, smoothing_);
+    const ContactRamp ramp(forces.contact_depth[i], smoothing_);
     const double force = stiffness_[i] * ramp.force;
-    forces.teeth[2 * i] += force * at.normal_x;
-    forces.teeth[2 * i + 1] += force * at.normal_y;
+    const double nx = forces.contact_normal[2 * i];
+    const double ny = forces.contact_normal[2 * i + 1];
     forces.contact_force[i] = force;
-    forces.contact_depth[i] = at.depth;
-    forces.contact_curvature[i] = at.curvature;
-    forces.contact_normal[2 * i] = at.normal_x;
-    forces.contact_normal[2 * i + 1] = at.normal_y;
-    forces.wave_generator_torque -= force * (x * at.normal_y - y * at.normal_x);
+    forces.teeth[2 * i] += force * nx;
+    forces.teeth[2 * i + 1] += force * ny;
+    forces.wave_generator_torque -= force * (shape.points[2 * i] * ny - shape.points[2 * i + 1] * nx);
     forces.energy += stiffness_[i] * ramp.energy;
   }
 }

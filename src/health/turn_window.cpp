@@ -12,7 +12,8 @@ namespace hjt
 namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
-}
+constexpr double LEAST_TRAVEL = 1e-6;  // of the output, as a share of the nominal one [-]
+}  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
   : nominal_ratio_(nominalRatio(gear))
@@ -71,7 +72,7 @@ Indicator TurnWindow::transmissionRatio() const noexcept
   const double torsion_then = (1.0 - share) * torsionAt(later) + share * torsionAt(later + 1);
   const double motor_travel = direction_ * TWO_PI;
   const double output_travel = motor_travel / nominal_ratio_ - (torsion_ - torsion_then);
-  if (output_travel == 0.0)
+  if (std::abs(output_travel) < LEAST_TRAVEL * TWO_PI / nominal_ratio_)
   {
     return {};
   }

@@ -32,12 +32,12 @@ void RingModel::tangent(const RingShape& shape, const DrivePosition& position, c
 {
   tangent.setZero();
   tension.addTangent(shape, tangent);
-  bending.addTangent(shape, tangent);
+  bending.addTangent(shape, forces, tangent);
   contact.addTangent(shape, forces, tangent);
-  cup.addTangent(shape, tangent);
+  cup.addTangent(shape, forces, tangent);
   if (meshed)
   {
-    mesh.addTangent(shape, position, tangent);
+    mesh.addTangent(shape, position, forces, tangent);
   }
 }
 

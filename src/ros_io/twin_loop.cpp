@@ -18,7 +18,7 @@ using std::chrono::steady_clock;
 /// Of the loop, by the wall clock.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
 /// Simulated at most in one cycle, so that the loop stays responsive while it catches up [ns].
-constexpr Stamp LONGEST_CATCH_UP = 50'000'000;
+constexpr Stamp LONGEST_CATCH_UP = 20'000'000;
 /// A smaller step back, as time synchronisation makes, is waited out [ns].
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// How long a request waits for the loop.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/joint_dynamics.hpp"
 
+#include <cmath>
+
 #include "harmonic_joint_twin/solver/output_balance.hpp"
 
 namespace hjt
@@ -36,7 +38,16 @@ SolveStatus JointDynamics::settle() noexcept
 
 SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexcept
 {
-  const SolveStatus result = ring_.moveTo({ motor_angle, output_angle, model_.ring.gear.wave_amplitude });
+  const DrivePosition target{ motor_angle, output_angle, model_.ring.gear.wave_amplitude };
+  SolveStatus result = ring_.moveTo(target);
+  if (!result.ok() && std::isfinite(motor_angle) && std::isfinite(output_angle))
+  {
+    const SolveStatus again = ring_.reinsert(target);
+    result.code = again.code;
+    result.residual = again.residual;
+    result.iterations += again.iterations;
+    result.cuts += again.cuts;
+  }
   status.iterations += result.iterations;
   status.cuts += result.cuts;
   status.residual = result.residual;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "harmonic_joint_twin/gear/angle.hpp"
+
 namespace hjt
 {
 namespace
@@ -23,6 +25,7 @@ double largest(const Eigen::VectorXd& forces) noexcept
 RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters& parameters)
   : model_(model)
   , parameters_(parameters)
+  , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
   , solver_(model.rest.teeth())
   , tangent_(model.rest.teeth())
   , shape_(model.restShape({}))
@@ -31,7 +34,10 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , by_output_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , stiffness_(Eigen::Matrix2d::Zero())
   , good_shape_(shape_)
+  , kept_shape_(shape_)
   , start_points_(shape_.points)
+  , scratch_(shape_.points)
+  , old_space_(shape_.space)
   , step_(shape_.points)
   , columns_(2 * model.rest.teeth(), 2)
 {
@@ -83,11 +89,86 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   return total;
 }
 
-/// First guess at the target: the last tangent carries the tooth points along.
+SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
+{
+  kept_shape_ = shape_;
+  const DrivePosition kept = position_;
+  const SolveStatus status = insert(target);
+  if (!status.ok())
+  {
+    shape_ = kept_shape_;
+    position_ = kept;
+    model_.forces(shape_, position_, forces_);
+  }
+  return status;
+}
+
+/// Values of a ring turned by `pitches` tooth pitches: those of tooth i, rotated, take the place of tooth i + pitches.
+void RingEquilibrium::turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept
+{
+  const int n = shape_.teeth();
+  const double c = std::cos(pitches * model_.rest.pitchAngle());
+  const double s = std::sin(pitches * model_.rest.pitchAngle());
+  int j = (pitches % n + n) % n;
+  for (int i = 0; i < n; ++i)
+  {
+    turned[2 * j] = c * values[2 * i] - s * values[2 * i + 1];
+    turned[2 * j + 1] = s * values[2 * i] + c * values[2 * i + 1];
+    j = j + 1 == n ? 0 : j + 1;
+  }
+}
+
+/// The whole state turned by `pitches` tooth pitches, the spaces with it.
+/// On a drive of equal teeth this is an equilibrium again, exactly; on a faulty one a good guess.
+void RingEquilibrium::shift(int pitches) noexcept
+{
+  const int n = shape_.teeth();
+  const int spaces = model_.gear.teeth_circular_spline;
+  for (Eigen::VectorXd* values : { &shape_.points, &by_wave_generator_, &by_output_ })
+  {
+    turn(*values, pitches, scratch_);
+    values->swap(scratch_);
+  }
+  for (int i = 0; i < n; ++i)
+  {
+    old_space_[((i + pitches) % n + n) % n] = ((shape_.space[i] + pitches) % spaces + spaces) % spaces;
+  }
+  shape_.space.swap(old_space_);
+  position_.wave_generator_angle += pitches * model_.rest.pitchAngle();
+  position_.output_angle += pitches * pitch_output_angle_;
+}
+
+/// First guess at the target. Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is
+/// a cubic between the state and its copy one pitch on, with the tangents at both ends; the rest of the output's angle
+/// goes along its own tangent.
 void RingEquilibrium::predict(const DrivePosition& target) noexcept
 {
-  shape_.points += (target.wave_generator_angle - position_.wave_generator_angle) * by_wave_generator_ +
-                   (target.output_angle - position_.output_angle) * by_output_;
+  constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
+  const double pitch = model_.rest.pitchAngle();
+  const double pitches = (target.wave_generator_angle - position_.wave_generator_angle) / pitch;
+  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < shape_.teeth())
+  {
+    const int whole = static_cast<int>(std::floor(pitches));
+    if (whole != 0)
+    {
+      shift(whole);
+    }
+    const double u = pitches - whole;
+    const double blend = u * u * (3.0 - 2.0 * u);
+    const double start_slope = u * (1.0 - u) * (1.0 - u);
+    const double end_slope = -u * u * (1.0 - u);
+    const Eigen::VectorXd& slope = step_ = pitch * by_wave_generator_ + pitch_output_angle_ * by_output_;
+    turn(slope, 1, scratch_);
+    scratch_ = start_slope * slope + end_slope * scratch_;
+    turn(shape_.points, 1, start_points_);
+    shape_.points += blend * (start_points_ - shape_.points) + scratch_;
+    shape_.points += (target.output_angle - position_.output_angle - u * pitch_output_angle_) * by_output_;
+  }
+  else
+  {
+    shape_.points += (target.wave_generator_angle - position_.wave_generator_angle) * by_wave_generator_ +
+                     (target.output_angle - position_.output_angle) * by_output_;
+  }
   shape_.updateGeometry();
   position_ = target;
 }
@@ -103,6 +184,10 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   }
   model_.forces(shape_, position_, forces_);
   status.residual = largest(forces_.teeth);
+  if (status.residual <= parameters_.force_tolerance)
+  {
+    return status;  // the tangent of the last solve is good enough to have predicted this
+  }
   bool fresh = false;
   do
   {

@@ -34,7 +34,7 @@ void fillTeeth(const RingEquilibrium& ring, InsertionResult& result)
     result.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
     result.wave_generator_force.push_back(ring.forces().contact_force[i]);
     result.rim_tension.push_back(model.tension.tension(shape, i));
-    result.bending_force.push_back(model.bending.bendingForce(shape, i));
+    result.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
   }
 }
 

@@ -302,7 +302,7 @@ void Twin::toothForces(ToothForces& out) const noexcept
   {
     out.wave_generator_force[i] = ring.forces().contact_force[i];
     out.rim_tension[i] = model.tension.tension(shape, i);
-    out.bending_force[i] = model.bending.bendingForce(shape, i);
+    out.bending_force[i] = model.bending.bendingForce(shape, ring.forces(), i);
     out.mesh_force[i] = ring.forces().flank_force[i];
     out.tooth_x[i] = shape.points[2 * i];
     out.tooth_y[i] = shape.points[2 * i + 1];

@@ -146,8 +146,9 @@ TEST_F(TransmissionRatio, IsNotGivenForAnOutputThatStandsStill)
 {
   update();
   turnTo(10.0, 0.003, [](double) { return 0.0; });
-  const Indicator ratio = indicators().transmission_ratio;
-  EXPECT_TRUE(std::isfinite(ratio.value));
+  EXPECT_FALSE(indicators().transmission_ratio.valid);
+  EXPECT_EQ(indicators().transmission_ratio.value, 0.0);
+  EXPECT_TRUE(indicators().kinematic_error.valid);
 }
 
 using KinematicError = Monitored;

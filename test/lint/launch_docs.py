@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""launch/: every argument a launch file declares says what it is for."""
+"""launch/: every argument that can be given to a launch file says what it is for."""
 import os
 import xml.etree.ElementTree as xml
 
@@ -13,7 +13,8 @@ def check(root):
         tree = xml.parse(os.path.join(root, path))
         handed_on = {arg for include in tree.iter("include") for arg in include.iter("arg")}
         for arg in tree.iter("arg"):
-            if arg not in handed_on and not arg.get("doc", "").strip():
+            constant = arg.get("value") is not None
+            if arg not in handed_on and not constant and not arg.get("doc", "").strip():
                 problems.append(f"{path}: argument '{arg.get('name')}' has no doc")
     return problems if paths else ["launch: no launch files found"]
 

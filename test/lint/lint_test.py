@@ -130,7 +130,8 @@ class MessageComments(Tree):
 
 class LaunchDocs(Tree):
     def test_doc(self):
-        self.write("launch/a.launch", '<launch><arg name="bag" doc="Recording."/><include file="b.launch">'
+        self.write("launch/a.launch", '<launch><arg name="bag" doc="Recording."/>'
+                                      '<arg name="folder" value="config"/><include file="b.launch">'
                                       '<arg name="bag" value="$(arg bag)"/></include></launch>')
         self.assert_clean(launch_docs.check)
 

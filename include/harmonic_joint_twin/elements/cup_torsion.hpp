@@ -29,7 +29,8 @@ public:
   double stiffness(double rotation) const noexcept;            ///< dC/dPhi [N.m/rad]
 
   void addForces(const RingShape& shape, RingForces& forces) const noexcept;
-  void addTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
+  /// `forces`: of the same shape.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
 private:
   std::array<double, 3> slopes_;

@@ -21,17 +21,19 @@ public:
   RimBending(const RingParameters& parameters, const ToothRing& rest);
 
   void addForces(const RingShape& shape, RingForces& forces) const noexcept;
-  void addTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
+  /// `forces`: of the same shape.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   /// Force of the couple that turns segment i back, at its ends (thesis eq. 5.52) [N].
-  double bendingForce(const RingShape& shape, int i) const noexcept;
+  double bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
 
 private:
   double bend(const RingShape& shape, int i) const noexcept;
-  void addAbsoluteTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
-  void addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
+  double couple(const RingForces& forces, int i, int next) const noexcept;
+  void addAbsoluteTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  void addCurvatureTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;

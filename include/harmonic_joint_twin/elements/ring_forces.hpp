@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,6 +19,8 @@ struct RingForces
     , contact_curvature(teeth)
     , contact_normal(2 * teeth)
     , flank_force(teeth)
+    , meshed(teeth)
+    , bending_moment(teeth)
   {
   }
 
@@ -25,6 +28,7 @@ struct RingForces
   {
     teeth.setZero();
     flank_force.setZero();
+    std::fill(meshed.begin(), meshed.end(), 0);
     wave_generator_torque = 0.0;
     output_torque = 0.0;
     energy = 0.0;
@@ -39,6 +43,9 @@ struct RingForces
   Eigen::VectorXd contact_curvature;  ///< N, of the wave generator there [1/m]
   Eigen::VectorXd contact_normal;  ///< 2 N, its direction, outward [-]
   Eigen::VectorXd flank_force;     ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
+  std::vector<char> meshed;        ///< N, tooth touches a flank [-]
+  Eigen::VectorXd bending_moment;  ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
+  double cup_rotation{};           ///< mean rotation of the tooth points [rad]
 };
 
 using Block2 = Eigen::Matrix2d;

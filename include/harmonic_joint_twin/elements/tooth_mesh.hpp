@@ -26,7 +26,9 @@ public:
   ToothMesh(const MeshParameters& parameters, const GearParameters& gear);
 
   void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
-  void addTangent(const RingShape& shape, const DrivePosition& position, RingTangent& tangent) const noexcept;
+  /// `forces`: of the same shape and position.
+  void addTangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
+                  RingTangent& tangent) const noexcept;
 
   /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
   void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
@@ -43,10 +45,12 @@ private:
   struct Law;
   Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
   Law law(const Engagement& tooth, int i) const noexcept;
+  bool outOfReach(const RingShape& shape, int i) const noexcept;
 
   int spaces_;
   double mid_height_;
   double tip_offset_;  // half tooth height minus the circular spline's tip radius [m]
+  double reach_;       // radius of a tooth point below which its tip cannot touch [m]
   double depth_;
   double smoothing_;
   double cos_flank_;

@@ -29,8 +29,7 @@ public:
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 
 private:
-  struct Frame;
-  EllipseFoot foot(const Frame& frame, double x, double y) const noexcept;
+  void findFeet(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
 
   ContactLaw law_;
   double smoothing_;

@@ -14,36 +14,9 @@ struct EllipseFoot
   double curvature;  ///< of the ellipse at the foot [1/m]
 };
 
-/// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
-/// approximated): Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
-///
-/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
-/// step of size e leaves an error of 0.02 e^2: nearly always one step is enough for 1e-10.
-inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
+/// Foot at the eccentric angle given by its cosine and sine.
+inline EllipseFoot footAt(double a, double b, double x, double y, double c, double s) noexcept
 {
-  constexpr int MAX_STEPS = 20;
-  constexpr double ENOUGH = 1e-4;
-  double c = x * b;
-  double s = y * a;
-  const double start = 1.0 / std::sqrt(c * c + s * s);
-  c *= start;
-  s *= start;
-  const double focal = a * a - b * b;
-  for (int i = 0; i < MAX_STEPS; ++i)
-  {
-    const double slope = focal * c * s - x * a * s + y * b * c;
-    const double bend = focal * (c * c - s * s) - x * a * c - y * b * s;
-    const double step = -slope / bend;
-    const bool last = std::abs(step) < ENOUGH;
-    const double scale = last ? 1.0 - 0.5 * step * step : 1.0 / std::sqrt(1.0 + step * step);
-    const double cn = scale * (c - step * s);
-    s = scale * (s + step * c);
-    c = cn;
-    if (last)
-    {
-      break;
-    }
-  }
   const double nx = b * c;
   const double ny = a * s;
   const double inverse = 1.0 / std::sqrt(nx * nx + ny * ny);
@@ -53,5 +26,54 @@ inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
   foot.depth = (a * c - x) * foot.normal_x + (b * s - y) * foot.normal_y;
   foot.curvature = a * b * inverse * inverse * inverse;
   return foot;
+}
+
+/// One Newton step on the eccentric angle from (c, s) towards the closest point [rad].
+inline double closestPointStep(double a, double b, double x, double y, double c, double s) noexcept
+{
+  const double focal = a * a - b * b;
+  const double slope = focal * c * s - x * a * s + y * b * c;
+  const double bend = focal * (c * c - s * s) - x * a * c - y * b * s;
+  return -slope / bend;
+}
+
+/// Largest first step for which `closestPointNear` is good: a step of size e leaves an error of 0.02 e^2.
+constexpr double NEAR_STEP = 1e-4;
+
+/// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
+/// approximated). Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
+///
+/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, so one
+/// step reaches 1e-10 rad. Straight-line code for the compiler to vectorise; `step` tells whether it was near enough.
+inline EllipseFoot closestPointNear(double a, double b, double x, double y, double& step) noexcept
+{
+  const double start_c = x * b;
+  const double start_s = y * a;
+  const double start = 1.0 / std::sqrt(start_c * start_c + start_s * start_s);
+  const double c = start_c * start;
+  const double s = start_s * start;
+  step = closestPointStep(a, b, x, y, c, s);
+  const double scale = 1.0 - 0.5 * step * step;
+  return footAt(a, b, x, y, scale * (c - step * s), scale * (s + step * c));
+}
+
+/// The same for any point but the ellipse's centre.
+inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
+{
+  constexpr int MAX_STEPS = 30;
+  constexpr double ENOUGH = 1e-8;
+  const double start = 1.0 / std::sqrt(x * b * x * b + y * a * y * a);
+  double c = x * b * start;
+  double s = y * a * start;
+  double step = 1.0;
+  for (int i = 0; i < MAX_STEPS && std::abs(step) > ENOUGH; ++i)
+  {
+    step = closestPointStep(a, b, x, y, c, s);
+    const double scale = 1.0 / std::sqrt(1.0 + step * step);
+    const double turned = scale * (c - step * s);
+    s = scale * (s + step * c);
+    c = turned;
+  }
+  return footAt(a, b, x, y, c, s);
 }
 }  // namespace hjt

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,11 +16,18 @@ struct DrivePosition
   double wave_amplitude{};        ///< w, grows from 0 to w0 during the insertion [m]
 };
 
+/// Chord from the tooth before to the tooth after, and its outward unit normal: how a tooth is tilted.
+struct Chord
+{
+  Eigen::Vector2d normal;  ///< [-]
+  double length;           ///< [m]
+};
+
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
 struct RingShape
 {
   explicit RingShape(int teeth)
-    : points(2 * teeth), directions(2 * teeth), lengths(teeth), normals(2 * teeth), chords(teeth), space(teeth, 0)
+    : points(2 * teeth), directions(2 * teeth), lengths(teeth), space(teeth, 0)
   {
   }
 
@@ -27,14 +35,23 @@ struct RingShape
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Brings directions, lengths, normals and chords up to date with the points.
+  /// Brings directions and lengths up to date with the points.
   void updateGeometry() noexcept;
+
+  Chord chord(int i) const noexcept
+  {
+    const int j = next(i);
+    const int h = previous(i);
+    const double dx = points[2 * j] - points[2 * h];
+    const double dy = points[2 * j + 1] - points[2 * h + 1];
+    const double length = std::sqrt(dx * dx + dy * dy);
+    const double inverse = 1.0 / length;
+    return { { dy * inverse, -dx * inverse }, length };
+  }
 
   Eigen::VectorXd points;      ///< 2 N, tooth points on the inner rim [m]
   Eigen::VectorXd directions;  ///< 2 N, unit vectors from tooth i to i+1 [-]
   Eigen::VectorXd lengths;     ///< N, distance from tooth i to i+1 [m]
-  Eigen::VectorXd normals;     ///< 2 N, outward unit normals of the chord from tooth i-1 to i+1 [-]
-  Eigen::VectorXd chords;      ///< N, its length [m]
   std::vector<int> space;      ///< N, circular-spline space each tooth is paired with [-]
 };
 }  // namespace hjt

@@ -30,7 +30,7 @@ public:
   void update(double motor_angle, double torsion) noexcept;
 
   /// Motor travel over output travel, from the instant the motor stood exactly one turn behind until now [-].
-  /// Also not valid if the output made no way at all.
+  /// Also not valid if the output made no way: less than a millionth of the nominal.
   Indicator transmissionRatio() const noexcept;
 
   /// Peak to peak of the torsion at the marks of the last turn, after subtracting the straight line through the two

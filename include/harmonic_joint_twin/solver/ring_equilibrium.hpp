@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "harmonic_joint_twin/model/ring_model.hpp"
@@ -39,6 +41,9 @@ public:
   /// Cold start: from the round ring the wave amplitude grows to its full value.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
+  /// The same in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
+  SolveStatus reinsert(const DrivePosition& target) noexcept;
+
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
@@ -57,6 +62,8 @@ public:
 private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
+  void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
+  void shift(int pitches) noexcept;
   void predict(const DrivePosition& target) noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
@@ -65,6 +72,7 @@ private:
 
   const RingModel& model_;
   SolverParameters parameters_;
+  double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   CyclicSolver solver_;
   RingTangent tangent_;
   RingShape shape_;
@@ -75,7 +83,10 @@ private:
   Eigen::Matrix2d stiffness_;
   // Scratch, sized once.
   RingShape good_shape_;
+  RingShape kept_shape_;
   Eigen::VectorXd start_points_;
+  Eigen::VectorXd scratch_;
+  std::vector<int> old_space_;
   Eigen::VectorXd step_;
   Columns columns_;
 };

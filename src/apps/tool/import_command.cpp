@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -18,6 +22,7 @@
 
 #include <sensor_msgs/JointState.h>
 
+#include "harmonic_joint_twin/gear/ratio.hpp"
 #include "harmonic_joint_twin/ros_io/bag_writer.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
@@ -32,7 +37,6 @@ const std::array<std::string, JOINTS> JOINT_NAMES{ "shoulder_pan_joint", "should
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
 /// Torque at the joint per motor current, of the size 3 joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
-constexpr double DEFAULT_RATIO = 101.0;
 
 struct ImportOptions : CommonOptions
 {
@@ -40,8 +44,8 @@ struct ImportOptions : CommonOptions
   int joint{};
   std::string out;
   double gain{ DEFAULT_GAIN };
-  double ratio{ DEFAULT_RATIO };
-  double start_time{ static_cast<double>(SIMULATION_EPOCH) * 1e-9 };
+  std::optional<double> ratio;
+  double start_time{ toSeconds(SIMULATION_EPOCH) };
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 
@@ -80,10 +84,10 @@ NumberTable<COLUMNS>::Names columnNames()
 class RowWriter
 {
 public:
-  RowWriter(const ImportOptions& options, BagWriter& bag)
+  RowWriter(const ImportOptions& options, double ratio, BagWriter& bag)
     : bag_(bag)
     , joint_(options.joint)
-    , torque_per_current_(options.gain / options.ratio)
+    , torque_per_current_(options.gain / ratio)
     , start_(static_cast<Stamp>(std::llround(options.start_time * 1e9)))
     , prefix_(options.joint_namespace + "/")
   {
@@ -130,10 +134,18 @@ private:
   sensor_msgs::JointState load_;
 };
 
-/// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
-std::uint64_t importRows(const ImportOptions& options, NumberTable<COLUMNS>& table, BagWriter& bag)
+double countLines(const std::string& path)
 {
-  RowWriter writer(options, bag);
+  std::ifstream file(path, std::ios::binary);
+  return static_cast<double>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
+}
+
+/// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
+std::uint64_t importRows(const ImportOptions& options, double ratio, NumberTable<COLUMNS>& table, BagWriter& bag)
+{
+  RowWriter writer(options, ratio, bag);
+  Progress progress("importing");
+  const double lines = countLines(options.csv);
   Row row{};
   std::uint64_t rows = 0;
   try
@@ -151,6 +163,7 @@ std::uint64_t importRows(const ImportOptions& options, NumberTable<COLUMNS>& tab
       }
       writer.write(row);
       ++rows;
+      progress.update(static_cast<double>(rows) / lines);
     }
   }
   catch (const InputError& error)
@@ -167,10 +180,12 @@ std::uint64_t importRows(const ImportOptions& options, NumberTable<COLUMNS>& tab
 
 int import(const ImportOptions& options)
 {
+  const Parameters parameters = loadParameters(options);
+  const double ratio = options.ratio.value_or(nominalRatio(parameters.gear));
   requireWritable(options.out, options.force, options.csv);
   NumberTable<COLUMNS> table(options.csv, columnNames());
   BagWriter bag(options.out);
-  const std::uint64_t rows = importRows(options, table, bag);
+  const std::uint64_t rows = importRows(options, ratio, table, bag);
   if (rows == 0)
   {
     throw InputError(options.csv + " has no rows; nothing was written");
@@ -211,8 +226,7 @@ void addImportCommand(CLI::App& app, int& exit_code)
   command->add_option("--gain", options->gain, "torque at the joint per current [N.m/A]")
       ->capture_default_str()
       ->check(FINITE);
-  command->add_option("--ratio", options->ratio, "of the gear [-]")
-      ->capture_default_str()
+  command->add_option("--ratio", options->ratio, "of the recorded gear [-]; default: that of the configured one")
       ->check(FINITE)
       ->check(CLI::PositiveNumber);
   command->add_option("--start-time", options->start_time, "ROS time of timestamp 0 [s]")

@@ -68,42 +68,54 @@ void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
   }
 }
 
-/// The joint's name is the bag's own business unless the user has said which joint is meant.
-void adoptJointName(const rosbag::Bag& bag, const ReplayOptions& options, ParameterMap& map)
+/// True if a file or --set other than the default configuration names the joint.
+bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   CommonOptions defaults;
   defaults.config_dir = options.config_dir;
-  const bool chosen = map.at("joint.name").origin != loadParameterMap(defaults).at("joint.name").origin;
-  const Parameters parameters = parseParameters(map);
-  const BagInputs found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
-  if (!chosen && found.inputs.empty() && found.other_joints.size() == 1)
-  {
-    const std::string& name = *found.other_joints.begin();
-    map["joint.name"] = { name, options.bag };
-    std::cerr << "joint_twin: joint.name = " << name << ", the one joint that " << options.bag << " commands\n";
-  }
+  return map.at("joint.name").origin != loadParameterMap(defaults).at("joint.name").origin;
 }
 
-BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const JointNames& names)
+[[noreturn]] void failWithoutInputs(const rosbag::Bag& bag, const ReplayOptions& options, const BagInputs& found,
+                                    const std::string& joint)
 {
-  BagInputs found = readBagInputs(bag, options.joint_namespace, names);
-  if (found.without_effort > 0)
-  {
-    std::cerr << "joint_twin: " << found.without_effort << " messages name " << names.joint
-              << " but give no effort for it; ignored\n";
-  }
-  if (!found.inputs.empty())
-  {
-    return found;
-  }
   if (!found.other_joints.empty())
   {
     throw InputError(options.bag + " commands other joints (" +
-                     joined({ found.other_joints.begin(), found.other_joints.end() }) + ") than joint.name = " +
-                     names.joint + "; choose one with --set joint.name=NAME or an overlay of config/joints");
+                     joined({ found.other_joints.begin(), found.other_joints.end() }) + ") than joint.name = " + joint +
+                     "; choose one with --set joint.name=NAME or an overlay of config/joints");
   }
-  throw InputError(options.bag + " has no message on an input topic (" + joined(inputTopics(options.joint_namespace)) +
+  throw InputError(options.bag + " has no torque on an input topic (" + joined(inputTopics(options.joint_namespace)) +
                    "); it holds:" + listTopics(bag));
+}
+
+/// The torques of the bag. If it commands one joint only and the user has not said which, `parameters` takes its name.
+BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const ParameterMap& map,
+                        Parameters& parameters)
+{
+  BagInputs found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
+  if (found.inputs.empty() && found.other_joints.size() == 1 && !jointIsChosen(options, map))
+  {
+    parameters.joint.name = *found.other_joints.begin();
+    std::cerr << "joint_twin: joint.name = " << parameters.joint.name << ", the one joint that " << options.bag
+              << " commands\n";
+    found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
+  }
+  if (found.inputs.empty())
+  {
+    failWithoutInputs(bag, options, found, parameters.joint.name);
+  }
+  if (found.without_effort > 0)
+  {
+    std::cerr << "joint_twin: " << found.without_effort << " messages name " << parameters.joint.name
+              << " but give no effort for it; ignored\n";
+  }
+  if (!found.other_joints.empty())
+  {
+    std::cerr << "joint_twin: messages for other joints ignored: "
+              << joined({ found.other_joints.begin(), found.other_joints.end() }) << '\n';
+  }
+  return found;
 }
 
 /// The twin beside the recording: copies each original message, and up to its time the simulated ones.
@@ -177,15 +189,13 @@ private:
 
 int replay(const ReplayOptions& options)
 {
-  ParameterMap map = loadParameterMap(options);
-  parseParameters(map);
+  const ParameterMap map = loadParameterMap(options);
+  Parameters parameters = parseParameters(map);
   requireWritable(options.out, options.force, options.bag);
   rosbag::Bag bag;
   openForReading(bag, options.bag);
   refuseTakenTopics(bag, options);
-  adoptJointName(bag, options, map);
-  const Parameters parameters = parseParameters(map);
-  const BagInputs found = requireInputs(bag, options, JointNames(parameters.joint.name));
+  const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters);
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
@@ -197,7 +207,7 @@ int replay(const ReplayOptions& options)
   catch (const std::exception& error)
   {
     run.close();
-    throw InputError(options.bag + " is damaged: " + error.what() + "; " + options.out +
+    throw InputError(options.bag + ": replay stopped: " + error.what() + "; " + options.out +
                      " is readable and holds what came before");
   }
   return summary.report(twin, options.json);

@@ -26,7 +26,6 @@ void warn(std::uint64_t count, const std::string& what)
 void warnOf(const TwinCounters& counters)
 {
   warn(counters.input.not_finite, "inputs were not finite and refused");
-  warn(counters.input.late, "inputs came late");
   warn(counters.input.overflow, "inputs were dropped: more than the queue holds");
   warn(counters.torque_clamped, "steps had a motor torque command beyond motor.torque_limit; it was clamped");
   warn(counters.load_clamped, "steps had a load torque beyond output.load_torque_limit; it was clamped");

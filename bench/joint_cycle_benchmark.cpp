@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Time of the whole cycle: stamped commands in, one solver step, every output and every per-tooth array out.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "support/allocation_count.hpp"
+
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+/// Time this thread has had a processor for [s]: what a busy machine takes away does not count.
+double processorTime() noexcept
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// What the joint is made to do.
+struct Scene
+{
+  std::string name;
+  double load_torque;                              // [N.m]
+  std::function<double(double time)> motor_speed;  // wanted [rad/s]
+};
+
+const std::vector<Scene> SCENES{
+  { "working speed, 100 rad/s, load 40 N.m", 40.0, [](double) { return 100.0; } },
+  { "full speed, 300 rad/s, load 40 N.m", 40.0, [](double) { return 300.0; } },
+  { "reversing at 2 Hz, load 100 N.m", 100.0, [](double time) { return 60.0 * std::sin(2.0 * hjt::TWO_PI * time); } },
+};
+
+struct Result
+{
+  std::string scene;
+  double simulated{};    // [s]
+  double median{};       // of the time of one cycle [us]
+  double p999{};         // [us]
+  double max{};          // [us]
+  double real_time{};    // simulated time over wall time [-]
+  double one_core{};     // simulated time over processor time [-]
+  double iterations{};   // Newton iterations, mean per step [-]
+  double motor_speed{};  // largest reached [rad/s]
+  std::size_t allocations{};
+  std::uint64_t solver_failures{};
+};
+
+/// One cycle: what a node at these rates would do at most, every output at every step.
+class Cycle
+{
+public:
+  Cycle(const hjt::Parameters& parameters, const Scene& scene)
+    : scene_(scene)
+    , twin_(parameters)
+    , forces_(twin_.makeToothForces())
+    , reduced_load_(scene.load_torque / hjt::nominalRatio(parameters.gear))
+  {
+  }
+
+  void run() noexcept
+  {
+    constexpr double GAIN = 0.02;  // of the speed controller [N.m.s/rad]
+    const double time = 1e-9 * static_cast<double>(twin_.stamp());
+    const double error = scene_.motor_speed(time) - twin_.outputs().motor_velocity;
+    const hjt::Stamp next = twin_.stamp() + twin_.stepLength();
+    twin_.commandMotorTorque(next, reduced_load_ + GAIN * error);
+    twin_.commandLoadTorque(next, scene_.load_torque);
+    twin_.step(next);
+    twin_.toothForces(forces_);
+    encoders_ = twin_.encoders();
+    health_ = twin_.health();
+  }
+
+  const hjt::Twin& twin() const { return twin_; }
+
+private:
+  const Scene& scene_;
+  hjt::Twin twin_;
+  hjt::ToothForces forces_;
+  hjt::EncoderReadings encoders_;
+  hjt::HealthReport health_;
+  double reduced_load_;
+};
+
+hjt::Parameters readParameters(const std::string& directory)
+{
+  hjt::ParameterMap map;
+  for (const char* stage : { "gear", "elements", "joint", "solver", "sensors", "health", "node" })
+  {
+    hjt::readYamlFile((std::filesystem::path(directory) / stage).string() + ".yaml", map);
+  }
+  return hjt::parseParameters(map);
+}
+
+Result measure(const hjt::Parameters& parameters, const Scene& scene, double duration)
+{
+  constexpr double RUN_UP = 0.25;  // [s] simulated, until the speed is reached; timed is what comes after
+  const auto run_up_steps = static_cast<int>(RUN_UP * parameters.solver.rate);
+  const auto steps = static_cast<std::size_t>(std::max(1.0, duration * parameters.solver.rate));
+  std::vector<double> times(steps);
+  Result result;
+  Cycle cycle(parameters, scene);
+  std::uint64_t iterations = 0;
+
+  const std::size_t allocations_before = hjt::allocationCount();
+  for (int i = 0; i < run_up_steps; ++i)
+  {
+    cycle.run();
+  }
+  const double processor_before = processorTime();
+  const Clock::time_point start = Clock::now();
+  Clock::time_point before = start;
+  for (double& time : times)
+  {
+    cycle.run();
+    const Clock::time_point after = Clock::now();
+    time = std::chrono::duration<double, std::micro>(after - before).count();
+    before = after;
+    iterations += cycle.twin().outputs().iterations;
+    result.motor_speed = std::max(result.motor_speed, std::abs(cycle.twin().outputs().motor_velocity));
+  }
+  const double processor_time = processorTime() - processor_before;
+  result.allocations = hjt::allocationCount() - allocations_before;
+
+  result.scene = scene.name;
+  result.simulated = static_cast<double>(steps) / parameters.solver.rate;
+  result.real_time = result.simulated / std::chrono::duration<double>(before - start).count();
+  result.one_core = result.simulated / processor_time;
+  result.iterations = static_cast<double>(iterations) / static_cast<double>(steps);
+  result.solver_failures = cycle.twin().counters().solver_failures;
+  std::sort(times.begin(), times.end());
+  result.median = times[steps / 2];
+  result.p999 = times[std::min(steps - 1, static_cast<std::size_t>(0.999 * static_cast<double>(steps)))];
+  result.max = times.back();
+  return result;
+}
+
+void printTable(const std::vector<Result>& results)
+{
+  std::printf("%-40s %10s %10s %10s %10s %10s %10s %11s %9s\n", "cycle", "median us", "p99.9 us", "max us",
+              "x realtime", "x one core", "iterations", "allocations", "failures");
+  for (const Result& result : results)
+  {
+    std::printf("%-40s %10.1f %10.1f %10.1f %10.2f %10.2f %10.2f %11zu %9zu\n", result.scene.c_str(), result.median,
+                result.p999, result.max, result.real_time, result.one_core, result.iterations, result.allocations,
+                static_cast<std::size_t>(result.solver_failures));
+  }
+}
+
+void printJson(const std::vector<Result>& results)
+{
+  nlohmann::json document = nlohmann::json::array();
+  for (const Result& result : results)
+  {
+    document.push_back({ { "scene", result.scene },
+                         { "simulated", result.simulated },
+                         { "median_us", result.median },
+                         { "p999_us", result.p999 },
+                         { "max_us", result.max },
+                         { "real_time_factor", result.real_time },
+                         { "one_core_factor", result.one_core },
+                         { "iterations", result.iterations },
+                         { "motor_speed_max", result.motor_speed },
+                         { "allocations", result.allocations },
+                         { "solver_failures", result.solver_failures } });
+  }
+  std::cout << document.dump(2) << '\n';
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  CLI::App app(
+      "Time of the twin's whole cycle, every output and every per-tooth array at every step.\n"
+      "Exit code 1 if a cycle allocates, if the solver fails or if it is slower than asked for.");
+  std::string config = HJT_SOURCE_CONFIG_DIR;
+  double duration = 5.0;
+  double least_speed = 0.0;
+  bool json = false;
+  app.add_option("--config-dir", config, "directory of the configuration");
+  app.add_option("--duration", duration, "simulated time measured, per scene [s]")->check(CLI::Range(1e-3, 1e4));
+  app.add_option("--least-speed", least_speed, "times real time that every scene must reach, by processor time")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_flag("--json", json, "one JSON document on stdout and nothing else there");
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Result> results;
+  try
+  {
+    const hjt::Parameters parameters = readParameters(config);
+    for (const Scene& scene : SCENES)
+    {
+      results.push_back(measure(parameters, scene, duration));
+    }
+  }
+  catch (const hjt::InputError& error)
+  {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  json ? printJson(results) : printTable(results);
+  const bool good =
+      std::all_of(results.begin(), results.end(),
+                  [&](const Result& result)
+                  { return result.allocations == 0 && result.solver_failures == 0 && result.one_core >= least_speed; });
+  return good ? 0 : 1;
+}

@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the demo's torque profile as a bag: start, run, load step, reverse, stop, as stamped commands."""
+import sys
+
+import numpy as np
+import rosbag
+import rospy
+from sensor_msgs.msg import JointState
+
+NAMESPACE = "/joint_twin"
+JOINT = "shoulder_pan_joint"  # as config/joints/base.yaml names it
+RATE = 125.0                  # of a UR5's controller [Hz]
+START_STAMP = 1.0             # stamps start here: zero would mean 'now' to ROS [s]
+
+# (time [s], torque [N.m]), straight lines between. Friction takes about 0.2 N.m of the motor, the load 1/101 of its own.
+MOTOR_TORQUE = [(0.0, 0.0), (0.4, 0.0), (0.5, 0.42), (0.9, 0.42), (1.0, 0.26), (2.4, 0.26), (2.5, 0.68), (3.6, 0.68),
+                (3.7, 0.10), (3.9, -0.42), (4.5, -0.42), (4.6, -0.26), (6.6, -0.26), (6.7, 0.0), (8.0, 0.0)]
+LOAD_TORQUE = [(0.0, 0.0), (2.4, 0.0), (2.5, 40.0), (3.6, 40.0), (3.7, 0.0), (8.0, 0.0)]
+
+
+def message(stamp, torque):
+    effort = JointState(name=[JOINT], effort=[torque])
+    effort.header.stamp = stamp
+    return effort
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: {sys.argv[0]} OUT.bag")
+    times = np.arange(0.0, MOTOR_TORQUE[-1][0], 1.0 / RATE)
+    with rosbag.Bag(sys.argv[1], "w") as bag:
+        for time in times:
+            stamp = rospy.Time.from_sec(START_STAMP + time)
+            for topic, points in (("command", MOTOR_TORQUE), ("load", LOAD_TORQUE)):
+                torque = float(np.interp(time, *zip(*points)))
+                bag.write(f"{NAMESPACE}/{topic}", message(stamp, torque), stamp)
+
+
+if __name__ == "__main__":
+    main()

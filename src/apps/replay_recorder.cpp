@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <ros/ros.h>
+#include <rosbag/view.h>
+#include <topic_tools/shape_shifter.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
+
+namespace
+{
+using topic_tools::ShapeShifter;
+
+/// Every topic of the bag that is played, and everything the twin puts out beside them.
+std::set<std::string> topicsToRecord(const std::string& played_bag, const std::string& twin_namespace)
+{
+  std::set<std::string> topics{ "/diagnostics" };
+  const rosbag::Bag bag(played_bag, rosbag::bagmode::Read);
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  {
+    topics.insert(ros::names::append("/", connection->topic));
+  }
+  for (const std::string& topic : hjt::outputTopics(twin_namespace))
+  {
+    topics.insert(topic);
+  }
+  return topics;
+}
+
+/// Records given topics, each message at the time it comes. What `rosbag record` cannot: its queues of 100 messages lose
+/// joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it looks for
+/// topics only once the clock runs, and misses what came first. Here queues have no bound.
+class TopicRecorder
+{
+public:
+  TopicRecorder(const std::set<std::string>& topics, const std::string& path) : writer_(path)
+  {
+    for (const std::string& topic : topics)
+    {
+      constexpr std::uint32_t NO_BOUND = 0;
+      subscribers_.push_back(node_.subscribe<ShapeShifter>(
+          topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { write(topic, *message); },
+          ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+    }
+  }
+
+  void close() { writer_.close(); }
+
+private:
+  void write(const std::string& topic, const ShapeShifter& message)
+  {
+    // Before the clock has started there is no time to record at, and a bag takes none before the epoch.
+    const ros::Time now = ros::Time::now();
+    if (!now.isZero())
+    {
+      writer_.write(topic, hjt::fromRosTime(now), message);
+    }
+  }
+
+  hjt::BagWriter writer_;
+  ros::NodeHandle node_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+void record(const std::set<std::string>& topics, const std::string& path, bool force)
+{
+  if (!force && std::filesystem::exists(path))
+  {
+    throw hjt::InputError(path + " exists already and is not overwritten without --force");
+  }
+  TopicRecorder recorder(topics, path);
+  ros::spin();
+  recorder.close();
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "replay_recorder");
+  // roscpp catches SIGINT only; either ends the recording with the bag closed.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  CLI::App app("Records the topics of a bag being played, and everything the twin puts out beside them");
+  std::string played_bag;
+  std::string output_bag;
+  std::string twin_namespace = "/joint_twin";
+  bool force = false;
+  app.add_option("played", played_bag, "the bag being played")->required()->check(CLI::ExistingFile);
+  app.add_option("output", output_bag, "the bag to write")->required();
+  app.add_option("--joint-namespace", twin_namespace, "of the twin's topics")->capture_default_str();
+  app.add_flag("--force", force, "overwrite an existing output");
+  CLI11_PARSE(app, argc, argv);
+  try
+  {
+    record(topicsToRecord(played_bag, twin_namespace), output_bag, force);
+  }
+  catch (const std::exception& error)
+  {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
+  return 0;
+}

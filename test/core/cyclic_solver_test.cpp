@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/cyclic_solver.hpp"
+
+#include <limits>
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "random_ring.hpp"
+#include "ring_fixture.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+using TwoColumns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index columns, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> value(-1.0, 1.0);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index, Eigen::Index) { return value(random); });
+}
+
+/// Symmetric, cyclic block-tridiagonal, positive definite by dominance; with a cup.
+RingTangent randomTangent(int teeth, std::mt19937& random)
+{
+  RingTangent tangent(teeth);
+  tangent.setZero();
+  for (int p = 0; p < tangent.pairs(); ++p)
+  {
+    const Block4 block = randomMatrix(4, 4, random);
+    tangent.diagonal[p] = block * block.transpose() + 9.0 * Block4::Identity();
+    tangent.upper[p] = randomMatrix(4, 4, random);
+  }
+  tangent.cup_direction = randomMatrix(2 * teeth, 1, random);
+  tangent.cup_stiffness = 3.0;
+  return tangent;
+}
+
+/// Against a dense solver with pivoting, within what the condition of the matrix lets any solver know.
+void expectSolution(const RingTangent& tangent, std::mt19937& random)
+{
+  constexpr double ROUNDINGS = 200.0;  // that may add up; the elimination pivots within blocks only
+  const int teeth = 2 * tangent.pairs();
+  const Eigen::MatrixXd dense = denseTangent(tangent);
+  CyclicSolver solver(teeth);
+  ASSERT_TRUE(solver.factor(tangent));
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(dense);
+  const Eigen::MatrixXd inverse = lu.inverse();
+  const double condition = inverse.cwiseAbs().rowwise().sum().maxCoeff() * dense.cwiseAbs().rowwise().sum().maxCoeff();
+  const double tolerance = ROUNDINGS * std::numeric_limits<double>::epsilon() * condition;
+  ASSERT_LT(tolerance, 1e-3) << "the test says nothing: condition " << condition;
+
+  const Eigen::VectorXd load = randomMatrix(2 * teeth, 1, random);
+  const Eigen::VectorXd expected = lu.solve(load);
+  Eigen::VectorXd x = load;
+  solver.solve<1>(x);
+  EXPECT_LT((x - expected).lpNorm<Eigen::Infinity>(), tolerance * expected.lpNorm<Eigen::Infinity>()) << teeth;
+
+  const TwoColumns loads = randomMatrix(2 * teeth, 2, random);
+  const TwoColumns both = lu.solve(loads);
+  TwoColumns y = loads;
+  solver.solve<2>(y);
+  EXPECT_LT((y - both).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
+}
+
+class CyclicSolverOfSize : public testing::TestWithParam<int>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Teeth, CyclicSolverOfSize, testing::Values(8, 10, 12, 50, 102, 200, 400));
+
+TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRandomTangents)
+{
+  constexpr unsigned SEED = 41;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  expectSolution(randomTangent(GetParam(), random), random);
+}
+
+TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRingTangents)
+{
+  constexpr unsigned SEED = 42;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  const RingModel model(shippedParameters({ "gear.teeth_flexspline=" + std::to_string(GetParam()),
+                                            "gear.teeth_circular_spline=" + std::to_string(GetParam() + 2) }));
+  // Pressed well into a wave generator of larger mean radius than the ring: every tooth in contact, K regular.
+  const DrivePosition position{ 0.3, 0.003, model.gear.wave_amplitude };
+  RingShape shape = model.restShape(position);
+  pressOnWaveGenerator(model.rest, position, 1e-3, shape);
+  shape.points *= 1.0 - 2e-5;
+  shape.updateGeometry();
+  RingForces forces(shape.teeth());
+  RingTangent tangent(shape.teeth());
+  model.forces(shape, position, forces);
+  model.tangent(shape, position, forces, tangent);
+  expectSolution(tangent, random);
+}
+
+TEST(CyclicSolver, AgreesWithADenseSolverAtEquilibriumUnderLoad)
+{
+  constexpr unsigned SEED = 43;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  const Parameters parameters = shippedParameters();
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, parameters.solver);
+  ASSERT_TRUE(ring.insert({ 0.2, 0.0, parameters.gear.wave_amplitude }).ok());
+  ASSERT_TRUE(ring.moveTo({ 0.2, -2e-3, parameters.gear.wave_amplitude }).ok());
+  RingTangent tangent(model.rest.teeth());
+  model.tangent(ring.shape(), ring.position(), ring.forces(), tangent);
+  expectSolution(tangent, random);
+  // With next to no cup only the wave generator and a few teeth keep the ring from turning.
+  tangent.cup_stiffness *= 1e-6;
+  expectSolution(tangent, random);
+}
+
+TEST(CyclicSolver, SaysWhenThereIsNoSolution)
+{
+  constexpr unsigned SEED = 44;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  CyclicSolver solver(20);
+  const RingTangent good = randomTangent(20, random);
+  EXPECT_TRUE(solver.factor(good));
+
+  RingTangent zero(20);
+  zero.setZero();
+  EXPECT_FALSE(solver.factor(zero));
+  for (const int pair : { 0, 4, 8, 9 })
+  {
+    // A tooth nothing holds.
+    RingTangent loose = good;
+    loose.diagonal[pair].setZero();
+    loose.upper[pair].setZero();
+    loose.upper[(pair + 9) % 10].setZero();
+    loose.cup_direction.segment<4>(4 * pair).setZero();
+    EXPECT_FALSE(solver.factor(loose)) << pair;
+    for (const double bad : { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+    {
+      RingTangent spoilt = good;
+      spoilt.diagonal[pair](1, 2) = bad;
+      EXPECT_FALSE(solver.factor(spoilt)) << pair;
+      spoilt = good;
+      spoilt.upper[pair](3, 0) = bad;
+      EXPECT_FALSE(solver.factor(spoilt)) << pair;
+    }
+  }
+  // The failures have left nothing behind.
+  EXPECT_TRUE(solver.factor(good));
+}
+}  // namespace
+}  // namespace hjt

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "element_under_test.hpp"
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "random_ring.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+TEST(RimTension, IsTheGradientOfItsEnergy)
+{
+  const RingModel model(shippedParameters());
+  RandomRing ring(1);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  for (int k = 0; k < 4; ++k)
+  {
+    SCOPED_TRACE("shape " + std::to_string(k));
+    ring.draw(model, shape, position);
+    expectGradientAndTangent(tensionOf(model), shape, position);
+  }
+}
+
+TEST(RimTension, HasTheEnergyOfItsSprings)
+{
+  const Parameters parameters = shippedParameters();
+  const RingModel model(parameters);
+  RandomRing ring(2);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  ring.draw(model, shape, position);
+  const double rest = (model.rest.points().segment<2>(2) - model.rest.points().head<2>()).norm();
+  double energy = 0.0;
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const double length = (shape.points.segment<2>(2 * shape.next(i)) - shape.points.segment<2>(2 * i)).norm();
+    energy += 0.5 * parameters.ring.tension_stiffness * (length - rest) * (length - rest);
+    EXPECT_NEAR(model.tension.tension(shape, i), parameters.ring.tension_stiffness * (length - rest), 1e-6);
+  }
+  EXPECT_NEAR(tensionOf(model).forces(shape, position).energy, energy, 1e-12 * energy);
+}
+
+TEST(RimTension, ACutSegmentPullsNoLonger)
+{
+  RingModel model(shippedParameters());
+  model.tension.stiffness()[7] = 0.0;
+  RandomRing ring(3);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  ring.draw(model, shape, position);
+  expectGradientAndTangent(tensionOf(model), shape, position);
+  EXPECT_EQ(model.tension.tension(shape, 7), 0.0);
+}
+
+class RimBendingLaws : public testing::TestWithParam<std::string>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Both, RimBendingLaws, testing::Values("absolute", "curvature"));
+
+TEST_P(RimBendingLaws, IsTheGradientOfItsEnergy)
+{
+  RingModel model(shippedParameters({ "ring.bending_law=" + GetParam() }));
+  RandomRing ring(4);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  for (int k = 0; k < 4; ++k)
+  {
+    SCOPED_TRACE("shape " + std::to_string(k));
+    ring.draw(model, shape, position);
+    expectGradientAndTangent(bendingOf(model), shape, position);
+    // A crack: every tooth its own stiffness, one without any.
+    model.bending.stiffness()[10 * k] = k == 0 ? 0.0 : 100.0 * k;
+  }
+}
+
+TEST_P(RimBendingLaws, HasTheEnergyOfItsLaw)
+{
+  const Parameters parameters = shippedParameters({ "ring.bending_law=" + GetParam() });
+  const RingModel model(parameters);
+  RandomRing ring(5);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  ring.draw(model, shape, position);
+  std::vector<double> turn(shape.teeth());
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const Eigen::Vector2d now = shape.points.segment<2>(2 * shape.next(i)) - shape.points.segment<2>(2 * i);
+    const double rest = (i + 0.5) * model.rest.pitchAngle() + 0.5 * PI;
+    turn[i] = std::remainder(std::atan2(now.y(), now.x()) - rest, TWO_PI);
+  }
+  double energy = 0.0;
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const double angle = GetParam() == "absolute" ? turn[i] : turn[i] - turn[shape.previous(i)];
+    energy += 0.5 * parameters.ring.bending_stiffness * angle * angle;
+  }
+  EXPECT_NEAR(bendingOf(model).forces(shape, position).energy, energy, 1e-9 * energy);
+}
+
+/// Smoothing of the contacts: the exact law and a ramp as wide as the penetrations, so that all its branches are met.
+class WaveGeneratorContactNormal : public testing::TestWithParam<std::string>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Smoothing, WaveGeneratorContactNormal, testing::Values("0.0", "20.0e-6"));
+
+TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergy)
+{
+  const Parameters parameters = shippedParameters({ "contact.smoothing=" + GetParam() });
+  const RingModel model(parameters);
+  const ElementUnderTest contact = contactOf(model);
+  RandomRing ring(6);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  int open = 0;
+  int ramp = 0;
+  int full = 0;
+  for (int k = 0; k < 12;)
+  {
+    ring.draw(model, shape, position);
+    const Eigen::ArrayXd depth = contact.forces(shape, position).contact_depth.array();
+    // No tooth so near a kink of the law that a difference would straddle it.
+    const double width = parameters.contact.smoothing;
+    if (std::min(depth.abs().minCoeff(), (depth - width).abs().minCoeff()) < 1e-8)
+    {
+      continue;
+    }
+    SCOPED_TRACE("shape " + std::to_string(k++));
+    open += static_cast<int>((depth < 0.0).count());
+    ramp += static_cast<int>((depth > 0.0 && depth < width).count());
+    full += static_cast<int>((depth > std::max(width, 0.0)).count());
+    expectGradientAndTangent(contact, shape, position);
+  }
+  EXPECT_GT(open, 100);
+  EXPECT_GT(full, 100);
+  EXPECT_EQ(ramp > 100, parameters.contact.smoothing > 0.0);
+}
+
+TEST(WaveGeneratorContact, PolarLawIsThatOfTheThesis)
+{
+  const Parameters parameters = thesisParameters();
+  const RingModel model(parameters);
+  RandomRing ring(7);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  ring.draw(model, shape, position);
+  const RingForces forces = contactOf(model).forces(shape, position);
+  const double a = parameters.gear.flexspline_inner_radius + position.wave_amplitude;
+  const double b = parameters.gear.flexspline_inner_radius - position.wave_amplitude;
+  const Eigen::VectorXd own = turned(shape.points, -position.wave_generator_angle);
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const Eigen::Vector2d point = own.segment<2>(2 * i);
+    const double psi = std::atan2(point.y(), point.x());
+    const double alpha = std::atan2(a * a * point.y(), b * b * point.x());
+    const Eigen::Vector2d normal(std::cos(alpha), std::sin(alpha));
+    const double depth = (Eigen::Vector2d(a * std::cos(psi), b * std::sin(psi)) - point).dot(normal);
+    // Depths are rounded to some 1e-17 m, times the stiffness.
+    EXPECT_NEAR(forces.contact_force[i], parameters.contact.stiffness * std::max(depth, 0.0), 1e-8);
+    const double turn = alpha + position.wave_generator_angle;
+    EXPECT_NEAR(forces.contact_normal[2 * i], std::cos(turn), 1e-12);
+    EXPECT_NEAR(forces.contact_normal[2 * i + 1], std::sin(turn), 1e-12);
+  }
+}
+
+class CupTorsionRanges : public testing::TestWithParam<double>
+{
+};
+// Mean rotations [rad] on every slope of the law: the shipped breakpoints lie at 0.4516e-3 and 1.1316e-3 rad.
+INSTANTIATE_TEST_SUITE_P(BothSigns, CupTorsionRanges, testing::Values(0.3e-3, -0.3e-3, 0.8e-3, -0.8e-3, 5e-3, -5e-3, 0.3));
+
+TEST_P(CupTorsionRanges, IsTheGradientOfItsEnergy)
+{
+  const RingModel model(shippedParameters());
+  RingShape shape(model.rest.teeth());
+  DrivePosition position{ 0.4, 0.1, 0.35e-3 };
+  pressOnWaveGenerator(model.rest, position, GetParam(), shape);
+  std::mt19937 random(8);
+  shake(30e-6, random, shape);
+  ASSERT_NEAR(model.cup.meanRotation(shape), GetParam(), 1e-4);
+  expectGradientAndTangent(cupOf(model), shape, position);
+}
+
+TEST(CupTorsion, FollowsItsTableOnBothSides)
+{
+  const Parameters parameters = shippedParameters();
+  const RingModel model(parameters);
+  const auto& k = parameters.cup.torsion_stiffness;
+  const auto& t = parameters.cup.torsion_breakpoints;
+  const double first = t[0] / k[0];
+  const double second = first + (t[1] - t[0]) / k[1];
+  for (const double sign : { 1.0, -1.0 })
+  {
+    // Products and sums of a few terms: rounding only.
+    EXPECT_NEAR(model.cup.torque(sign * 0.5 * first), sign * 0.5 * t[0], 1e-12);
+    EXPECT_NEAR(model.cup.torque(sign * first), sign * t[0], 1e-12);
+    EXPECT_NEAR(model.cup.torque(sign * 0.5 * (first + second)), sign * 0.5 * (t[0] + t[1]), 1e-12);
+    EXPECT_NEAR(model.cup.torque(sign * second), sign * t[1], 1e-12);
+    EXPECT_NEAR(model.cup.torque(sign * (second + 1e-3)), sign * (t[1] + 1e-3 * k[2]), 1e-12);
+    EXPECT_EQ(model.cup.stiffness(sign * 0.9 * first), k[0]);
+    EXPECT_EQ(model.cup.stiffness(sign * 1.1 * first), k[1]);
+    EXPECT_EQ(model.cup.stiffness(sign * 1.1 * second), k[2]);
+  }
+  EXPECT_EQ(model.cup.torque(0.0), 0.0);
+  EXPECT_EQ(model.cup.storedEnergy(0.0), 0.0);
+}
+
+TEST(CupTorsion, StoresTheIntegralOfItsTorque)
+{
+  const RingModel model(shippedParameters());
+  constexpr int STEPS = 3000;
+  const double step = 3e-3 / STEPS;
+  double energy = 0.0;
+  for (int i = 0; i < STEPS; ++i)
+  {
+    energy += step * model.cup.torque((i + 0.5) * step);
+    // The midpoint rule is exact but in the two steps with a kink: slope change times step^2 / 8 each.
+    ASSERT_NEAR(model.cup.storedEnergy((i + 1) * step), energy, 2 * 19e3 * step * step / 8);
+    ASSERT_EQ(model.cup.storedEnergy(-(i + 1) * step), model.cup.storedEnergy((i + 1) * step));
+  }
+}
+
+/// What is common to all elements: laws that resist nothing at rest, and know no left and right.
+class AnyElement : public testing::TestWithParam<std::string>
+{
+protected:
+  AnyElement() : model_(shippedParameters({ "ring.bending_law=" + std::string(absolute() ? "absolute" : "curvature") })) {}
+
+  static bool absolute() { return GetParam() == "absolute bending"; }
+
+  ElementUnderTest element() const
+  {
+    return GetParam() == "tension" ? tensionOf(model_) :
+           GetParam() == "contact" ? contactOf(model_) :
+           GetParam() == "cup"     ? cupOf(model_) :
+           GetParam() == "mesh"    ? meshOf(model_) :
+                                     bendingOf(model_);
+  }
+
+  RingModel model_;
+};
+INSTANTIATE_TEST_SUITE_P(All, AnyElement,
+                         testing::Values("tension", "absolute bending", "curvature bending", "contact", "cup", "mesh"));
+
+TEST_P(AnyElement, DoesNothingAtRest)
+{
+  const DrivePosition position;
+  const RingForces forces = element().forces(model_.restShape(position), position);
+  // Points rounded to some 1e-17 m against the stiffest spring, 5e9 N/m; angles to 1e-16 rad over a pitch, 1 mm.
+  EXPECT_LT(allForces(forces).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_LT(forces.energy, 1e-15);
+}
+
+TEST_P(AnyElement, MirroredShapeGivesMirroredForces)
+{
+  RandomRing ring(9);
+  RingShape shape(model_.rest.teeth());
+  DrivePosition position;
+  for (int k = 0; k < 10; ++k)
+  {
+    ring.draw(model_, shape, position);
+    RingShape mirror(shape.teeth());
+    mirror.points = mirrored(shape.points);
+    mirror.updateGeometry();
+    for (int i = 0; i < shape.teeth(); ++i)
+    {
+      const int spaces = model_.gear.teeth_circular_spline;
+      mirror.space[(shape.teeth() - i) % shape.teeth()] = (spaces - shape.space[i]) % spaces;
+    }
+    const RingForces forces = element().forces(shape, position);
+    const RingForces other = element().forces(
+        mirror, { -position.wave_generator_angle, -position.output_angle, position.wave_amplitude });
+    // Rounding of the coordinates (4e-18 m) against 1e-6 ... 1e-4 m of displacement.
+    EXPECT_LT(relativeError(mirrored(forces.teeth), other.teeth), 1e-9);
+    EXPECT_NEAR(forces.energy, other.energy, 1e-9 * forces.energy);
+    EXPECT_NEAR(forces.wave_generator_torque, -other.wave_generator_torque,
+                1e-9 * (std::abs(other.wave_generator_torque) + forces.contact_force.sum() * 1e-3));
+    EXPECT_NEAR(forces.output_torque, -other.output_torque, 1e-9 * (1.0 + std::abs(other.output_torque)));
+  }
+}
+
+TEST_P(AnyElement, ChangesUnderARigidTurnOnlyIfItIsHeldByTheHousing)
+{
+  const bool grounded = GetParam() == "cup" || absolute();
+  RandomRing ring(10);
+  RingShape shape(model_.rest.teeth());
+  DrivePosition position;
+  for (const double angle : { 1e-3, -0.7, 2.0, PI })
+  {
+    ring.draw(model_, shape, position);
+    const RingForces forces = element().forces(shape, position);
+    RingShape moved = shape;
+    moved.points = turned(shape.points, angle);
+    moved.updateGeometry();
+    const RingForces after = element().forces(
+        moved, { position.wave_generator_angle + angle, position.output_angle + angle, position.wave_amplitude });
+    if (grounded)
+    {
+      EXPECT_GT(relativeError(turned(forces.teeth, angle), after.teeth), 1e-3) << angle;
+      EXPECT_GT(std::abs(after.energy - forces.energy), 1e-3 * forces.energy) << angle;
+      continue;
+    }
+    EXPECT_LT(relativeError(turned(forces.teeth, angle), after.teeth), 1e-9) << angle;
+    EXPECT_NEAR(after.energy, forces.energy, 1e-9 * forces.energy) << angle;
+    EXPECT_NEAR(after.wave_generator_torque, forces.wave_generator_torque,
+                1e-9 * (1.0 + std::abs(forces.wave_generator_torque)));
+    EXPECT_NEAR(after.output_torque, forces.output_torque, 1e-9 * (1.0 + std::abs(forces.output_torque)));
+    // So no torque is left on the whole: ring, wave generator and circular spline together.
+    double torque = forces.wave_generator_torque + forces.output_torque;
+    for (int i = 0; i < shape.teeth(); ++i)
+    {
+      torque += shape.points[2 * i] * forces.teeth[2 * i + 1] - shape.points[2 * i + 1] * forces.teeth[2 * i];
+    }
+    EXPECT_NEAR(torque, 0.0, 1e-12 * forces.teeth.lpNorm<1>());
+  }
+}
+}  // namespace
+}  // namespace hjt

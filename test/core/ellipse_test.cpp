@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/gear/ellipse.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Eccentric angle of the closest point: the best of a fine scan, then bisection of the slope of the distance [rad].
+double closestByScan(double a, double b, double x, double y)
+{
+  constexpr int SAMPLES = 2000;
+  const auto distance = [&](double t) { return std::hypot(a * std::cos(t) - x, b * std::sin(t) - y); };
+  const auto slope = [&](double t) {
+    return -(a * std::cos(t) - x) * a * std::sin(t) + (b * std::sin(t) - y) * b * std::cos(t);
+  };
+  double best = 0.0;
+  for (int i = 1; i < SAMPLES; ++i)
+  {
+    const double t = TWO_PI * i / SAMPLES;
+    best = distance(t) < distance(best) ? t : best;
+  }
+  double low = best - TWO_PI / SAMPLES;
+  double high = best + TWO_PI / SAMPLES;
+  for (int i = 0; i < 60; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (slope(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+void expectFoot(double a, double b, double x, double y, double angle_tolerance)
+{
+  const EllipseFoot foot = closestPoint(a, b, x, y);
+  const double t = closestByScan(a, b, x, y);
+  const double nx = b * std::cos(t);
+  const double ny = a * std::sin(t);
+  const double size = std::hypot(nx, ny);
+  EXPECT_NEAR(std::hypot(foot.normal_x, foot.normal_y), 1.0, 1e-14);
+  EXPECT_NEAR(foot.normal_x, nx / size, angle_tolerance);
+  EXPECT_NEAR(foot.normal_y, ny / size, angle_tolerance);
+  EXPECT_NEAR(foot.curvature, a * b / (size * size * size), 10.0 * angle_tolerance * foot.curvature);
+  const double distance = std::hypot(a * std::cos(t) - x, b * std::sin(t) - y);
+  const bool inside = x * x / (a * a) + y * y / (b * b) < 1.0;
+  // To second order in the error of the angle, and rounding of the coordinates.
+  EXPECT_NEAR(foot.depth, inside ? distance : -distance, a * angle_tolerance * angle_tolerance + 1e-15 * a);
+}
+
+TEST(ClosestPointOfEllipse, AgreesWithBruteForceOnTheWaveGenerator)
+{
+  constexpr unsigned SEED = 31;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  std::uniform_real_distribution<double> angle(-PI, PI);
+  std::uniform_real_distribution<double> exponent(-8.0, -3.3);
+  const GearParameters gear = shippedParameters().gear;
+  const double a = gear.flexspline_inner_radius + gear.wave_amplitude;
+  const double b = gear.flexspline_inner_radius - gear.wave_amplitude;
+  for (int k = 0; k < 400; ++k)
+  {
+    // Up to half a millimetre inside and outside.
+    const double depth = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent(random));
+    const double t = angle(random);
+    // The Newton step stops where its error is below 0.02 (1e-4)^2 = 2e-10 rad.
+    expectFoot(a, b, (a - depth) * std::cos(t), (b - depth) * std::sin(t), 2e-10);
+  }
+}
+
+TEST(ClosestPointOfEllipse, IsExactOnTheAxes)
+{
+  for (const double side : { 1.0, -1.0 })
+  {
+    const EllipseFoot major = closestPoint(31e-3, 30e-3, side * 30.9e-3, 0.0);
+    EXPECT_EQ(major.normal_x, side);
+    EXPECT_EQ(major.normal_y, 0.0);
+    EXPECT_NEAR(major.depth, 0.1e-3, 1e-17);
+    EXPECT_NEAR(major.curvature, 31e-3 / (30e-3 * 30e-3), 1e-12);
+    const EllipseFoot minor = closestPoint(31e-3, 30e-3, 0.0, side * 30.1e-3);
+    EXPECT_EQ(minor.normal_x, 0.0);
+    EXPECT_EQ(minor.normal_y, side);
+    EXPECT_NEAR(minor.depth, -0.1e-3, 1e-17);
+    EXPECT_NEAR(minor.curvature, 30e-3 / (31e-3 * 31e-3), 1e-12);
+  }
+}
+
+TEST(ClosestPointOfEllipse, OfACircleIsRadial)
+{
+  for (const double radius : { 0.1, 0.9, 1.0, 1.5, 40.0 })
+  {
+    const EllipseFoot foot = closestPoint(1.0, 1.0, radius * 0.6, radius * 0.8);
+    EXPECT_NEAR(foot.normal_x, 0.6, 1e-15);
+    EXPECT_NEAR(foot.normal_y, 0.8, 1e-15);
+    EXPECT_NEAR(foot.depth, 1.0 - radius, 1e-15 * (1.0 + radius));
+    EXPECT_NEAR(foot.curvature, 1.0, 1e-15);
+  }
+}
+
+TEST(ClosestPointOfEllipse, HoldsForASlimEllipseToo)
+{
+  // Semi-axes 2 : 1, far from any wave generator; the distances stay below the smallest radius of curvature, b^2/a.
+  for (int k = 0; k < 100; ++k)
+  {
+    const double t = TWO_PI * k / 100 + 0.01;
+    const double depth = k % 2 == 0 ? 0.05 : -0.2;
+    const double nx = std::cos(t);
+    const double ny = 2.0 * std::sin(t);
+    const double size = std::hypot(nx, ny);
+    expectFoot(2.0, 1.0, 2.0 * std::cos(t) - depth * nx / size, std::sin(t) - depth * ny / size, 2e-8);
+  }
+}
+
+TEST(ClosestPointOfEllipse, StaysFiniteFarAway)
+{
+  constexpr unsigned SEED = 32;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  std::uniform_real_distribution<double> angle(-PI, PI);
+  std::uniform_real_distribution<double> exponent(-12.0, 6.0);
+  for (int k = 0; k < 2000; ++k)
+  {
+    const double t = angle(random);
+    const double radius = std::pow(10.0, exponent(random));
+    const EllipseFoot foot = closestPoint(31e-3, 30.3e-3, radius * std::cos(t), radius * std::sin(t));
+    ASSERT_TRUE(std::isfinite(foot.depth) && std::isfinite(foot.curvature)) << radius << " " << t;
+    ASSERT_NEAR(std::hypot(foot.normal_x, foot.normal_y), 1.0, 1e-12) << radius << " " << t;
+    if (radius > 31e-3)
+    {
+      // Outside, whichever point is taken for the foot: not closer than the major, not farther than the minor axis.
+      ASSERT_NEAR(-foot.depth, radius - 30.65e-3, 0.351e-3 + 1e-12 * radius) << radius << " " << t;
+    }
+  }
+}
+}  // namespace
+}  // namespace hjt

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/gear/ring_shape.hpp"
+#include "harmonic_joint_twin/gear/tooth_ring.hpp"
+
+namespace hjt
+{
+/// Shape of an inextensible ring pressed on the wave generator, to leading order in w (thesis ch. 6):
+/// radially w cos 2a, along the rim -(w/2) sin 2a, a the angle from the major axis; turned by `twist` as a whole.
+inline void pressOnWaveGenerator(const ToothRing& rest, const DrivePosition& position, double twist, RingShape& shape)
+{
+  const double radius = rest.points().head<2>().norm();
+  for (int i = 0; i < rest.teeth(); ++i)
+  {
+    const double psi = i * rest.pitchAngle();
+    const double around = 2.0 * (psi + twist - position.wave_generator_angle);
+    const double r = radius + position.wave_amplitude * std::cos(around);
+    const double angle = psi + twist - 0.5 * position.wave_amplitude / radius * std::sin(around);
+    shape.points.segment<2>(2 * i) << r * std::cos(angle), r * std::sin(angle);
+  }
+  shape.updateGeometry();
+}
+
+/// Moves every coordinate of every tooth point by up to `amplitude` [m].
+inline void shake(double amplitude, std::mt19937& random, RingShape& shape)
+{
+  std::uniform_real_distribution<double> by(-amplitude, amplitude);
+  for (Eigen::Index k = 0; k < shape.points.size(); ++k)
+  {
+    shape.points[k] += by(random);
+  }
+  shape.updateGeometry();
+}
+
+/// The tooth part of a tangent, the cup's included, as a full matrix.
+inline Eigen::MatrixXd denseTangent(const RingTangent& tangent)
+{
+  const int pairs = tangent.pairs();
+  Eigen::MatrixXd dense = tangent.cup_stiffness * tangent.cup_direction * tangent.cup_direction.transpose();
+  for (int p = 0; p < pairs; ++p)
+  {
+    const int q = (p + 1) % pairs;
+    dense.block<4, 4>(4 * p, 4 * p) += tangent.diagonal[p];
+    dense.block<4, 4>(4 * p, 4 * q) += tangent.upper[p];
+    dense.block<4, 4>(4 * q, 4 * p) += tangent.upper[p].transpose();
+  }
+  return dense;
+}
+
+/// x, y of tooth i turned by `angle`, for every tooth.
+inline Eigen::VectorXd turned(const Eigen::VectorXd& vectors, double angle)
+{
+  Eigen::VectorXd result(vectors.size());
+  for (Eigen::Index k = 0; k < vectors.size(); k += 2)
+  {
+    result[k] = std::cos(angle) * vectors[k] - std::sin(angle) * vectors[k + 1];
+    result[k + 1] = std::sin(angle) * vectors[k] + std::cos(angle) * vectors[k + 1];
+  }
+  return result;
+}
+
+/// Mirrored at the x axis: tooth i takes the place of tooth N - i.
+inline Eigen::VectorXd mirrored(const Eigen::VectorXd& vectors)
+{
+  const Eigen::Index n = vectors.size() / 2;
+  Eigen::VectorXd result(vectors.size());
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    const Eigen::Index j = (n - i) % n;
+    result[2 * j] = vectors[2 * i];
+    result[2 * j + 1] = -vectors[2 * i + 1];
+  }
+  return result;
+}
+}  // namespace hjt

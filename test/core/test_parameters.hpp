@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// The shipped configuration, overlays ("thesis_insertion", "joints/elbow") and `section.key=value` over it.
+inline Parameters shippedParameters(const std::vector<std::string>& assignments = {},
+                                    const std::vector<std::string>& overlays = {})
+{
+  ParameterMap map;
+  std::vector<std::string> files{ "gear", "elements", "joint", "solver", "sensors", "health", "node" };
+  files.insert(files.end(), overlays.begin(), overlays.end());
+  for (const std::string& file : files)
+  {
+    readYamlFile(HJT_TEST_CONFIG_DIR "/" + file + ".yaml", map);
+  }
+  for (const std::string& assignment : assignments)
+  {
+    readAssignment(assignment, map);
+  }
+  return parseParameters(map);
+}
+
+/// The laws of the thesis' insertion; its contact law unless another is given.
+inline Parameters thesisParameters(const std::vector<std::string>& assignments = {})
+{
+  return shippedParameters(assignments, { "thesis_insertion" });
+}
+}  // namespace hjt

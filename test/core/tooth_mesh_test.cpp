@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "element_under_test.hpp"
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "random_ring.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// The mesh once more, tooth by tooth and with trigonometry, from the text of the law.
+struct ToothByDefinition
+{
+  double xi;
+  double zeta;
+  double clearance;
+  double depth;
+  double energy{};
+  double normal_force{};
+
+  ToothByDefinition(const Parameters& parameters, const RingShape& shape, const DrivePosition& position, int i)
+  {
+    const GearParameters& gear = parameters.gear;
+    const MeshParameters& mesh = parameters.mesh;
+    const double mid_height = gear.rim_thickness + 0.5 * gear.tooth_height_flexspline;
+    const Eigen::Vector2d chord =
+        shape.points.segment<2>(2 * shape.next(i)) - shape.points.segment<2>(2 * shape.previous(i));
+    const double outward = std::atan2(chord.y(), chord.x()) - 0.5 * PI;
+    const double x = shape.points[2 * i] + mid_height * std::cos(outward);
+    const double y = shape.points[2 * i + 1] + mid_height * std::sin(outward);
+    const double axis = position.output_angle + TWO_PI * shape.space[i] / gear.teeth_circular_spline;
+    xi = -x * std::sin(axis) + y * std::cos(axis);
+    zeta = x * std::cos(axis) + y * std::sin(axis);
+    clearance = mesh.flank_clearance + (gear.flexspline_inner_radius + mid_height + gear.wave_amplitude - zeta) *
+                                           std::tan(mesh.flank_angle);
+    depth = zeta + 0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline;
+    const double u = std::clamp(depth / mesh.engagement_depth, 0.0, 1.0);
+    const double engaged = u * u * (3.0 - 2.0 * u);
+    const double cos_flank = std::cos(mesh.flank_angle);
+    for (const double side : { 1.0, -1.0 })
+    {
+      const double pen = std::max(side * xi - clearance, 0.0);
+      const double width = mesh.smoothing;
+      const bool ramp = pen < width;
+      const double force = ramp ? 0.5 * pen * pen / width : pen - 0.5 * width;
+      const double work = ramp ? pen * pen * pen / (6.0 * width) :
+                                 0.5 * pen * (pen - width) + width * width / 6.0;
+      energy += mesh.stiffness * cos_flank * cos_flank * engaged * work;
+      normal_force += side * mesh.stiffness * cos_flank * engaged * force;
+    }
+  }
+
+  bool touches() const { return depth > 0.0 && std::abs(xi) > clearance; }
+
+  /// Distance to the nearest kink of the law, in xi or zeta [m].
+  double margin(const MeshParameters& mesh) const
+  {
+    const double pen = std::abs(xi) - clearance;
+    const double at_flank = std::min(std::abs(pen), std::abs(pen - mesh.smoothing));
+    const double other_flank = std::min(std::abs(-std::abs(xi) - clearance), std::abs(xi));
+    return std::min({ at_flank, other_flank, std::abs(depth), std::abs(depth - mesh.engagement_depth) });
+  }
+};
+
+class Mesh : public testing::TestWithParam<std::string>
+{
+protected:
+  /// A shape no tooth of which stands so near a kink of the law that a difference would straddle it.
+  void drawSmooth(RandomRing& ring)
+  {
+    double margin = 0.0;
+    while (margin < 2e-8)
+    {
+      ring.draw(model_, shape_, position_);
+      margin = 1.0;
+      for (int i = 0; i < shape_.teeth(); ++i)
+      {
+        margin = std::min(margin, tooth(i).margin(parameters_.mesh));
+      }
+    }
+  }
+
+  ToothByDefinition tooth(int i) const { return { parameters_, shape_, position_, i }; }
+
+  Parameters parameters_ = shippedParameters({ "mesh.smoothing=" + GetParam() });
+  RingModel model_{ parameters_ };
+  RingShape shape_{ model_.rest.teeth() };
+  DrivePosition position_;
+};
+INSTANTIATE_TEST_SUITE_P(Smoothing, Mesh, testing::Values("0.0", "20.0e-6"));
+
+TEST_P(Mesh, IsTheGradientOfItsEnergy)
+{
+  RandomRing ring(20);
+  int leading = 0;
+  int trailing = 0;
+  int entering = 0;
+  int ramp = 0;
+  int open = 0;
+  for (int k = 0; k < 12; ++k)
+  {
+    SCOPED_TRACE("shape " + std::to_string(k));
+    drawSmooth(ring);
+    for (int i = 0; i < shape_.teeth(); ++i)
+    {
+      const ToothByDefinition at = tooth(i);
+      open += at.touches() ? 0 : 1;
+      leading += at.touches() && at.xi > 0.0 ? 1 : 0;
+      trailing += at.touches() && at.xi < 0.0 ? 1 : 0;
+      entering += at.touches() && at.depth < parameters_.mesh.engagement_depth ? 1 : 0;
+      ramp += at.touches() && std::abs(at.xi) - at.clearance < parameters_.mesh.smoothing ? 1 : 0;
+    }
+    expectGradientAndTangent(meshOf(model_), shape_, position_);
+  }
+  // The shapes have been everywhere the law has a branch.
+  EXPECT_GT(open, 100);
+  EXPECT_GT(leading, 50);
+  EXPECT_GT(trailing, 50);
+  EXPECT_GT(entering, 5);
+  EXPECT_EQ(ramp > 5, parameters_.mesh.smoothing > 0.0);
+}
+
+TEST_P(Mesh, HasTheEnergyAndTheForcesOfItsLaw)
+{
+  RandomRing ring(21);
+  for (int k = 0; k < 50; ++k)
+  {
+    ring.draw(model_, shape_, position_);
+    const RingForces forces = meshOf(model_).forces(shape_, position_);
+    double energy = 0.0;
+    for (int i = 0; i < shape_.teeth(); ++i)
+    {
+      const ToothByDefinition at = tooth(i);
+      energy += at.energy;
+      // Offsets agree to some 1e-17 m, times the stiffness 5e7 N/m; the smoothstep's slope adds 1e-4 of the force a um.
+      ASSERT_NEAR(forces.flank_force[i], at.normal_force, 1e-8 + 1e-11 * std::abs(at.normal_force)) << i;
+    }
+    EXPECT_NEAR(forces.energy, energy, 1e-11 * energy);
+  }
+}
+
+TEST_P(Mesh, EveryToothHasItsOwnStiffnessAndClearance)
+{
+  RandomRing ring(22);
+  drawSmooth(ring);
+  for (int i = 0; i < shape_.teeth(); ++i)
+  {
+    model_.mesh.stiffness()[i] *= ring.uniform(0.0, 1.0);
+  }
+  model_.mesh.stiffness()[3] = 0.0;  // broken off
+  expectGradientAndTangent(meshOf(model_), shape_, position_);
+  // Enough clearance takes any tooth out of contact.
+  model_.mesh.clearance().setConstant(1e-3);
+  const RingForces forces = meshOf(model_).forces(shape_, position_);
+  EXPECT_EQ(forces.energy, 0.0);
+  EXPECT_EQ(allForces(forces).lpNorm<Eigen::Infinity>(), 0.0);
+}
+
+TEST_P(Mesh, PairsTeethOutOfContactWithTheNearestSpaceAndNoOthers)
+{
+  RandomRing ring(23);
+  const double space = TWO_PI / parameters_.gear.teeth_circular_spline;
+  int changed = 0;
+  int kept_in_contact = 0;
+  for (int k = 0; k < 50; ++k)
+  {
+    ring.draw(model_, shape_, position_);
+    // The circular spline turned on under the standing ring, by less than a space or by many.
+    position_.output_angle += k % 2 == 0 ? ring.uniform(-0.02, 0.02) : ring.uniform(-PI, PI);
+    std::vector<char> touched;
+    for (int i = 0; i < shape_.teeth(); ++i)
+    {
+      touched.push_back(tooth(i).touches() ? 1 : 0);
+    }
+    const std::vector<int> before = shape_.space;
+    model_.mesh.pairNearest(position_, shape_);
+    for (int i = 0; i < shape_.teeth(); ++i)
+    {
+      if (touched[i] != 0)
+      {
+        ++kept_in_contact;
+        ASSERT_EQ(shape_.space[i], before[i]);
+        continue;
+      }
+      changed += shape_.space[i] == before[i] ? 0 : 1;
+      ASSERT_GE(shape_.space[i], 0);
+      ASSERT_LT(shape_.space[i], parameters_.gear.teeth_circular_spline);
+      const ToothByDefinition at = tooth(i);
+      ASSERT_LE(std::abs(std::atan2(at.xi, at.zeta)), 0.5 * space * (1.0 + 1e-9)) << i;
+    }
+  }
+  EXPECT_GT(changed, 1000);
+  EXPECT_GT(kept_in_contact, 10);
+}
+
+TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
+{
+  RandomRing ring(24);
+  ring.draw(model_, shape_, position_);
+  Eigen::VectorXd speeds(2 * shape_.teeth());
+  for (Eigen::Index k = 0; k < speeds.size(); ++k)
+  {
+    speeds[k] = ring.uniform(-1.0, 1.0);
+  }
+  const double output_speed = 7.0;
+  const double beta = parameters_.mesh.flank_angle;
+  const auto placeAfter = [&](double time, int i) {
+    RingShape moved = shape_;
+    moved.points += time * speeds;
+    moved.updateGeometry();
+    DrivePosition position = position_;
+    position.output_angle += time * output_speed;
+    const ToothByDefinition at(parameters_, moved, position, i);
+    return Eigen::Vector2d(at.xi, at.zeta);
+  };
+  constexpr double TIME = 1e-8;  // s
+  for (int i = 0; i < shape_.teeth(); ++i)
+  {
+    const Eigen::Vector2d speed = (placeAfter(TIME, i) - placeAfter(-TIME, i)) / (2.0 * TIME);
+    for (const bool leading : { true, false })
+    {
+      // The leading flank's normal leans inwards: along it zeta grows as xi falls by tan(beta).
+      const double along = std::cos(beta) * speed.y() + (leading ? -1.0 : 1.0) * std::sin(beta) * speed.x();
+      // Rounding of the place, 4e-18 m, over 2e-8 s; speeds are of order 1 m/s.
+      EXPECT_NEAR(model_.mesh.slidingSpeed(shape_, position_, i, speeds, output_speed, leading), along, 1e-7);
+    }
+  }
+}
+
+TEST(MeshGeometry, IsConjugateAtTheMajorAxis)
+{
+  // The local pitch of the deformed teeth at mid-height and the pitch of the circular spline, both as angles
+  // (leading order in w0; thesis geometry): 9.905e-3 against 9.901e-3.
+  const Parameters parameters = shippedParameters();
+  const RingModel model(parameters);
+  const double w0 = parameters.gear.wave_amplitude;
+  const DrivePosition position{ 0.0, 0.0, w0 };
+  RingShape shape = model.restShape(position);
+  pressOnWaveGenerator(model.rest, position, 0.0, shape);
+  const ToothByDefinition first(parameters, shape, position, 1);
+  const ToothByDefinition second(parameters, shape, position, 2);
+  // Teeth move over their spaces by xi a tooth: nearly nothing beside a tooth, where the undeformed ring would have
+  // 2 pi (1/200 - 1/202) r_m = 9.9 um.
+  EXPECT_LT(std::abs(second.xi - first.xi), 1.0e-6);
+  EXPECT_EQ(shape.space[1], 1);
+  EXPECT_EQ(shape.space[2], 2);
+}
+}  // namespace
+}  // namespace hjt
