@@ -6,7 +6,7 @@ import numpy as np
 import rosbag
 
 HEALTH_TYPE = "harmonic_joint_twin/Health"
-PROGRESS_EVERY = 5000  # messages
+FEW = 20000  # messages are read in a moment
 
 
 class Series:
@@ -89,15 +89,15 @@ class Recording:
         stamps = {name: [] for name in ROWS}
         rows = {name: [] for name in ROWS}
         total = sum(self.counts.values())
-        shows_progress = sys.stderr.isatty() or total > PROGRESS_EVERY
+        tenth = max(1, total // 10)
         for number, (topic, message, _) in enumerate(bag.read_messages(list(topics)), start=1):
             name = topics[topic]
             row = ROWS[name](message, self.joint)
             if row is not None:
                 stamps[name].append(message.header.stamp.to_nsec())
                 rows[name].append(row)
-            if shows_progress and number % PROGRESS_EVERY == 0:
-                print(f"  read {number} of {total} messages", file=sys.stderr, flush=True)
+            if total > FEW and number % tenth == 0:
+                print(f"  reading {10 * (number // tenth)} %", file=sys.stderr, flush=True)
         start = min(stamps[name][0] for name in OUTPUTS)
         self.series = {name: to_series(stamps[name], rows[name], start) for name in ROWS}
         # The circular spline has two teeth more than the flexspline, and turns with the output.

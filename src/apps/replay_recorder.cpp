@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <ros/ros.h>
 #include <rosbag/view.h>
 #include <topic_tools/shape_shifter.h>
+#include <CLI/CLI.hpp>
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/bag_inputs.hpp"

@@ -86,15 +86,24 @@ Indicator TurnWindow::kinematicError() const noexcept
     return {};
   }
   const double end = torsionAt(0);
-  const double slope = (torsionAt(marks_per_turn_) - end) / static_cast<double>(marks_per_turn_);
-  double lowest = 0.0;  // the ends lie on the line
+  const double slope = (end - torsionAt(marks_per_turn_)) / static_cast<double>(marks_per_turn_);
+  // The ring's store is two straight pieces: up to the newest mark, and from the oldest of this turn to the end.
+  double lowest = 0.0;  // the ends of the turn lie on the line
   double highest = 0.0;
-  for (std::int64_t i = 1; i < marks_per_turn_; ++i)
+  const auto widen = [&](Eigen::Index first, Eigen::Index count, Eigen::Index newest_place)
   {
-    const double error = torsionAt(i) - end - slope * static_cast<double>(i);
-    lowest = std::min(lowest, error);
-    highest = std::max(highest, error);
-  }
+    if (count > 0)
+    {
+      const double line_start = end + slope * static_cast<double>(first - newest_place);
+      const double line_end = line_start + slope * static_cast<double>(count - 1);
+      const auto errors = torsions_.segment(first, count) - Eigen::VectorXd::LinSpaced(count, line_start, line_end);
+      lowest = std::min(lowest, errors.minCoeff());
+      highest = std::max(highest, errors.maxCoeff());
+    }
+  };
+  const Eigen::Index oldest = newest_ + 2;  // one mark, older than this turn, lies between
+  widen(std::max<Eigen::Index>(0, oldest - torsions_.size()), newest_ + 1 - std::max<Eigen::Index>(0, oldest - torsions_.size()), newest_);
+  widen(oldest, torsions_.size() - oldest, newest_ + torsions_.size());
   return { true, highest - lowest };
 }
 

@@ -83,8 +83,8 @@ harmonic_joint_twin::ContactForces makeContactForces(const JointNames& names, in
   harmonic_joint_twin::ContactForces message;
   message.header.frame_id = names.joint;
   const auto size = static_cast<std::size_t>(teeth);
-  for (auto* array : { &message.wave_generator_force, &message.rim_tension, &message.bending_force,
-                       &message.mesh_force, &message.tooth_x, &message.tooth_y })
+  for (auto* array : { &message.wave_generator_force, &message.rim_tension, &message.bending_force, &message.mesh_force,
+                       &message.tooth_x, &message.tooth_y })
   {
     array->resize(size);
   }

@@ -158,7 +158,8 @@ Verdict Diagnostics::judgeInput() const
   const double age = toSeconds(snapshot_.loop.clock - snapshot_.loop.last_command);
   if (age > command_timeout_ || timeouts_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" };
+    return { DiagnosticStatus::WARN,
+             "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" };
   }
   if (age < -AHEAD_WARNING)
   {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/input_subscribers.hpp"
 
-#include <boost/function.hpp>
 #include <ros/console.h>
 #include <ros/transport_hints.h>
+#include <boost/function.hpp>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
@@ -30,17 +30,17 @@ ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, boost::funct
 InputSubscribers::InputSubscribers(ros::NodeHandle& node, const JointNames& names, Inbox& inbox)
   : names_(names), inbox_(inbox)
 {
-  using std_msgs::Float64;
   using sensor_msgs::JointState;
-  motor_torque_subscriber_ = subscribe<Float64>(node, topics::MOTOR_TORQUE_COMMAND, [this](const Float64& message) {
-    receiveNow(InputKind::MOTOR_TORQUE, message);
-  });
+  using std_msgs::Float64;
+  motor_torque_subscriber_ =
+      subscribe<Float64>(node, topics::MOTOR_TORQUE_COMMAND,
+                         [this](const Float64& message) { receiveNow(InputKind::MOTOR_TORQUE, message); });
   load_torque_subscriber_ = subscribe<Float64>(
       node, topics::LOAD_TORQUE, [this](const Float64& message) { receiveNow(InputKind::LOAD_TORQUE, message); });
-  command_subscriber_ = subscribe<JointState>(node, topics::COMMAND,
-                                              [this](const JointState& message) { receiveCommand(message); });
-  load_subscriber_ = subscribe<JointState>(node, topics::LOAD,
-                                           [this](const JointState& message) { receiveLoad(message); });
+  command_subscriber_ =
+      subscribe<JointState>(node, topics::COMMAND, [this](const JointState& message) { receiveCommand(message); });
+  load_subscriber_ =
+      subscribe<JointState>(node, topics::LOAD, [this](const JointState& message) { receiveLoad(message); });
 }
 
 void InputSubscribers::receiveNow(InputKind kind, const std_msgs::Float64& message)

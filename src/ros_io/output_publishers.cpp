@@ -27,9 +27,9 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
   , joint_states_(node, topics::JOINT_STATES, SMALL_MESSAGE_SLOTS,
                   makeJointStates(JointNames(twin.parameters().joint.name)))
   , encoders_(node, topics::ENCODERS, SMALL_MESSAGE_SLOTS, makeEncoders(JointNames(twin.parameters().joint.name)))
-  , contact_forces_(node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
-                    makeContactForces(JointNames(twin.parameters().joint.name),
-                                      twin.parameters().gear.teeth_flexspline))
+  , contact_forces_(
+        node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
+        makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
   , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
   , thread_([this] { run(); })
 {
@@ -65,10 +65,12 @@ void OutputPublishers::offer(Twin& twin) noexcept
   }
   if (isWanted(Output::CONTACT_FORCES, contact_forces_.isHeard(), outputs.stamp))
   {
-    contact_forces_.write([&](auto& message) {
-      twin.toothForces(tooth_forces_);
-      fillContactForces(outputs, tooth_forces_, message);
-    });
+    contact_forces_.write(
+        [&](auto& message)
+        {
+          twin.toothForces(tooth_forces_);
+          fillContactForces(outputs, tooth_forces_, message);
+        });
   }
   if (isWanted(Output::HEALTH, health_.isHeard(), outputs.stamp))
   {

@@ -31,8 +31,7 @@ Stamp makePeriod(const char* key, double publish_rate, double solver_rate)
 OutputSchedule::OutputSchedule(const Parameters& parameters)
   : periods_{ makePeriod("publish.joint_states_rate", parameters.publish.joint_states_rate, parameters.solver.rate),
               makePeriod("publish.encoders_rate", parameters.publish.encoders_rate, parameters.solver.rate),
-              makePeriod("publish.contact_forces_rate", parameters.publish.contact_forces_rate,
-                         parameters.solver.rate),
+              makePeriod("publish.contact_forces_rate", parameters.publish.contact_forces_rate, parameters.solver.rate),
               makePeriod("publish.health_rate", parameters.publish.health_rate, parameters.solver.rate) }
 {
 }

@@ -41,7 +41,8 @@ std::vector<double> readNumbers(const std::string& key, XmlRpcValue& list)
     }
     else
     {
-      throw ParameterError(key + ": entry " + std::to_string(i) + " of the list on the parameter server is not a number");
+      throw ParameterError(key + ": entry " + std::to_string(i) +
+                           " of the list on the parameter server is not a number");
     }
   }
   return numbers;

@@ -10,7 +10,7 @@
 #include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
 #include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
 #include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
-#include "support/allocation_count.hpp"
+#include "test/support/allocation_count.hpp"
 
 namespace hjt
 {

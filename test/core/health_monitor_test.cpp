@@ -9,7 +9,7 @@
 
 #include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
-#include "support/allocation_count.hpp"
+#include "test/support/allocation_count.hpp"
 
 namespace hjt
 {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "harmonic_joint_twin/twin/input_queue.hpp"
-#include "support/allocation_count.hpp"
+#include "test/support/allocation_count.hpp"
 
 namespace hjt
 {

@@ -40,15 +40,14 @@ void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
                        harmonic_joint_twin::ContactForces& message) noexcept;
 
 harmonic_joint_twin::Health makeHealth(const JointNames& names);
-void fillHealth(const JointOutputs& outputs, const HealthReport& report,
-                harmonic_joint_twin::Health& message) noexcept;
+void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmonic_joint_twin::Health& message) noexcept;
 
 /// What was found in a stamped torque message.
 enum class EffortStatus
 {
   FOUND,
-  UNKNOWN_JOINT,   ///< no entry for this joint
-  MISSING_EFFORT   ///< the joint is named, but the effort array does not reach it
+  UNKNOWN_JOINT,  ///< no entry for this joint
+  MISSING_EFFORT  ///< the joint is named, but the effort array does not reach it
 };
 
 /// Motor torque [N.m] in a stamped command: the effort of the joint or, if only that is named, of its motor.

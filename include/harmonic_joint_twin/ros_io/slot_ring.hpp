@@ -19,7 +19,8 @@ public:
   Message* claim() noexcept
   {
     const std::size_t written = written_.load(std::memory_order_relaxed);
-    return written - read_.load(std::memory_order_acquire) == slots_.size() ? nullptr : &slots_[written % slots_.size()];
+    const bool full = written - read_.load(std::memory_order_acquire) == slots_.size();
+    return full ? nullptr : &slots_[written % slots_.size()];
   }
 
   /// Writer: hands over the claimed slot.

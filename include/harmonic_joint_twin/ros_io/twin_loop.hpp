@@ -24,17 +24,17 @@ enum class LoopState : std::uint8_t
 struct LoopStatus
 {
   LoopState state{};
-  Stamp clock{};                  ///< time read last [ns]
-  Stamp twin_stamp{};             ///< simulated instant [ns]
-  Stamp lag{};                    ///< how far the twin is behind the instant it should have reached [ns]
-  Stamp largest_lag{};            ///< since the last start or reset [ns]
+  Stamp clock{};        ///< time read last [ns]
+  Stamp twin_stamp{};   ///< simulated instant [ns]
+  Stamp lag{};          ///< how far the twin is behind the instant it should have reached [ns]
+  Stamp largest_lag{};  ///< since the last start or reset [ns]
   std::uint64_t cycles{};
-  std::uint64_t overruns{};       ///< cycles whose work took longer than their period
-  std::uint64_t clock_jumps{};    ///< times the clock jumped back
-  std::uint64_t resets{};         ///< resets on request
+  std::uint64_t overruns{};          ///< cycles whose work took longer than their period
+  std::uint64_t clock_jumps{};       ///< times the clock jumped back
+  std::uint64_t resets{};            ///< resets on request
   std::uint64_t waiting_overflow{};  ///< inputs dropped because too many came before the start
-  bool command_seen{};            ///< a motor torque command has come since the last start or reset
-  Stamp last_command{};           ///< latest stamp of one [ns]
+  bool command_seen{};               ///< a motor torque command has come since the last start or reset
+  Stamp last_command{};              ///< latest stamp of one [ns]
   JointOutputs outputs;
   TwinCounters counters;
 };
@@ -46,7 +46,7 @@ struct LoopStatus
 class TwinLoop
 {
 public:
-  using Clock = std::function<Stamp()>;       ///< now [ns]; 0 while there is no time yet
+  using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
   using AfterStep = std::function<void(Twin&)>;  ///< called at every simulated instant; must not wait or allocate
 
   /// Starts the thread.

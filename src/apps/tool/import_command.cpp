@@ -45,7 +45,7 @@ struct ImportOptions : CommonOptions
   std::string out;
   double gain{ DEFAULT_GAIN };
   std::optional<double> ratio;
-  double start_time{ toSeconds(SIMULATION_EPOCH) };
+  double start_time{ static_cast<double>(SIMULATION_EPOCH) / 1e9 };
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 

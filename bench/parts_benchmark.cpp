@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Time of the parts of a cycle, to see where it goes. Options are Google Benchmark's.
+#include <cstdint>
+
+#include <benchmark/benchmark.h>
+
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/health/health_monitor.hpp"
+#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "test/core/test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+const Parameters& parameters()
+{
+  static const Parameters PARAMETERS = shippedParameters();
+  return PARAMETERS;
+}
+
+/// Where the drive stands, unloaded, when the motor stands at `motor_angle`.
+DrivePosition positionAt(double motor_angle)
+{
+  return { motor_angle, motor_angle / nominalRatio(parameters().gear), parameters().gear.wave_amplitude };
+}
+
+/// Ring equilibrium, the motor turning by state.range(0) mrad from one solve to the next.
+void solveRing(benchmark::State& state)
+{
+  const RingModel model(parameters());
+  RingEquilibrium ring(model, parameters().solver);
+  double motor_angle = 0.0;
+  bool good = ring.insert(positionAt(motor_angle)).ok();
+  std::int64_t iterations = 0;
+  for (auto _ : state)
+  {
+    motor_angle += 1e-3 * static_cast<double>(state.range(0));
+    const SolveStatus status = ring.moveTo(positionAt(motor_angle));
+    good = good && status.ok();
+    iterations += status.iterations;
+  }
+  if (!good)
+  {
+    state.SkipWithError("the ring did not converge");
+  }
+  state.counters["newton"] = benchmark::Counter(static_cast<double>(iterations), benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(solveRing)->Arg(1)->Arg(10)->Arg(30);
+
+void ringForces(benchmark::State& state)
+{
+  const RingModel model(parameters());
+  const DrivePosition position = positionAt(0.3);
+  RingEquilibrium ring(model, parameters().solver);
+  benchmark::DoNotOptimize(ring.insert(position).ok());
+  RingForces forces = ring.forces();
+  for (auto _ : state)
+  {
+    model.forces(ring.shape(), position, forces);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(ringForces);
+
+/// A twin that has run for a quarter of a second under load.
+Twin runningTwin()
+{
+  Twin twin(parameters());
+  twin.commandLoadTorque(0, 20.0);
+  for (Stamp until = twin.stepLength(); until < 250'000'000; until += twin.stepLength())
+  {
+    twin.commandMotorTorque(until, 0.5);
+    twin.step(until);
+  }
+  return twin;
+}
+
+void toothForces(benchmark::State& state)
+{
+  const Twin twin = runningTwin();
+  ToothForces forces = twin.makeToothForces();
+  for (auto _ : state)
+  {
+    twin.toothForces(forces);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(toothForces);
+
+void encoders(benchmark::State& state)
+{
+  const Twin twin = runningTwin();
+  for (auto _ : state)
+  {
+    benchmark::DoNotOptimize(twin.encoders());
+  }
+}
+BENCHMARK(encoders);
+
+void healthReport(benchmark::State& state)
+{
+  Twin twin = runningTwin();
+  if (!twin.health().kinematic_error_valid)
+  {
+    state.SkipWithError("the report is not complete");
+  }
+  for (auto _ : state)
+  {
+    benchmark::DoNotOptimize(twin.health());
+  }
+}
+BENCHMARK(healthReport);
+
+/// The motor turning by state.range(0) mrad from one sample to the next.
+void healthUpdate(benchmark::State& state)
+{
+  HealthMonitor monitor(parameters().health, parameters().gear);
+  HealthSample sample;
+  sample.motor_velocity = 100.0;
+  sample.output_velocity = 1.0;
+  sample.motor_torque = 0.5;
+  for (auto _ : state)
+  {
+    sample.stamp += 100000;
+    sample.motor_angle += 1e-3 * static_cast<double>(state.range(0));
+    sample.output_angle = sample.motor_angle / 101.0;
+    sample.joint_torque = 40.0 + sample.motor_angle;
+    monitor.update(sample);
+  }
+}
+BENCHMARK(healthUpdate)->Arg(1)->Arg(10)->Arg(30);
+}  // namespace
+}  // namespace hjt
+
+BENCHMARK_MAIN();

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "ring_fixture.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+// The rounding of a coordinate, some 1e-17 m, against 5e9 N/m: forces are not to be had better than to some 1e-7 N.
+const std::string TIGHT = "solver.force_tolerance=5.0e-7";
+
+// Newton keeps its factors while they serve, so the rates may belong to a shape a little way back; measured 2.5e-4.
+constexpr double SENSITIVITY = 1e-3;
+
+/// The shipped ring in equilibrium; positions are given without the wave amplitude, which stays full.
+class Ring : public testing::Test
+{
+protected:
+  explicit Ring(const std::vector<std::string>& assignments = { TIGHT })
+    : parameters_(shippedParameters(assignments)), model_(parameters_), ring_(model_, parameters_.solver)
+  {
+    EXPECT_TRUE(ring_.insert(at(0.0, 0.0)).ok());
+  }
+
+  DrivePosition at(double wave_generator_angle, double output_angle) const
+  {
+    return { wave_generator_angle, output_angle, parameters_.gear.wave_amplitude };
+  }
+
+  SolveStatus moveTo(double wave_generator_angle, double output_angle)
+  {
+    return ring_.moveTo(at(wave_generator_angle, output_angle));
+  }
+
+  double pitch() const { return TWO_PI / parameters_.gear.teeth_flexspline; }
+  double ratio() const { return nominalRatio(parameters_.gear); }
+
+  Parameters parameters_;
+  RingModel model_;
+  RingEquilibrium ring_;
+};
+
+TEST_F(Ring, IsInEquilibriumWhereItSaysSo)
+{
+  for (const double twist : { 0.0, -0.5e-3, 3e-3, -6e-3 })
+  {
+    const SolveStatus status = moveTo(0.3, 0.3 / ratio() + twist);
+    ASSERT_TRUE(status.ok()) << twist;
+    RingShape shape = ring_.shape();
+    shape.updateGeometry();
+    RingForces forces(shape.teeth());
+    model_.forces(shape, ring_.position(), forces);
+    EXPECT_LE(forces.teeth.lpNorm<Eigen::Infinity>(), parameters_.solver.force_tolerance);
+    EXPECT_EQ(forces.energy, ring_.forces().energy);
+    EXPECT_EQ(forces.output_torque, ring_.forces().output_torque);
+    EXPECT_EQ(ring_.position().output_angle, 0.3 / ratio() + twist);
+  }
+}
+
+TEST_F(Ring, IsTwoFoldSymmetric)
+{
+  ASSERT_TRUE(moveTo(0.3, 0.3 / ratio() - 2e-3).ok());
+  const int half = model_.rest.teeth() / 2;
+  for (int i = 0; i < half; ++i)
+  {
+    // Equilibrium to 5e-7 N over the softest contact in the ring, some 1e5 N/m.
+    EXPECT_NEAR((ring_.shape().points.segment<2>(2 * i) + ring_.shape().points.segment<2>(2 * (i + half))).norm(), 0.0, 5e-12);
+    EXPECT_NEAR(ring_.forces().flank_force[i], ring_.forces().flank_force[i + half], 1e-4) << i;
+    EXPECT_NEAR(ring_.forces().contact_force[i], ring_.forces().contact_force[i + half], 1e-4) << i;
+  }
+}
+
+TEST_F(Ring, HasNoLeftAndRight)
+{
+  ASSERT_TRUE(moveTo(0.01, -2e-3).ok());
+  const Eigen::VectorXd points = ring_.shape().points;
+  const RingForces forces = ring_.forces();
+  ASSERT_TRUE(moveTo(-0.01, 2e-3).ok());
+  EXPECT_LT((mirrored(points) - ring_.shape().points).lpNorm<Eigen::Infinity>(), 5e-12);
+  EXPECT_NEAR(ring_.forces().energy, forces.energy, 1e-9 * forces.energy);
+  EXPECT_NEAR(ring_.forces().output_torque, -forces.output_torque, 1e-6 * std::abs(forces.output_torque));
+  EXPECT_NEAR(ring_.forces().wave_generator_torque, -forces.wave_generator_torque,
+              1e-6 * std::abs(forces.wave_generator_torque));
+}
+
+/// After one tooth pitch the state is the old one, turned by a pitch and renumbered.
+void expectShifted(const Eigen::VectorXd& points, const RingForces& forces, const RingEquilibrium& ring, int pitches)
+{
+  const int n = ring.shape().teeth();
+  const Eigen::VectorXd expected = turned(points, pitches * TWO_PI / n);
+  for (int i = 0; i < n; ++i)
+  {
+    const int j = ((i + pitches) % n + n) % n;
+    ASSERT_LT((expected.segment<2>(2 * i) - ring.shape().points.segment<2>(2 * j)).norm(), 5e-12) << i;
+    ASSERT_NEAR(forces.flank_force[i], ring.forces().flank_force[j], 1e-4) << i;
+  }
+  EXPECT_NEAR(ring.forces().energy, forces.energy, 1e-9 * forces.energy);
+  EXPECT_NEAR(ring.forces().output_torque, forces.output_torque, 1e-6 * std::abs(forces.output_torque));
+}
+
+TEST_F(Ring, RepeatsEveryToothPitchReachedInSmallSteps)
+{
+  constexpr int STEPS = 37;
+  ASSERT_TRUE(moveTo(0.1, 0.1 / ratio() - 1.5e-3).ok());
+  const Eigen::VectorXd points = ring_.shape().points;
+  const RingForces forces = ring_.forces();
+  for (int i = 1; i <= STEPS; ++i)
+  {
+    const double turn = pitch() * i / STEPS;
+    ASSERT_TRUE(moveTo(0.1 + turn, (0.1 + turn) / ratio() - 1.5e-3).ok());
+  }
+  expectShifted(points, forces, ring_, 1);
+}
+
+TEST_F(Ring, RepeatsEveryToothPitchReachedAtOnce)
+{
+  ASSERT_TRUE(moveTo(0.1, 0.1 / ratio() - 1.5e-3).ok());
+  const Eigen::VectorXd points = ring_.shape().points;
+  const RingForces forces = ring_.forces();
+  int total = 0;
+  for (const int pitches : { 1, -1, 7, -30, 150 })
+  {
+    total += pitches;
+    const double angle = 0.1 + total * pitch();
+    ASSERT_TRUE(moveTo(angle, angle / ratio() - 1.5e-3).ok()) << pitches;
+    expectShifted(points, forces, ring_, total);
+  }
+}
+
+TEST_F(Ring, GivesTheSameStateByEveryPath)
+{
+  ASSERT_TRUE(moveTo(0.2, 0.2 / ratio() - 1e-3).ok());
+  const Eigen::VectorXd points = ring_.shape().points;
+  const double energy = ring_.forces().energy;
+  for (const double way : { 0.25, 0.19, 0.1, -0.3 })
+  {
+    ASSERT_TRUE(moveTo(way, way / ratio() + 1e-3).ok());
+    ASSERT_TRUE(moveTo(0.2, 0.2 / ratio() - 1e-3).ok());
+    EXPECT_LT((points - ring_.shape().points).lpNorm<Eigen::Infinity>(), 5e-12) << way;
+    EXPECT_NEAR(ring_.forces().energy, energy, 1e-9 * energy) << way;
+  }
+  RingEquilibrium cold(model_, parameters_.solver);
+  ASSERT_TRUE(cold.insert(at(0.2, 0.2 / ratio() - 1e-3)).ok());
+  EXPECT_LT((points - cold.shape().points).lpNorm<Eigen::Infinity>(), 5e-12);
+}
+
+TEST_F(Ring, SensitivitiesAreTheRatesOfTheMovingRing)
+{
+  for (const double twist : { -0.2e-3, -1e-3, 4e-3 })
+  {
+    SCOPED_TRACE("twist " + std::to_string(twist));
+    const double angle = 0.1234;
+    const double output = angle / ratio() + twist;
+    ASSERT_TRUE(moveTo(angle - 1e-4, output).ok());
+    ASSERT_TRUE(moveTo(angle, output).ok());
+    const Eigen::VectorXd by_wave_generator = ring_.byWaveGenerator();
+    const Eigen::VectorXd by_output = ring_.byOutput();
+    const Eigen::Matrix2d stiffness = ring_.stiffness();
+    Eigen::Matrix2d numeric;
+    for (const int column : { 0, 1 })
+    {
+      // So small that no tooth comes into contact or leaves it, so large that the tolerance of the solver, 5e-7 N
+      // over 1e5 N/m, is no more than 1e-4 of the way of the points.
+      const double step = column == 0 ? 2e-5 : 5e-7;
+      const Eigen::Vector2d direction = step * Eigen::Vector2d::Unit(column);
+      ASSERT_TRUE(moveTo(angle + direction[0], output + direction[1]).ok());
+      const Eigen::VectorXd after = ring_.shape().points;
+      const Eigen::Vector2d torque_after(ring_.forces().wave_generator_torque, ring_.forces().output_torque);
+      ASSERT_TRUE(moveTo(angle - direction[0], output - direction[1]).ok());
+      const Eigen::Vector2d torque_before(ring_.forces().wave_generator_torque, ring_.forces().output_torque);
+      const Eigen::VectorXd rate = (after - ring_.shape().points) / (2.0 * step);
+      const Eigen::VectorXd& expected = column == 0 ? by_wave_generator : by_output;
+      EXPECT_LT((rate - expected).lpNorm<Eigen::Infinity>(), SENSITIVITY * expected.lpNorm<Eigen::Infinity>());
+      numeric.col(column) = (torque_before - torque_after) / (2.0 * step);
+    }
+    EXPECT_NEAR(numeric(1, 1), stiffness(1, 1), SENSITIVITY * stiffness(1, 1));
+    EXPECT_NEAR(numeric(0, 1), stiffness(0, 1), SENSITIVITY * std::abs(stiffness(0, 1)));
+    EXPECT_NEAR(numeric(1, 0), stiffness(1, 0), SENSITIVITY * std::abs(stiffness(1, 0)));
+    // The smallest: some 1 N.m/rad, a difference of terms a hundred times larger.
+    EXPECT_NEAR(numeric(0, 0), stiffness(0, 0), SENSITIVITY * std::abs(stiffness(0, 1)));
+  }
+}
+
+TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
+{
+  // Steps as at full motor speed, 317 rad/s at 10 kHz. Newton may keep old factors, but not across a change of contacts.
+  constexpr unsigned SEED = 51;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  const Parameters parameters = shippedParameters();
+  const RingModel model(parameters);
+  const double w = parameters.gear.wave_amplitude;
+  RingEquilibrium ring(model, parameters.solver);
+  ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
+  CyclicSolver solver(model.rest.teeth());
+  RingTangent tangent(model.rest.teeth());
+  double angle = 0.0;
+  double twist = 0.0;
+  double worst = 0.0;
+  for (int k = 0; k < 6000; ++k)
+  {
+    angle += 0.0317 * part(random);
+    twist = 0.99 * (twist + 3e-4 * part(random));
+    ASSERT_TRUE(ring.moveTo({ angle, angle / nominalRatio(parameters.gear) + twist, w }).ok());
+    model.tangent(ring.shape(), ring.position(), ring.forces(), tangent);
+    ASSERT_TRUE(solver.factor(tangent));
+    Eigen::VectorXd by_output = -tangent.output;
+    solver.solve<1>(by_output);
+    const double stiffness = tangent.output_stiffness + tangent.output.dot(by_output);
+    worst = std::max(worst, std::abs(ring.stiffness()(1, 1) - stiffness) / stiffness);
+  }
+  testing::Test::RecordProperty("worst_relative_error", testing::PrintToString(worst));
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST_F(Ring, StoresTheWorkDoneOnIt)
+{
+  // Round a closed way through the plane of both angles, with teeth coming into mesh and leaving it on all sides of it:
+  // along each leg the work of the torques is what the stored energy has changed by, and in all it is nothing.
+  constexpr int STEPS = 400;
+  const std::vector<Eigen::Vector2d> corners{ { 0.0, -1e-3 }, { 0.1, 1e-3 }, { 0.08, 3e-3 }, { -0.02, -2e-3 }, { 0.0, -1e-3 } };
+  const auto angles = [&](std::size_t leg, double part) {
+    const Eigen::Vector2d corner = corners[leg] + part * (corners[leg + 1] - corners[leg]);
+    return Eigen::Vector2d(corner[0], corner[0] / ratio() + corner[1]);
+  };
+  ASSERT_TRUE(moveTo(angles(0, 0.0)[0], angles(0, 0.0)[1]).ok());
+  const double start = ring_.forces().energy;
+  double total = 0.0;
+  double throughput = 0.0;
+  for (std::size_t leg = 0; leg + 1 < corners.size(); ++leg)
+  {
+    const double before = ring_.forces().energy;
+    const Eigen::Vector2d way = angles(leg, 1.0) - angles(leg, 0.0);
+    double work = 0.0;
+    for (int i = 0; i <= STEPS; ++i)
+    {
+      const Eigen::Vector2d to = angles(leg, static_cast<double>(i) / STEPS);
+      ASSERT_TRUE(moveTo(to[0], to[1]).ok());
+      const double power = -ring_.forces().wave_generator_torque * way[0] - ring_.forces().output_torque * way[1];
+      const double weight = (i == 0 || i == STEPS ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) / (3.0 * STEPS);
+      work += weight * power;
+      throughput += weight * std::abs(power);
+    }
+    // Simpson's rule over torques with kinks where teeth touch.
+    EXPECT_NEAR(work, ring_.forces().energy - before, 1e-5 * throughput) << leg;
+    total += work;
+  }
+  EXPECT_NEAR(total, 0.0, 1e-5 * throughput);
+  EXPECT_NEAR(ring_.forces().energy, start, 1e-9 * throughput);
+}
+
+TEST(RingWithoutCircularSpline, TakesTheShapeOfThinRingTheoryForASmallWave)
+{
+  // v = -(w/2) sin 2 psi, tilt -(3 w / 2 r) sin 2 psi, to leading order in w: the relative error falls with w. The wave
+  // shrinks as far as the rim's own bending leaves it on the wave generator all round.
+  const Parameters parameters = shippedParameters({ TIGHT });
+  const double r = parameters.gear.flexspline_inner_radius;
+  RingModel model(parameters);
+  model.meshed = false;
+  RingEquilibrium ring(model, parameters.solver);
+  ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  double last_error = 0.0;
+  for (const double part : { 1.0, 0.7, 0.49 })
+  {
+    const double w = part * parameters.gear.wave_amplitude;
+    ASSERT_TRUE(ring.moveTo({ 0.0, 0.0, w }).ok());
+    ASSERT_GT(ring.forces().contact_force.minCoeff(), 0.0);
+    double error = 0.0;
+    double tilt_error = 0.0;
+    for (int i = 0; i < model.rest.teeth(); ++i)
+    {
+      const double psi = i * model.rest.pitchAngle();
+      const Eigen::Vector2d point = ring.shape().points.segment<2>(2 * i);
+      const Eigen::Vector2d radial = model.rest.radial().segment<2>(2 * i);
+      const double v = radial.x() * point.y() - radial.y() * point.x();
+      error = std::max(error, std::abs(v + 0.5 * w * std::sin(2.0 * psi)) / (0.5 * w));
+      const Eigen::Vector2d chord = ring.shape().points.segment<2>(2 * ring.shape().next(i)) -
+                                    ring.shape().points.segment<2>(2 * ring.shape().previous(i));
+      // The chord stands across the radius at rest.
+      const double tilt = std::atan2(-chord.dot(radial), radial.x() * chord.y() - radial.y() * chord.x());
+      // The outward normal turns by (v - dw/dpsi) / r.
+      tilt_error = std::max(tilt_error, std::abs(tilt - 1.5 * w / r * std::sin(2.0 * psi)) / (1.5 * w / r));
+    }
+    // Of the next order, w / r; the factor is of order one.
+    EXPECT_LT(error, 0.2 * w / r);
+    EXPECT_LT(tilt_error, w / r);
+    if (last_error > 0.0)
+    {
+      EXPECT_NEAR(error / last_error, 0.7, 0.02);
+    }
+    last_error = error;
+  }
+}
+}  // namespace
+}  // namespace hjt
