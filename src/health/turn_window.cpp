@@ -19,7 +19,7 @@ TurnWindow::TurnWindow(const GearParameters& gear)
   : nominal_ratio_(nominalRatio(gear))
   , marks_per_turn_(MARKS_PER_TOOTH * gear.teeth_flexspline)
   , marks_per_radian_(static_cast<double>(marks_per_turn_) / TWO_PI)
-  , torsions_(static_cast<std::size_t>(marks_per_turn_) + 2)
+  , torsions_(Eigen::VectorXd::Zero(marks_per_turn_ + 2))
 {
 }
 
@@ -67,7 +67,7 @@ Indicator TurnWindow::transmissionRatio() const noexcept
     return {};
   }
   const double back = static_cast<double>(newest_mark_ + marks_per_turn_) - place_;
-  const auto later = static_cast<std::int64_t>(std::floor(back));
+  const auto later = static_cast<Eigen::Index>(std::floor(back));
   const double share = back - static_cast<double>(later);
   const double torsion_then = (1.0 - share) * torsionAt(later) + share * torsionAt(later + 1);
   const double motor_travel = direction_ * TWO_PI;
@@ -87,23 +87,24 @@ Indicator TurnWindow::kinematicError() const noexcept
   }
   const double end = torsionAt(0);
   const double slope = (end - torsionAt(marks_per_turn_)) / static_cast<double>(marks_per_turn_);
-  // The ring's store is two straight pieces: up to the newest mark, and from the oldest of this turn to the end.
   double lowest = 0.0;  // the ends of the turn lie on the line
   double highest = 0.0;
-  const auto widen = [&](Eigen::Index first, Eigen::Index count, Eigen::Index newest_place)
+  const auto widen = [&](Eigen::Index first, Eigen::Index count, Eigen::Index newest)
   {
-    if (count > 0)
-    {
-      const double line_start = end + slope * static_cast<double>(first - newest_place);
-      const double line_end = line_start + slope * static_cast<double>(count - 1);
-      const auto errors = torsions_.segment(first, count) - Eigen::VectorXd::LinSpaced(count, line_start, line_end);
-      lowest = std::min(lowest, errors.minCoeff());
-      highest = std::max(highest, errors.maxCoeff());
-    }
+    const double start = end + slope * static_cast<double>(first - newest);
+    const auto line = Eigen::VectorXd::LinSpaced(count, start, start + slope * static_cast<double>(count - 1));
+    const auto errors = torsions_.segment(first, count) - line;
+    lowest = std::min(lowest, errors.minCoeff());
+    highest = std::max(highest, errors.maxCoeff());
   };
-  const Eigen::Index oldest = newest_ + 2;  // one mark, older than this turn, lies between
-  widen(std::max<Eigen::Index>(0, oldest - torsions_.size()), newest_ + 1 - std::max<Eigen::Index>(0, oldest - torsions_.size()), newest_);
-  widen(oldest, torsions_.size() - oldest, newest_ + torsions_.size());
+  // The turn lies in the ring in two straight pieces; between them one mark that is older than it.
+  const Eigen::Index size = torsions_.size();
+  const Eigen::Index first = newest_ + 1 == size ? 1 : 0;
+  widen(first, newest_ + 1 - first, newest_);
+  if (newest_ + 2 < size)
+  {
+    widen(newest_ + 2, size - newest_ - 2, newest_ + size);
+  }
   return { true, highest - lowest };
 }
 
@@ -114,9 +115,8 @@ void TurnWindow::keep(double torsion) noexcept
   count_ = std::min(count_ + 1, torsions_.size());
 }
 
-double TurnWindow::torsionAt(std::int64_t marks_back) const noexcept
+double TurnWindow::torsionAt(Eigen::Index marks_back) const noexcept
 {
-  const auto back = static_cast<std::size_t>(marks_back);
-  return torsions_[newest_ >= back ? newest_ - back : newest_ + torsions_.size() - back];
+  return torsions_[newest_ >= marks_back ? newest_ - marks_back : newest_ + torsions_.size() - marks_back];
 }
 }  // namespace hjt

@@ -54,11 +54,11 @@ void checkGear(const Parameters& p, Contradictions& check)
                 { "gear.teeth_circular_spline", "gear.teeth_flexspline" },
                 "gear.teeth_circular_spline = " + std::to_string(p.gear.teeth_circular_spline) +
                     " [-] must be two more than " + flexspline);
-  check.require(p.gear.wave_amplitude < p.gear.flexspline_inner_radius,
-                { "gear.wave_amplitude", "gear.flexspline_inner_radius" },
-                "gear.wave_amplitude = " + numberText(p.gear.wave_amplitude) +
-                    " [m] must be less than gear.flexspline_inner_radius = " +
-                    numberText(p.gear.flexspline_inner_radius) + " [m]");
+  check.require(
+      p.gear.wave_amplitude < p.gear.flexspline_inner_radius, { "gear.wave_amplitude", "gear.flexspline_inner_radius" },
+      "gear.wave_amplitude = " + numberText(p.gear.wave_amplitude) +
+          " [m] must be less than gear.flexspline_inner_radius = " + numberText(p.gear.flexspline_inner_radius) +
+          " [m]");
 }
 
 void checkElements(const Parameters& p, Contradictions& check)
@@ -80,10 +80,11 @@ void checkRates(const Parameters& p, Contradictions& check)
                 "solver.rate = " + numberText(p.solver.rate) +
                     " [Hz] must make a step of whole nanoseconds, as 1000, 8000 or 10000 do");
 
-  const auto check_rate = [&](const std::string& key, double rate) {
-    check.require(divides(rate, p.solver.rate), { key, "solver.rate" },
-                  key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) +
-                      " [Hz]");
+  const auto check_rate = [&](const std::string& key, double rate)
+  {
+    check.require(
+        divides(rate, p.solver.rate), { key, "solver.rate" },
+        key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) + " [Hz]");
   };
   check_rate("publish.joint_states_rate", p.publish.joint_states_rate);
   check_rate("publish.encoders_rate", p.publish.encoders_rate);

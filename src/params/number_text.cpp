@@ -48,7 +48,8 @@ std::string numberText(double value)
 
 std::string rangeText(const Range& range)
 {
-  const auto bound = [](double value) {
+  const auto bound = [](double value)
+  {
     const bool whole = value == std::floor(value) && std::abs(value) < 1e6;
     return whole ? std::to_string(static_cast<long long>(value)) : numberText(value);
   };

@@ -262,8 +262,8 @@ private:
       return true;
     }
     errors_.push_back(configured.origin + ": " + key + " = " + valueText(configured) + " [" + unit + "] is " +
-                      (std::isfinite(value) ? "out of range" : "not a finite number") + ", allowed: " +
-                      rangeText(range) + " [" + unit + "]");
+                      (std::isfinite(value) ? "out of range" : "not a finite number") +
+                      ", allowed: " + rangeText(range) + " [" + unit + "]");
     return false;
   }
 

@@ -119,7 +119,7 @@ Value listValue(const YAML::Node& node, const std::string& origin, const std::st
     {
       const auto meant = looseNumber(element.Scalar());
       fail(origin, key + ": element '" + element.Scalar() + "' is not a number" +
-                     (meant ? " to rosparam: write " + numberText(*meant) : ""));
+                       (meant ? " to rosparam: write " + numberText(*meant) : ""));
     }
   }
   return numbers;

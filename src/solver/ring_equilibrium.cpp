@@ -51,12 +51,19 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   shape_.updateGeometry();
   by_wave_generator_.setZero();
   by_output_.setZero();
-  return moveTo(target);
+  stiffness_.setZero();
+  const SolveStatus round = solve(position_);
+  return round.ok() ? moveTo(target) : round;
 }
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
   SolveStatus total;
+  if (target == position_)
+  {
+    total.residual = residual_;
+    return total;
+  }
   const DrivePosition start = position_;
   good_shape_ = shape_;
   DrivePosition good_position = position_;
@@ -71,6 +78,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
     total.code = status.code;
     if (status.ok())
     {
+      residual_ = status.residual;
       done = next;
       good_shape_ = shape_;
       good_position = position_;

@@ -189,6 +189,18 @@ TEST_F(KinematicError, ForgetsWhatIsOlderThanATurn)
   EXPECT_NEAR(indicators().kinematic_error.value, 2e-5, 2e-5 * 1e-3);
 }
 
+TEST_F(KinematicError, DoesNotDependOnWhereTheStoreBegins)
+{
+  constexpr double AMPLITUDE = 3e-5;
+  turnTo(TWO_PI + 6.5 * MARK, 0.005, [](double angle) { return angle / RATIO + AMPLITUDE * std::sin(angle); });
+  for (int mark = 0; mark < 2 * (16 * 200 + 2); ++mark)
+  {
+    turnTo(sample_.motor_angle + MARK, 0.5 * MARK,
+           [](double angle) { return angle / RATIO + AMPLITUDE * std::sin(angle); });
+    ASSERT_NEAR(indicators().kinematic_error.value, 2 * AMPLITUDE, 2 * AMPLITUDE * 2e-5) << "mark " << mark;
+  }
+}
+
 TEST_F(KinematicError, KeepsTheLastTurnThroughALeapOfManyTurns)
 {
   update();

@@ -147,17 +147,18 @@ TEST(ShippedConfiguration, TellsUnitAndRangeOfEveryKeyAboveIt)
     }
   }
   const Parameters parameters;
-  visitFields(parameters, [&](const std::string& key, const auto&... rest) {
-    const auto expected = [&](const char* unit, const auto&, const Range& range, const char*) {
-      return "[" + std::string(unit) + "]; " + rangeText(range);
-    };
-    if constexpr (sizeof...(rest) == 4)
-    {
-      const std::size_t line = text.find(key + " ");
-      ASSERT_NE(line, std::string::npos) << key;
-      EXPECT_THAT(text.substr(line, text.find('\n', line) - line), HasSubstr(expected(rest...))) << key;
-    }
-  });
+  visitFields(parameters,
+              [&](const std::string& key, const auto&... rest)
+              {
+                const auto expected = [&](const char* unit, const auto&, const Range& range, const char*)
+                { return "[" + std::string(unit) + "]; " + rangeText(range); };
+                if constexpr (sizeof...(rest) == 4)
+                {
+                  const std::size_t line = text.find(key + " ");
+                  ASSERT_NE(line, std::string::npos) << key;
+                  EXPECT_THAT(text.substr(line, text.find('\n', line) - line), HasSubstr(expected(rest...))) << key;
+                }
+              });
 }
 
 TEST(ShippedConfiguration, OverlayWinsOverTheDefaults)
@@ -191,50 +192,54 @@ TEST(Parameters, EveryKeyIsRequired)
 TEST(Parameters, EveryRangeIsHeldAtBothEnds)
 {
   const Parameters parameters;
-  visitFields(parameters, [&](const std::string& key, const auto&... rest) {
-    if constexpr (sizeof...(rest) == 4)
-    {
-      const auto check = [&](const char* unit, const auto& value, const Range& range, const char*) {
-        std::vector<double> outside{ range.min - std::max(1.0, std::abs(range.min)), HUGE_VAL, std::nan("") };
-        if (range.max < 1e300)
+  visitFields(
+      parameters,
+      [&](const std::string& key, const auto&... rest)
+      {
+        if constexpr (sizeof...(rest) == 4)
         {
-          outside.push_back(range.max + std::max(1.0, std::abs(range.max)));
-        }
-        for (const double number : outside)
-        {
-          ParameterMap map = defaultMap();
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, int>)
+          const auto check = [&](const char* unit, const auto& value, const Range& range, const char*)
           {
-            if (!std::isfinite(number))
+            std::vector<double> outside{ range.min - std::max(1.0, std::abs(range.min)), HUGE_VAL, std::nan("") };
+            if (range.max < 1e300)
             {
-              continue;
+              outside.push_back(range.max + std::max(1.0, std::abs(range.max)));
             }
-            map[key].value = static_cast<std::int64_t>(number);
-          }
-          else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-          {
-            map[key].value = number;
-          }
-          else
-          {
-            map[key].value = std::vector<double>(value.size(), number);
-          }
-          map[key].origin = "here";
-          try
-          {
-            parseParameters(map);
-            ADD_FAILURE() << key << " accepted " << number;
-          }
-          catch (const ParameterError& error)
-          {
-            EXPECT_THAT(error.what(), AllOf(HasSubstr("here: " + key + " = "), HasSubstr("[" + std::string(unit) + "]"),
-                                            HasSubstr(rangeText(range))));
-          }
+            for (const double number : outside)
+            {
+              ParameterMap map = defaultMap();
+              if constexpr (std::is_same_v<std::decay_t<decltype(value)>, int>)
+              {
+                if (!std::isfinite(number))
+                {
+                  continue;
+                }
+                map[key].value = static_cast<std::int64_t>(number);
+              }
+              else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+              {
+                map[key].value = number;
+              }
+              else
+              {
+                map[key].value = std::vector<double>(value.size(), number);
+              }
+              map[key].origin = "here";
+              try
+              {
+                parseParameters(map);
+                ADD_FAILURE() << key << " accepted " << number;
+              }
+              catch (const ParameterError& error)
+              {
+                EXPECT_THAT(error.what(), AllOf(HasSubstr("here: " + key + " = "),
+                                                HasSubstr("[" + std::string(unit) + "]"), HasSubstr(rangeText(range))));
+              }
+            }
+          };
+          check(rest...);
         }
-      };
-      check(rest...);
-    }
-  });
+      });
 }
 
 TEST(Parameters, OutOfRangeNamesPlaceKeyValueUnitAndRange)
@@ -254,8 +259,9 @@ TEST(Parameters, NotFiniteIsRefused)
 TEST(Parameters, MisspeltKeyIsRefusedWithTheNearestOne)
 {
   const YamlFile file("motor:\n  rotor_inertai: 1.0e-4\n");
-  EXPECT_EQ(file.complaint(), file.path() + ":2: unknown parameter motor.rotor_inertai = 0.0001 "
-                                            "(did you mean motor.rotor_inertia?)");
+  EXPECT_EQ(file.complaint(), file.path() +
+                                  ":2: unknown parameter motor.rotor_inertai = 0.0001 "
+                                  "(did you mean motor.rotor_inertia?)");
   EXPECT_THAT(complaint({ "ring.wave_amplitude=0.3e-3" }), HasSubstr("did you mean gear.wave_amplitude?"));
   EXPECT_THAT(complaint({ "motor.bananas=1" }), AllOf(HasSubstr("unknown"), Not(HasSubstr("did you mean"))));
 }

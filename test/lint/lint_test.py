@@ -16,6 +16,7 @@ import launch_docs
 import layering
 import message_comments
 import project
+import readme_tables
 import spdx
 
 
@@ -138,6 +139,40 @@ class LaunchDocs(Tree):
     def test_no_doc(self):
         self.write("launch/a.launch", '<launch><arg name="bag" default=""/></launch>')
         self.assert_fault(launch_docs.check, "'bag'")
+
+
+class ReadmeTables(Tree):
+    TABLE = ["| parameter | unit |", "|---|---|", "| `gear.teeth` | - |", "| `motor.torque_limit` | N.m |"]
+
+    def check(self, root):
+        return readme_tables.check_parameters(root, self.TABLE)
+
+    def readme(self, rows):
+        self.write("README.md", "\n".join(["# A", readme_tables.PARAMETERS_BEGIN, *rows, readme_tables.PARAMETERS_END]))
+
+    def test_same_table(self):
+        self.readme(self.TABLE)
+        self.assert_clean(self.check)
+
+    def test_missing_surplus_and_order(self):
+        self.readme(self.TABLE[:3])
+        self.assert_fault(self.check, "missing", "motor.torque_limit")
+        self.readme(self.TABLE + ["| `motor.colour` | - |"])
+        self.assert_fault(self.check, "motor.colour")
+        self.readme(self.TABLE[:2] + self.TABLE[:1:-1])
+        self.assert_fault(self.check, "order")
+
+    def test_write(self):
+        self.readme([])
+        readme_tables.write_parameters(self.root, self.TABLE)
+        self.assert_clean(self.check)
+
+    def test_names_and_types(self):
+        readme = ("### Services\n\n| service | type |\n|---|---|\n| `~reset` | std_srvs/Trigger | x |\n\n"
+                  "## Next\n| `~a` | b/C |")
+        self.assertEqual(readme_tables.names_and_types(readme, "Services"), {"~reset": "std_srvs/Trigger"})
+        with self.assertRaises(ValueError):
+            readme_tables.names_and_types(readme, "Topics")
 
 
 class Format(Tree):

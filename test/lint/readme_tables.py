@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of README.md: what they say, for the checks that hold them against the code."""
+"""Tables of README.md: what they say, and the check of the parameters against the tool's own table.
+
+usage: readme_tables.py JOINT_TWIN [--write]    (--write brings README.md up to date)
+"""
+import os
 import re
 import subprocess
 import sys
@@ -40,9 +44,19 @@ def check_parameters(root, table):
     return problems if table else ["the tool shows no parameters"]
 
 
+def write_parameters(root, table):
+    path = os.path.join(root, "README.md")
+    before, rest = project.text(root, "README.md").split(PARAMETERS_BEGIN)
+    after = rest.split(PARAMETERS_END)[1]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join([before + PARAMETERS_BEGIN, *table, PARAMETERS_END]) + after)
+
+
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: readme_tables.py JOINT_TWIN")
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--write"]):
+        sys.exit(__doc__)
     said = subprocess.run([sys.argv[1], "parameters", "--markdown"], stdout=subprocess.PIPE, universal_newlines=True,
                           check=True).stdout
+    if len(sys.argv) == 3:
+        write_parameters(project.ROOT, said.strip().splitlines())
     project.run(lambda root: check_parameters(root, said.strip().splitlines()))

@@ -14,6 +14,12 @@ struct DrivePosition
   double wave_generator_angle{};  ///< [rad]
   double output_angle{};          ///< circular spline [rad]
   double wave_amplitude{};        ///< w, grows from 0 to w0 during the insertion [m]
+
+  bool operator==(const DrivePosition& other) const noexcept
+  {
+    return wave_generator_angle == other.wave_generator_angle && output_angle == other.output_angle &&
+           wave_amplitude == other.wave_amplitude;
+  }
 };
 
 /// Chord from the tooth before to the tooth after, and its outward unit normal: how a tooth is tilted.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include <Eigen/Core>
 
 #include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
@@ -41,7 +41,7 @@ public:
 private:
   bool full() const noexcept { return count_ == torsions_.size(); }
   void keep(double torsion) noexcept;
-  double torsionAt(std::int64_t marks_back) const noexcept;
+  double torsionAt(Eigen::Index marks_back) const noexcept;
 
   double nominal_ratio_;
   std::int64_t marks_per_turn_;
@@ -50,11 +50,11 @@ private:
   // Places are motor angles in marks, mirrored so that they grow in the direction of travel.
   bool started_{};
   int direction_{ 1 };
-  double place_{};                // of the last sample
-  double torsion_{};              // of the last sample
-  std::int64_t newest_mark_{};    // last mark reached
-  std::vector<double> torsions_;  // ring of one turn and one mark, both ends included
-  std::size_t newest_{};
-  std::size_t count_{};
+  double place_{};              // of the last sample
+  double torsion_{};            // of the last sample
+  std::int64_t newest_mark_{};  // last mark reached
+  Eigen::VectorXd torsions_;    // ring of one turn and one mark, both ends included
+  Eigen::Index newest_{};
+  Eigen::Index count_{};
 };
 }  // namespace hjt

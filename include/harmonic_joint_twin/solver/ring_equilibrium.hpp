@@ -78,6 +78,7 @@ private:
   RingShape shape_;
   RingForces forces_;
   DrivePosition position_;
+  double residual_{};  // at the last equilibrium [N]
   Eigen::VectorXd by_wave_generator_;
   Eigen::VectorXd by_output_;
   Eigen::Matrix2d stiffness_;

@@ -56,7 +56,8 @@ fs::path findOverlay(const std::string& name, const fs::path& config_directory)
 void addCommonOptions(CLI::App& command, CommonOptions& options)
 {
   constexpr const char* GROUP = "Common options";
-  command.add_option("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+  command
+      .add_option("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(GROUP);

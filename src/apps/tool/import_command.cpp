@@ -169,10 +169,9 @@ std::uint64_t importRows(const ImportOptions& options, double ratio, NumberTable
   catch (const InputError& error)
   {
     bag.close();
-    throw InputError(std::string(error.what()) +
-                     (rows == 0 ? "; nothing was written" :
-                                  "; " + options.out + " is readable and holds the " + std::to_string(rows) +
-                                      " rows before it"));
+    throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :
+                                                              "; " + options.out + " is readable and holds the " +
+                                                                  std::to_string(rows) + " rows before it"));
   }
   bag.close();
   return rows;
@@ -193,10 +192,9 @@ int import(const ImportOptions& options)
   const std::string& joint = JOINT_NAMES[static_cast<std::size_t>(options.joint)];
   if (options.json)
   {
-    const nlohmann::ordered_json summary{ { "output", options.out },
-                                          { "joint", joint },
-                                          { "rows", rows },
-                                          { "messages", bag.messages() } };
+    const nlohmann::ordered_json summary{
+      { "output", options.out }, { "joint", joint }, { "rows", rows }, { "messages", bag.messages() }
+    };
     std::cout << summary.dump(2) << '\n';
   }
   else
@@ -216,8 +214,9 @@ int import(const ImportOptions& options)
 void addImportCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<ImportOptions>();
-  auto* command = app.add_subcommand("import", "turn a UR controller's CSV recording (columns timestamp, actual_q_N, "
-                                               "actual_qd_N, actual_current_N, target_moment_N) into a bag for replay");
+  auto* command = app.add_subcommand("import",
+                                     "turn a UR controller's CSV recording (columns timestamp, actual_q_N, "
+                                     "actual_qd_N, actual_current_N, target_moment_N) into a bag for replay");
   command->add_option("csv", options->csv, "the recording")->required()->type_name("FILE.csv");
   command->add_option("--joint", options->joint, "0 ... 5: base, shoulder, elbow, wrists")
       ->required()

@@ -24,8 +24,8 @@ public:
   using Names = std::array<std::string, N>;
 
   /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header.
-  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0) try
-    : path_(path), names_(names), reader_(path)
+  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0)
+  try : path_(path), names_(names), reader_(path)
   {
     readHeader(std::make_index_sequence<N>{});
     for (std::size_t i = 0; i + optional < N; ++i)

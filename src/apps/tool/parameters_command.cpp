@@ -24,28 +24,30 @@ struct ParametersOptions : CommonOptions
 Json toJson(const Parameters& parameters)
 {
   Json json;
-  visitFields(parameters, [&](const std::string& key, const auto& first, const auto& second, const auto&...) {
-    Json& entry = json[key.substr(0, key.find('.'))][key.substr(key.find('.') + 1)];
-    // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
-    if constexpr (std::is_enum_v<std::decay_t<decltype(first)>>)
-    {
-      for (const auto& [name, choice] : choiceNames(first))
-      {
-        if (choice == first)
-        {
-          entry = name;
-        }
-      }
-    }
-    else if constexpr (std::is_array_v<std::remove_reference_t<decltype(second)>>)
-    {
-      entry = first;
-    }
-    else
-    {
-      entry = second;
-    }
-  });
+  visitFields(parameters,
+              [&](const std::string& key, const auto& first, const auto& second, const auto&...)
+              {
+                Json& entry = json[key.substr(0, key.find('.'))][key.substr(key.find('.') + 1)];
+                // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
+                if constexpr (std::is_enum_v<std::decay_t<decltype(first)>>)
+                {
+                  for (const auto& [name, choice] : choiceNames(first))
+                  {
+                    if (choice == first)
+                    {
+                      entry = name;
+                    }
+                  }
+                }
+                else if constexpr (std::is_array_v<std::remove_reference_t<decltype(second)>>)
+                {
+                  entry = first;
+                }
+                else
+                {
+                  entry = second;
+                }
+              });
   return json;
 }
 

@@ -57,7 +57,8 @@ void Progress::show(double done, double elapsed)
     return;
   }
   const std::string bar(static_cast<std::size_t>(done * BAR_WIDTH), '#');
-  std::fprintf(stderr, "\r%s [%-*s] %3.0f %%, %.0f s left   ", what_.c_str(), BAR_WIDTH, bar.c_str(), 100.0 * done, left);
+  std::fprintf(stderr, "\r%s [%-*s] %3.0f %%, %.0f s left   ", what_.c_str(), BAR_WIDTH, bar.c_str(), 100.0 * done,
+               left);
   std::fflush(stderr);
   bar_shown_ = true;
 }

@@ -14,7 +14,7 @@ constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
 /// How a run of the twin ended, for the user and for programs.
 struct RunSummary
 {
-  std::string output;   ///< file written
+  std::string output;  ///< file written
   Stamp begin{};
   std::chrono::steady_clock::time_point started{ std::chrono::steady_clock::now() };
 

@@ -138,7 +138,8 @@ void addSimulateCommand(CLI::App& app, int& exit_code)
                    "each row holds until the next")
       ->type_name("FILE.csv");
   source->require_option(1);
-  command->add_option("--load", options->load, "constant external torque at the output; > 0 resists positive motion [N.m]")
+  command
+      ->add_option("--load", options->load, "constant external torque at the output; > 0 resists positive motion [N.m]")
       ->check(FINITE);
   command->add_option("--out", options->out, "bag with the node's topics, or CSV with a row per joint_states")
       ->required()
@@ -146,12 +147,14 @@ void addSimulateCommand(CLI::App& app, int& exit_code)
       ->check(BAG_OR_CSV);
   addNamespaceOption(*command, options->joint_namespace);
   addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] {
-    if (options->torque && !options->duration)
-    {
-      throw CLI::RequiredError("--duration");
-    }
-    exit_code = simulate(*options);
-  });
+  command->callback(
+      [options, &exit_code]
+      {
+        if (options->torque && !options->duration)
+        {
+          throw CLI::RequiredError("--duration");
+        }
+        exit_code = simulate(*options);
+      });
 }
 }  // namespace hjt

@@ -175,8 +175,9 @@ int turn(const TurnOptions& options)
 void addInsertCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<InsertOptions>();
-  auto* command = app.add_subcommand("insert", "static equilibrium after the wave generator's insertion, circular spline "
-                                               "left out");
+  auto* command = app.add_subcommand("insert",
+                                     "static equilibrium after the wave generator's insertion, circular spline "
+                                     "left out");
   command->add_option("--csv", options->csv, "write positions and forces of every tooth")->type_name("FILE");
   addCommonOptions(*command, *options);
   command->callback([options, &exit_code] { exit_code = insert(*options); });

@@ -27,17 +27,16 @@ void printValues(const std::vector<NamedValue>& values)
   for (const NamedValue& entry : values)
   {
     std::cout << std::left << std::setw(static_cast<int>(name_width) + 2) << entry.name << std::right
-              << std::setw(static_cast<int>(value_width)) << entry.value << (entry.unit.empty() ? "" : " ") << entry.unit
-              << '\n';
+              << std::setw(static_cast<int>(value_width)) << entry.value << (entry.unit.empty() ? "" : " ")
+              << entry.unit << '\n';
   }
 }
 
 void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<double>>& rows)
 {
   constexpr int NUMBER_WIDTH = 14;
-  const auto width = [&](std::size_t column) {
-    return std::max(NUMBER_WIDTH, static_cast<int>(headings[column].size()) + 2);
-  };
+  const auto width = [&](std::size_t column)
+  { return std::max(NUMBER_WIDTH, static_cast<int>(headings[column].size()) + 2); };
   for (std::size_t column = 0; column < headings.size(); ++column)
   {
     std::cout << std::setw(width(column)) << headings[column];

@@ -18,17 +18,20 @@ std::string extension(const std::string& path)
 }  // namespace
 
 const CLI::Validator FINITE(
-    [](std::string& text) {
+    [](std::string& text)
+    {
       const auto number = looseNumber(text);
       return number && std::isfinite(*number) ? std::string() : "'" + text + "' is not a finite number";
     },
     "");
 
-const CLI::Validator BAG(
-    [](std::string& path) { return extension(path) == ".bag" ? std::string() : "'" + path + "' must end in .bag"; }, "");
+const CLI::Validator BAG([](std::string& path)
+                         { return extension(path) == ".bag" ? std::string() : "'" + path + "' must end in .bag"; },
+                         "");
 
 const CLI::Validator BAG_OR_CSV(
-    [](std::string& path) {
+    [](std::string& path)
+    {
       return extension(path) == ".bag" || extension(path) == ".csv" ? std::string() :
                                                                       "'" + path + "' must end in .bag or .csv";
     },
@@ -37,7 +40,8 @@ const CLI::Validator BAG_OR_CSV(
 void addNamespaceOption(CLI::App& command, std::string& joint_namespace)
 {
   const CLI::Validator global_name(
-      [](std::string& name) {
+      [](std::string& name)
+      {
         return std::regex_match(name, std::regex("(/[A-Za-z][A-Za-z0-9_]*)+")) ?
                    std::string() :
                    "'" + name + "' is not a global ROS name such as /joint_twin";
