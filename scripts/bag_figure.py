@@ -57,9 +57,9 @@ def draw_speed(axes, recording):
     axes.set_title("Joint speed, as its encoders see it [rad/s]")
     if len(measured):
         axes.plot(*thin(measured, "velocity"), color=GREY, lw=2.6, alpha=0.4, label="robot, measured")
-    axes.plot(*thin(states, "motor_velocity", 1.0 / recording.ratio), color=BLUE, lw=2.0, alpha=0.6,
+    axes.plot(*thin(states, "motor_velocity", 1.0 / recording.ratio), color=BLUE, lw=1.6,
               label=f"motor encoder / {recording.ratio:g}")
-    axes.plot(*thin(states, "output_velocity"), color=ORANGE, lw=0.8, label="output encoder")
+    axes.plot(*thin(states, "output_velocity"), color=ORANGE, lw=1.2, ls=(0, (4, 4)), label="output encoder")
     legend(axes)
 
 

@@ -13,9 +13,10 @@ int main(int argc, char** argv)
   ros::init(argc, argv, "joint_twin");
   // roscpp catches SIGINT only.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  // Outlives the try block: with the last handle ROS shuts down, and its console with it.
+  ros::NodeHandle node("~");
   try
   {
-    ros::NodeHandle node("~");
     const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
     ROS_INFO_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
     hjt::TwinNode twin_node(node, parameters);

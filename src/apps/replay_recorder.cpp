@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <csignal>
 #include <filesystem>
+#include <iostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -103,7 +104,8 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
-    ROS_FATAL_STREAM(error.what());
+    // Not by ROS' console, which ends with the last node handle.
+    std::cerr << "replay_recorder: " << error.what() << '\n';
     return 1;
   }
   return 0;

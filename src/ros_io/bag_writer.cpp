@@ -37,6 +37,10 @@ BagWriter::~BagWriter()
 
 void BagWriter::copy(const rosbag::MessageInstance& message)
 {
+  // Read once before it is written: an error of reading in the midst of writing would leave half a record behind.
+  scratch_.resize(message.size());
+  ros::serialization::OStream stream(scratch_.data(), static_cast<std::uint32_t>(scratch_.size()));
+  message.write(stream);
   bag_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
   ++messages_;
 }

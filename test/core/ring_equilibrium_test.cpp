@@ -211,7 +211,7 @@ TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
   for (int k = 0; k < 6000; ++k)
   {
     angle += 0.0317 * part(random);
-    twist = 0.99 * (twist + 3e-4 * part(random));
+    twist = 0.999 * (twist + 1e-4 * part(random));
     ASSERT_TRUE(ring.moveTo({ angle, angle / nominalRatio(parameters.gear) + twist, w }).ok());
     model.tangent(ring.shape(), ring.position(), ring.forces(), tangent);
     ASSERT_TRUE(solver.factor(tangent));

@@ -54,6 +54,13 @@ inline Eigen::MatrixXd denseTangent(const RingTangent& tangent)
   return dense;
 }
 
+inline bool allFinite(const RingForces& forces)
+{
+  return forces.teeth.allFinite() && forces.contact_force.allFinite() && forces.flank_force.allFinite() &&
+         std::isfinite(forces.wave_generator_torque) && std::isfinite(forces.output_torque) &&
+         std::isfinite(forces.energy);
+}
+
 /// x, y of tooth i turned by `angle`, for every tooth.
 inline Eigen::VectorXd turned(const Eigen::VectorXd& vectors, double angle)
 {

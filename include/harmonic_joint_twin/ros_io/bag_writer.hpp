@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <rosbag/bag.h>
 #include <rosbag/message_instance.h>
@@ -44,6 +45,7 @@ private:
   std::string path_;
   std::string active_path_;
   rosbag::Bag bag_;
+  std::vector<std::uint8_t> scratch_;
   std::uint64_t messages_{};
   bool open_{};
 };

@@ -32,6 +32,6 @@ inline Stamp toStampLength(double duration)
 /// Duration [s] of a stamp difference [ns].
 inline double toSeconds(Stamp length)
 {
-  return static_cast<double>(length) * 1e-9;
+  return static_cast<double>(length) / 1e9;
 }
 }  // namespace hjt

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/dry_friction.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace hjt
+{
+namespace
+{
+constexpr double STEP = 1e-4;    // [s]
+constexpr double WIDTH = 1e-6;   // stiction velocity [rad/s]
+constexpr double FOLLOW = 1.0 / 101.0;
+
+/// A step of random friction: a shaft, many flanks, viscous terms.
+struct RandomStep
+{
+  explicit RandomStep(std::mt19937& random) : friction(200)
+  {
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
+    const auto size = [&] { return std::pow(10.0, 2.0 * part(random) - 1.0); };
+    inertia = { 1.7e-4 * size() * 10.0, 0.5 * size() * 10.0 };
+    friction.terms.push_back({ 0.2 * size(), { 1.0, 0.0 } });
+    for (int i = 0; i < 12; ++i)
+    {
+      friction.terms.push_back({ 100.0 * size(), { 1e-4 * part(random), 1e-2 * part(random) } });
+    }
+    const Eigen::Vector2d direction(part(random), 10.0 * part(random));
+    friction.viscous = 1e-4 * direction * direction.transpose();
+    // Speeds from stuck to full speed, the free ones near enough to be stopped now and then.
+    const double speed = part(random) * std::pow(10.0, 4.0 * part(random) - 2.0);
+    old = { speed, speed * FOLLOW + 1e-3 * part(random) * size() };
+    free = old + Eigen::Vector2d(part(random), part(random)).cwiseProduct(STEP * Eigen::Vector2d(0.5, 50.0)).cwiseQuotient(inertia);
+  }
+
+  double potential(const Eigen::Vector2d& v) const
+  {
+    const Eigen::Vector2d change = v - free;
+    const Eigen::Vector2d mean = v + old;
+    double value = 0.5 * change.dot(inertia.cwiseProduct(change)) + 0.25 * STEP * mean.dot(friction.viscous * mean);
+    for (const FrictionTerm& term : friction.terms)
+    {
+      const double width = WIDTH * (std::abs(term.slip[0]) + FOLLOW * std::abs(term.slip[1]));
+      value += STEP * term.strength * std::hypot(term.slip.dot(v), width);
+    }
+    return value;
+  }
+
+  JointFriction friction;
+  Eigen::Vector2d inertia;
+  Eigen::Vector2d old;
+  Eigen::Vector2d free;
+};
+
+/// Minimum of a convex function of one variable in [low, high], by thirds.
+template <class Function>
+double minimum(double low, double high, const Function& function)
+{
+  for (int i = 0; i < 90; ++i)
+  {
+    const double third = (high - low) / 3.0;
+    if (function(low + third) < function(high - third))
+    {
+      high -= third;
+    }
+    else
+    {
+      low += third;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+TEST(DryFriction, IsTheMinimumFoundByBruteForce)
+{
+  constexpr unsigned SEED = 61;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  int stuck = 0;
+  for (int k = 0; k < 60; ++k)
+  {
+    const RandomStep step(random);
+    const DryFriction dry(step.inertia, WIDTH);
+    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    const double reach = 2.0 * (step.free.cwiseAbs() + step.old.cwiseAbs()).maxCoeff() * 101.0 + 1e-3;
+    const auto best_output = [&](double motor) {
+      return minimum(-reach, reach, [&](double output) { return step.potential({ motor, output }); });
+    };
+    const double motor = minimum(-reach, reach, [&](double m) { return step.potential({ m, best_output(m) }); });
+    const Eigen::Vector2d brute(motor, best_output(motor));
+    // Values near a minimum are flat: two numbers that agree to rounding are all that can be asked of them.
+    const double scale = step.potential(step.old) + step.potential(step.free) + step.potential({ 0.0, 0.0 });
+    EXPECT_LE(step.potential(v), step.potential(brute) + 1e-14 * scale) << k;
+    stuck += std::abs(v[0]) < 100.0 * WIDTH ? 1 : 0;
+  }
+  EXPECT_GT(stuck, 3);
+  EXPECT_LT(stuck, 57);
+}
+
+TEST(DryFriction, LeavesNoForceUnbalanced)
+{
+  constexpr unsigned SEED = 62;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  for (int k = 0; k < 3000; ++k)
+  {
+    const RandomStep step(random);
+    const DryFriction dry(step.inertia, WIDTH);
+    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    // Momentum: M (v - v_free) = h (dry friction at v + viscous friction at the mean speed).
+    const Eigen::Vector2d at_end = dry.torque(step.friction, FOLLOW, v) + step.friction.viscous * v;
+    const Eigen::Vector2d at_mean = -0.5 * step.friction.viscous * (v + step.old);
+    const Eigen::Vector2d error = step.inertia.cwiseProduct(v - step.free) - STEP * (at_end + at_mean);
+    Eigen::Vector2d scale = step.inertia.cwiseProduct(step.free.cwiseAbs() + v.cwiseAbs() + step.old.cwiseAbs());
+    for (const FrictionTerm& term : step.friction.terms)
+    {
+      scale += STEP * term.strength * term.slip.cwiseAbs();
+    }
+    // The speeds are found to 1e-11; where a term sticks, its slope magnifies that.
+    EXPECT_LT(std::abs(error[0]), 1e-7 * scale[0]) << k;
+    EXPECT_LT(std::abs(error[1]), 1e-7 * scale[1]) << k;
+  }
+}
+
+/// One mass on the motor side with Coulomb friction alone.
+class Slider : public testing::Test
+{
+protected:
+  static constexpr double INERTIA = 2e-4;
+  static constexpr double COULOMB = 0.3;
+
+  Slider() { friction_.terms.push_back({ COULOMB, { 1.0, 0.0 } }); }
+
+  /// Speed after a step under `torque`.
+  double stepped(double speed, double torque) const
+  {
+    const Eigen::Vector2d old(speed, 0.0);
+    return dry_.solve(friction_, FOLLOW, old, { speed + STEP * torque / INERTIA, 0.0 }, STEP)[0];
+  }
+
+  JointFriction friction_{ 0 };
+  DryFriction dry_{ Eigen::Vector2d(INERTIA, 0.5), WIDTH };
+};
+
+TEST_F(Slider, SticksBelowBreakaway)
+{
+  for (const double share : { 0.0, 0.5, -0.99 })
+  {
+    double speed = 0.0;
+    for (int i = 0; i < 100; ++i)
+    {
+      speed = stepped(speed, share * COULOMB);
+    }
+    // Regularised friction c v / sqrt(v^2 + e^2) carries the share at this speed.
+    EXPECT_NEAR(speed, WIDTH * share / std::sqrt(1.0 - share * share), 1e-9 * WIDTH) << share;
+  }
+}
+
+TEST_F(Slider, SlidesWithFullFrictionAboveBreakaway)
+{
+  double speed = 0.0;
+  for (int i = 1; i <= 100; ++i)
+  {
+    speed = stepped(speed, 1.5 * COULOMB);
+    // Half a square of e / v less than Coulomb's friction, summed over the steps.
+    EXPECT_NEAR(speed, i * STEP * 0.5 * COULOMB / INERTIA, 1e-6 * speed) << i;
+  }
+}
+
+TEST_F(Slider, StopsAndDoesNotRunBackwards)
+{
+  double speed = 1.0;
+  for (int i = 0; i < 100; ++i)
+  {
+    const double next = stepped(speed, 0.0);
+    EXPECT_LE(next, speed);
+    EXPECT_GE(next, 0.0);
+    EXPECT_NEAR(speed - next, std::min(STEP * COULOMB / INERTIA, speed), 1e-5);
+    speed = next;
+  }
+  EXPECT_LT(speed, 1e-12);
+}
+
+TEST_F(Slider, ReversesWithinAStep)
+{
+  // Needs 0.3 of the step to stop, then slides back under the rest of the torque, friction turned round.
+  const double torque = -10.0 * COULOMB;
+  const double speed = 0.3 * STEP * 11.0 * COULOMB / INERTIA;
+  // Implicit: friction at the end of the step, all of it against the new direction.
+  EXPECT_NEAR(stepped(speed, torque), speed + STEP * (torque + COULOMB) / INERTIA, 1e-9);
+}
+
+TEST_F(Slider, TorqueOpposesTheSpeedAndIsOdd)
+{
+  for (const double speed : { 1e-9, 1e-6, 1.0, 300.0 })
+  {
+    const double torque = dry_.torque(friction_, FOLLOW, { speed, 0.0 })[0];
+    EXPECT_NEAR(torque, -COULOMB * speed / std::hypot(speed, WIDTH), 1e-15);
+    EXPECT_EQ(dry_.torque(friction_, FOLLOW, { -speed, 0.0 })[0], -torque);
+  }
+  EXPECT_EQ(dry_.torque(friction_, FOLLOW, { 0.0, 0.0 })[0], 0.0);
+}
+
+TEST(DryFriction, WithoutFrictionLeavesTheFreeSpeeds)
+{
+  const DryFriction dry({ 1e-4, 0.5 }, WIDTH);
+  const JointFriction none(0);
+  const Eigen::Vector2d free(3.0, -0.2);
+  EXPECT_LT((dry.solve(none, FOLLOW, { 1.0, 1.0 }, free, STEP) - free).norm(), 1e-14);
+}
+
+TEST(DryFriction, NeverFeedsEnergyIn)
+{
+  constexpr unsigned SEED = 63;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  for (int k = 0; k < 3000; ++k)
+  {
+    const RandomStep step(random);
+    const DryFriction dry(step.inertia, WIDTH);
+    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    EXPECT_LE(dry.torque(step.friction, FOLLOW, v).dot(v), 0.0);
+    // Over the step: friction takes kinetic energy from the free motion, or none.
+    const double taken = 0.5 * step.free.dot(step.inertia.cwiseProduct(step.free)) - 0.5 * v.dot(step.inertia.cwiseProduct(v));
+    const Eigen::Vector2d viscous_drag = step.friction.viscous * step.old;
+    EXPECT_GE(taken, -STEP * std::abs(viscous_drag.dot(v)) - 1e-12 * std::abs(taken)) << k;
+  }
+}
+}  // namespace
+}  // namespace hjt

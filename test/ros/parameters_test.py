@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the node reads from the parameter server: every shipped file starts it, every bad value ends it at once."""
+import signal
+import sys
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+
+from ros_support import (PACKAGE, Node, all_configuration_files, configuration_files, load_parameters, package_path,
+                         wait_until)
+
+NODE = "/twin_under_test"
+EXIT_TIME = 5.0  # [s], from a signal to the end of the process
+
+
+class Parameters(unittest.TestCase):
+    def setUp(self):
+        self.node = None
+
+    def tearDown(self):
+        if self.node is not None:
+            self.node.kill()
+
+    def start(self, files, changes=None):
+        load_parameters(NODE, files, changes)
+        self.node = Node(NODE.lstrip("/"))
+
+    def check_refusal(self, changes, *expected, files=None):
+        self.start(files or configuration_files(), changes)
+        self.assertEqual(self.node.wait_for_exit(), 1)
+        self.check_output("FATAL", *expected)
+
+    def check_output(self, *expected):
+        output = self.node.output()
+        for text in expected:
+            self.assertTrue(text in output, f"not said: {text}; the node's last words: {output[-500:]}")
+
+    def check_start(self, files):
+        self.start(files)
+        wait_until(lambda: self.node.process.poll() is not None or self.is_publishing(), "the node to publish")
+        self.assertIsNone(self.node.process.poll(), self.node.output())
+
+    def is_publishing(self):
+        publishers, _, _ = rosgraph.Master("/test").getSystemState()
+        return any(topic == f"{NODE}/health" and NODE in nodes for topic, nodes in publishers)
+
+    def check_clean_exit(self, signal_number):
+        code, duration = self.node.stop(signal_number)
+        self.assertEqual(code, 0, self.node.output())
+        self.assertLess(duration, EXIT_TIME)
+
+    def test_every_joint_starts_dumps_its_parameters_and_ends_cleanly_on_sigint(self):
+        for joint, name in (("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"), ("elbow", "elbow_joint")):
+            with self.subTest(joint=joint):
+                self.check_start(configuration_files(joint))
+                self.check_clean_exit(signal.SIGINT)
+                self.check_output(f'joint.name: "{name}"', "mesh.stiffness: 5.0e+7  # [N/m]")
+
+    def test_the_overlay_for_recorded_loads_starts_and_ends_cleanly_on_sigterm(self):
+        self.check_start(configuration_files("elbow", ["recorded_load.yaml"]))
+        self.check_clean_exit(signal.SIGTERM)
+
+    def test_the_laws_of_the_thesis_are_for_the_offline_analysis_only(self):
+        self.check_refusal({}, "contact.law", "polar", "normal",
+                           files=configuration_files("elbow", ["thesis_insertion.yaml"]))
+
+    def test_no_shipped_file_has_been_forgotten_here(self):
+        tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
+        tested += [package_path("config", name) for name in ("recorded_load.yaml", "thesis_insertion.yaml")]
+        self.assertEqual(all_configuration_files(), sorted(set(tested)))
+
+    def test_stages_left_out_are_refused(self):
+        self.check_refusal({}, "mesh.stiffness", "missing", files=[package_path("config", "gear.yaml")])
+
+    def test_a_missing_parameter_is_named(self):
+        self.check_refusal({"motor/torque_limit": None}, "motor.torque_limit", "[N.m]", "0 ... 10000")
+
+    def test_a_misspelt_parameter_is_named(self):
+        self.check_refusal({"motor/torqe_limit": 1.0}, "motor.torqe_limit", "unknown")
+
+    def test_a_parameter_out_of_range_is_named_with_value_unit_and_range(self):
+        self.check_refusal({"mesh/flank_angle": 17.0}, "mesh.flank_angle", "17", "[rad]", "0 ... 1.4")
+
+    def test_a_number_that_yaml_reads_as_text_is_named(self):
+        self.check_refusal({"motor/rotor_inertia": "1e-3"}, "motor.rotor_inertia", "1e-3", "[kg.m^2]")
+
+    def test_a_text_for_a_truth_value_is_named(self):
+        self.check_refusal({"brake/engaged_at_start": "false"}, "brake.engaged_at_start", "false")
+
+    def test_a_fraction_for_a_count_is_named(self):
+        self.check_refusal({"gear/teeth_flexspline": 200.5}, "gear.teeth_flexspline", "200.5")
+
+    def test_an_unknown_choice_is_named(self):
+        self.check_refusal({"ring/bending_law": "straight"}, "ring.bending_law", "straight", "curvature")
+
+    def test_a_list_with_a_text_in_it_is_named(self):
+        self.check_refusal({"cup/torsion_breakpoints": [14.0, "48"]}, "cup.torsion_breakpoints", "not a number")
+
+    def test_a_list_of_the_wrong_length_is_named(self):
+        self.check_refusal({"cup/torsion_stiffness": [31.0e3, 50.0e3]}, "cup.torsion_stiffness", "[N.m/rad]")
+
+    def test_a_publish_rate_that_does_not_divide_the_solver_rate_is_named(self):
+        self.check_refusal({"publish/encoders_rate": 3000}, "publish.encoders_rate", "3000", "[Hz]", "10000")
+
+
+if __name__ == "__main__":
+    rospy.init_node("parameters_test")
+    rostest.rosrun(PACKAGE, "parameters", Parameters, sys.argv)

@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A bag through replay.launch and through the offline tool: the same messages, bit by bit, wherever both have one."""
+import glob
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from sensor_msgs.msg import JointState
+
+from ros_support import PACKAGE, executable, package_path, wait_until
+
+JOINT = "elbow_joint"
+START = 1000.0      # first stamp [s]
+DURATION = 2.0      # [s]
+INPUT_RATE = 125.0  # [Hz]
+HOLD_BACK = 0.5     # [s]; long, so that no message is late on a busy machine: equality rests on that
+OUTPUTS = {"joint_states": 1000, "encoders": 1000, "contact_forces": 100, "health": 10}  # [Hz]
+LAUNCH_TIMEOUT = 120.0  # [s]
+
+
+def write_bag(path):
+    with rosbag.Bag(path, "w") as bag:
+        for k in range(int(DURATION * INPUT_RATE)):
+            stamp = rospy.Time.from_sec(START) + rospy.Duration.from_sec(k / INPUT_RATE)
+            for topic, torque in (("command", 0.5 * math.sin(0.05 * k)), ("load", 10.0 if k > 100 else 0.0)):
+                message = JointState(name=[JOINT], effort=[torque])
+                message.header.stamp = stamp
+                bag.write(f"/joint_twin/{topic}", message, stamp)
+            telemetry = JointState(name=[JOINT], position=[0.001 * k])
+            telemetry.header.stamp = stamp
+            bag.write("/joint_states", telemetry, stamp)
+
+
+def messages_by_stamp(path, topic):
+    messages = {}
+    with rosbag.Bag(path) as bag:
+        for _, message, _ in bag.read_messages([topic]):
+            message.header.seq = 0  # counts what a publisher sent, from another start live
+            messages[message.header.stamp.to_nsec()] = message
+    return messages
+
+
+class Launch:
+    """roslaunch with a master of its own."""
+
+    def __init__(self, log_path, *arguments):
+        with socket.socket() as probe:
+            probe.bind(("localhost", 0))
+            port = probe.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}")
+        self.log_path = log_path
+        with open(log_path, "w") as log:
+            self.process = subprocess.Popen(["roslaunch", "-p", str(port), PACKAGE, *arguments], stdout=log,
+                                            stderr=subprocess.STDOUT, env=environment)
+
+    def log(self):
+        with open(self.log_path) as log:
+            return log.read()
+
+    def kill(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            self.process.wait(timeout=LAUNCH_TIMEOUT)
+
+
+class Replay(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.recording = self.path("recording.bag")
+        self.live = self.path("live.bag")
+        write_bag(self.recording)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def launch(self):
+        launch = Launch(self.path("launch.log"), "replay.launch", f"bag:={self.recording}", f"out:={self.live}",
+                        f"hold_back:={HOLD_BACK}")
+        self.addCleanup(launch.kill)
+        return launch
+
+    def replay_offline(self):
+        path = self.path("offline.bag")
+        subprocess.run([executable("joint_twin"), "replay", self.recording, "--out", path, "--config",
+                        package_path("config", "joints", "elbow.yaml")], check=True, stdout=subprocess.DEVNULL)
+        return path
+
+    def test_live_and_offline_replay_give_the_same_messages(self):
+        launch = self.launch()
+        self.assertEqual(launch.process.wait(timeout=LAUNCH_TIMEOUT), 0, launch.log())
+        self.assertEqual(glob.glob(self.path("*.active")), [])
+        self.check_inputs_were_in_time()
+        offline = self.replay_offline()
+        for topic, rate in OUTPUTS.items():
+            with self.subTest(topic=topic):
+                live = messages_by_stamp(self.live, f"/joint_twin/{topic}")
+                expected = messages_by_stamp(offline, f"/joint_twin/{topic}")
+                # The live twin ends where the clock ended, less what it holds back.
+                end = (START + DURATION - 1.0 / INPUT_RATE - HOLD_BACK) * 1e9
+                common = {stamp: message for stamp, message in expected.items() if stamp <= end}
+                self.assertGreaterEqual(len(common), int((DURATION - HOLD_BACK) * rate) - rate / INPUT_RATE - 1)
+                self.assertLessEqual(set(common), set(live), "messages were lost")
+                self.assertEqual([stamp for stamp in live if live[stamp] != expected[stamp]], [])
+        for topic in ("/joint_states", "/joint_twin/command", "/joint_twin/load"):
+            self.assertEqual(messages_by_stamp(self.live, topic), messages_by_stamp(self.recording, topic), topic)
+
+    def check_inputs_were_in_time(self):
+        with rosbag.Bag(self.live) as bag:
+            statuses = [status for _, array, _ in bag.read_messages(["/diagnostics"]) for status in array.status
+                        if status.name == "joint_twin: Input" and status.values]
+        late = {pair.value for status in statuses for pair in status.values if pair.key == "Too late for their stamp"}
+        self.assertEqual(late, {"0"})
+
+    def test_an_interrupt_leaves_a_bag_that_can_be_read(self):
+        launch = self.launch()
+        active = f"{self.live}.active"
+        wait_until(lambda: os.path.exists(active), "the recorder", LAUNCH_TIMEOUT)
+        # Some of the simulated messages must have come, none of the bag's end.
+        wait_until(lambda: os.path.getsize(active) > 100000 or launch.process.poll() is not None, "messages",
+                   LAUNCH_TIMEOUT)
+        self.assertIsNone(launch.process.poll(), launch.log())
+        launch.process.send_signal(signal.SIGINT)
+        launch.process.wait(timeout=LAUNCH_TIMEOUT)
+        self.assertEqual(glob.glob(self.path("*.active")), [])
+        self.assertGreater(len(messages_by_stamp(self.live, "/joint_twin/joint_states")), 0)
+
+    def test_an_existing_output_is_refused(self):
+        with open(self.live, "w") as file:
+            file.write("not to be lost")
+        begin = time.monotonic()
+        launch = self.launch()
+        launch.process.wait(timeout=LAUNCH_TIMEOUT)
+        self.assertIn("exists already", launch.log())
+        with open(self.live) as file:
+            self.assertEqual(file.read(), "not to be lost")
+        self.assertLess(time.monotonic() - begin, 60.0)
+
+
+if __name__ == "__main__":
+    rospy.init_node("replay_test")
+    rostest.rosrun(PACKAGE, "replay", Replay, sys.argv)

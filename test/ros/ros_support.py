@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shared by the tests with a master: waiting, listening, and starting nodes with a configuration. Waits are by the wall
+clock and generous, conditions are polled: a busy machine makes these tests slower, not red."""
+import glob
+import os
+import subprocess
+import threading
+import time
+
+import roslib.packages
+import rosgraph
+import rosparam
+import rospkg
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+PACKAGE = "harmonic_joint_twin"
+PATIENCE = 30.0  # [s]
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+
+def package_path(*parts):
+    return os.path.join(rospkg.RosPack().get_path(PACKAGE), *parts)
+
+
+def executable(name):
+    return roslib.packages.find_node(PACKAGE, name)[0]
+
+
+def wait_until(condition, what, patience=PATIENCE):
+    deadline = time.monotonic() + patience
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"waited {patience} s in vain: {what}")
+        time.sleep(0.01)
+
+
+class Listener:
+    """Keeps every message of a topic."""
+
+    def __init__(self, topic, message_type):
+        self._lock = threading.Lock()
+        self._messages = []
+        self._subscriber = rospy.Subscriber(topic, message_type, self._add, tcp_nodelay=True)
+
+    def _add(self, message):
+        with self._lock:
+            self._messages.append(message)
+
+    def messages(self):
+        with self._lock:
+            return list(self._messages)
+
+    def clear(self):
+        with self._lock:
+            self._messages.clear()
+
+    def wait_for(self, count, patience=PATIENCE):
+        wait_until(lambda: len(self.messages()) >= count, f"{count} messages on {self._subscriber.name}", patience)
+        return self.messages()
+
+    def wait_for_connection(self):
+        wait_until(lambda: self._subscriber.get_num_connections() > 0, f"a publisher of {self._subscriber.name}")
+
+    def close(self):
+        self._subscriber.unregister()
+
+
+class Diagnostics:
+    """What one node says on /diagnostics."""
+
+    def __init__(self, node):
+        self._prefix = node.lstrip("/") + ": "
+        self._listener = Listener("/diagnostics", DiagnosticArray)
+
+    def statuses(self, task):
+        name = self._prefix + task
+        return [status for array in self._listener.messages() for status in array.status if status.name == name]
+
+    def values(self, task):
+        """Of the latest status that holds any: the first one only says that the node is starting."""
+        statuses = [status for status in self.statuses(task) if status.values]
+        return {pair.key: pair.value for pair in statuses[-1].values} if statuses else {}
+
+    def number(self, task, key):
+        return float(self.values(task).get(key, "nan"))
+
+    def level(self, task):
+        statuses = self.statuses(task)
+        return statuses[-1].level if statuses else None
+
+    def wait_for(self, task, key, value):
+        wait_until(lambda: self.values(task).get(key) == str(value),
+                   f"{task}: {key} = {value}; latest: {self.values(task)}")
+
+    def fresh(self, task):
+        """Values of a status that came after this call."""
+        count = len(self.statuses(task))
+        wait_until(lambda: len(self.statuses(task)) > count, f"a status of {task}")
+        return self.values(task)
+
+
+def configuration_files(joint="elbow", overlays=()):
+    stages = ["gear", "elements", "joint", "solver", "sensors", "health", "node"]
+    names = [f"{stage}.yaml" for stage in stages] + [f"joints/{joint}.yaml", *overlays]
+    return [package_path("config", name) for name in names]
+
+
+def all_configuration_files():
+    return sorted(glob.glob(package_path("config", "**", "*.yaml"), recursive=True))
+
+
+def load_parameters(node, files, changes=None):
+    """Loads files into a node's namespace as roslaunch does, then sets or, for None, deletes single keys."""
+    if rosgraph.Master("/test").hasParam(node):
+        rosparam.delete_param(node)
+    for file in files:
+        for parameters, namespace in rosparam.load_file(file, default_namespace=node):
+            rosparam.upload_params(namespace, parameters)
+    for key, value in (changes or {}).items():
+        name = f"{node}/{key}"
+        if value is None:
+            rosparam.delete_param(name)
+        else:
+            rosparam.set_param_raw(name, value)
+
+
+class Node:
+    """A joint_twin_node in a process of its own."""
+
+    def __init__(self, name, *remappings):
+        command = [executable("joint_twin_node"), f"__name:={name}", *remappings]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self._lines = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self.process.stdout:
+            self._lines.append(line)
+
+    def output(self):
+        return "".join(self._lines)
+
+    def wait_for_exit(self, patience=PATIENCE):
+        code = self.process.wait(timeout=patience)
+        self._reader.join()
+        return code
+
+    def stop(self, signal_number):
+        """Exit code, and how long it took [s]."""
+        begin = time.monotonic()
+        self.process.send_signal(signal_number)
+        return self.wait_for_exit(), time.monotonic() - begin
+
+    def kill(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/twin_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "harmonic_joint_twin/ros_io/slot_ring.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr Stamp MILLISECOND = 1'000'000;
+constexpr Stamp SECOND = 1000 * MILLISECOND;
+constexpr Stamp STEP = MILLISECOND;  // solver.rate 1000 Hz: the loop is under test here, not the solver
+constexpr Stamp HOLD_BACK = 20 * MILLISECOND;
+
+struct Instant
+{
+  Stamp stamp;
+  double motor_torque;
+};
+
+/// A loop on a clock that the test sets. Instants are kept by the loop's thread and read once it has come to rest.
+class LoopFixture : public testing::Test
+{
+protected:
+  void start(bool wait_for_first_input)
+  {
+    const std::string wait = wait_for_first_input ? "true" : "false";
+    twin_ = std::make_unique<Twin>(
+        shippedParameters({ "solver.rate=1000", "input.hold_back=0.02", "input.wait_for_first_input=" + wait }));
+    instants_.reserve(1 << 20);
+    loop_ = std::make_unique<TwinLoop>(
+        *twin_, inbox_, [this] { return clock_.load(); },
+        [this](Twin& twin) {
+          instants_.push_back({ twin.outputs().stamp, twin.outputs().motor_torque });
+        });
+  }
+
+  /// Sets the clock and waits until the loop has done all it may do at that time.
+  void setClock(Stamp clock)
+  {
+    clock_ = clock;
+    waitForCycles(2);
+    waitFor([this] { return loop_->status().lag < STEP; });
+    waitForCycles(2);
+  }
+
+  void waitForCycles(std::uint64_t cycles)
+  {
+    const std::uint64_t first = loop_->status().cycles;
+    waitFor([&] { return loop_->status().cycles >= first + cycles; });
+  }
+
+  template <class Condition>
+  void waitFor(Condition condition)
+  {
+    constexpr std::chrono::seconds PATIENCE{ 30 };
+    const auto deadline = std::chrono::steady_clock::now() + PATIENCE;
+    while (!condition())
+    {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the loop did not get there";
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  std::atomic<Stamp> clock_{ 0 };
+  Inbox inbox_;
+  std::unique_ptr<Twin> twin_;
+  std::vector<Instant> instants_;
+  std::unique_ptr<TwinLoop> loop_;
+};
+
+TEST_F(LoopFixture, RestsWithoutAClockAndStartsWithItsFirstInstant)
+{
+  start(false);
+  waitForCycles(5);
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_CLOCK);
+  setClock(100 * SECOND);
+  setClock(101 * SECOND);
+  ASSERT_FALSE(instants_.empty());
+  EXPECT_EQ(instants_.front().stamp, 100 * SECOND + STEP);
+  EXPECT_EQ(instants_.back().stamp, 101 * SECOND - HOLD_BACK);
+}
+
+TEST_F(LoopFixture, VisitsEveryInstantAfterAJumpForwardAndNoneWhileTheClockStands)
+{
+  start(false);
+  setClock(100 * SECOND);
+  setClock(103 * SECOND);
+  const std::size_t visited = instants_.size();
+  ASSERT_EQ(visited, static_cast<std::size_t>((3 * SECOND - HOLD_BACK) / STEP));
+  for (std::size_t i = 1; i < visited; ++i)
+  {
+    ASSERT_EQ(instants_[i].stamp - instants_[i - 1].stamp, STEP);
+  }
+  EXPECT_GT(loop_->status().largest_lag, SECOND);
+  waitForCycles(20);
+  EXPECT_EQ(instants_.size(), visited);
+}
+
+TEST_F(LoopFixture, StartsAtTheEarliestStampInWhateverOrderTheFirstInputsArrive)
+{
+  start(true);
+  setClock(100 * SECOND);
+  inbox_.push({ 100 * SECOND + 8 * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
+  inbox_.push({ 100 * SECOND + 4 * MILLISECOND, InputKind::LOAD_TORQUE, 1.0 });
+  setClock(100 * SECOND + 10 * MILLISECOND);
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
+  EXPECT_TRUE(instants_.empty());
+  setClock(100 * SECOND + 60 * MILLISECOND);
+  ASSERT_EQ(instants_.size(), 36U);
+  EXPECT_EQ(instants_.front().stamp, 100 * SECOND + 4 * MILLISECOND + STEP);
+  EXPECT_EQ(loop_->status().counters.input.late, 0U);
+}
+
+TEST_F(LoopFixture, DoesNotStartOnABrakeOrANumberThatIsNone)
+{
+  start(true);
+  inbox_.push({ 100 * SECOND, InputKind::BRAKE, 1.0 });
+  inbox_.push({ 100 * SECOND, InputKind::MOTOR_TORQUE, std::nan("") });
+  setClock(101 * SECOND);
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
+  EXPECT_EQ(inbox_.notFinite(), 1U);
+  inbox_.push({ 101 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
+  setClock(102 * SECOND);
+  EXPECT_TRUE(loop_->status().outputs.brake_engaged) << "a brake engaged before the start was forgotten";
+  EXPECT_EQ(loop_->status().counters.input.late, 0U);
+}
+
+TEST_F(LoopFixture, AppliesAStampedCommandFromItsInstantOn)
+{
+  start(false);
+  setClock(100 * SECOND);
+  inbox_.push({ 100 * SECOND + 100 * MILLISECOND, InputKind::MOTOR_TORQUE, 0.25 });
+  setClock(100 * SECOND + 170 * MILLISECOND);
+  ASSERT_EQ(instants_.size(), 150U);
+  EXPECT_EQ(instants_[98].motor_torque, 0.0);
+  EXPECT_EQ(instants_[99].stamp, 100 * SECOND + 100 * MILLISECOND);
+  EXPECT_EQ(instants_[99].motor_torque, 0.25);
+}
+
+TEST_F(LoopFixture, StartsAnewWhenTheClockJumpsBackButNotOnASmallStepBack)
+{
+  start(false);
+  setClock(100 * SECOND);
+  setClock(101 * SECOND);
+  const std::size_t visited = instants_.size();
+  setClock(101 * SECOND - 50 * MILLISECOND);
+  EXPECT_EQ(loop_->status().clock_jumps, 0U);
+  EXPECT_EQ(instants_.size(), visited);
+  setClock(50 * SECOND);
+  setClock(51 * SECOND);
+  EXPECT_EQ(loop_->status().clock_jumps, 1U);
+  ASSERT_GT(instants_.size(), visited);
+  EXPECT_EQ(instants_[visited].stamp, 50 * SECOND + STEP);
+  EXPECT_EQ(loop_->status().counters.steps, instants_.size() - visited);
+}
+
+TEST_F(LoopFixture, ResetStartsAnewAtTheCurrentInstantAndGivesUpALag)
+{
+  start(false);
+  setClock(100 * SECOND);
+  clock_ = 100000 * SECOND;  // a day to catch up
+  waitFor([this] { return loop_->status().lag > SECOND; });
+  ASSERT_TRUE(loop_->reset());
+  waitFor([this] { return loop_->status().lag < STEP; });
+  waitForCycles(2);
+  EXPECT_EQ(loop_->status().twin_stamp, 100000 * SECOND - HOLD_BACK);
+  EXPECT_EQ(loop_->status().resets, 1U);
+}
+
+TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
+{
+  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(JointNames("joint"), 200));
+  start(false);
+  setClock(100 * SECOND);
+  ToothForces forces = twin_->makeToothForces();
+  loop_ = nullptr;
+  loop_ = std::make_unique<TwinLoop>(
+      *twin_, inbox_, [this] { return clock_.load(); },
+      [&](Twin& twin) {
+        if (auto* message = ring.claim())
+        {
+          twin.toothForces(forces);
+          fillContactForces(twin.outputs(), forces, *message);
+          ring.commit();
+          ring.pop();
+        }
+      });
+  setClock(101 * SECOND);
+  for (int i = 0; i < 100; ++i)
+  {
+    inbox_.push({ 101 * SECOND + i * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
+  }
+  const std::size_t before = allocationCount();
+  clock_ = 102 * SECOND;
+  waitForCycles(2);
+  waitFor([this] { return loop_->status().lag < STEP; });
+  EXPECT_EQ(allocationCount(), before);
+  EXPECT_EQ(loop_->status().counters.steps, static_cast<std::uint64_t>((SECOND - HOLD_BACK) / STEP));
+}
+
+TEST(Inbox, DropsWhatItCannotHoldAndCounts)
+{
+  Inbox inbox;
+  for (std::size_t i = 0; i < Inbox::CAPACITY + 3; ++i)
+  {
+    inbox.push({ static_cast<Stamp>(i), InputKind::MOTOR_TORQUE, 0.0 });
+  }
+  inbox.push({ 0, InputKind::LOAD_TORQUE, std::numeric_limits<double>::infinity() });
+  EXPECT_EQ(inbox.overflow(), 3U);
+  EXPECT_EQ(inbox.notFinite(), 1U);
+  std::vector<Input> inputs = Inbox::makeBuffer();
+  inbox.take(inputs);
+  ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
+  EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
+  inbox.take(inputs);
+  EXPECT_TRUE(inputs.empty());
+}
+
+TEST(SlotRing, HandsOverInOrderAndRefusesWhenFull)
+{
+  constexpr int MESSAGES = 100000;
+  SlotRing<int> ring(8, 0);
+  std::thread writer([&] {
+    for (int i = 0; i < MESSAGES;)
+    {
+      if (int* slot = ring.claim())
+      {
+        *slot = i++;
+        ring.commit();
+      }
+      else
+      {
+        std::this_thread::yield();
+      }
+    }
+  });
+  int wrong = 0;
+  for (int i = 0; i < MESSAGES;)
+  {
+    if (const int* slot = ring.front())
+    {
+      wrong += *slot == i++ ? 0 : 1;
+      ring.pop();
+    }
+    else
+    {
+      std::this_thread::yield();
+    }
+  }
+  writer.join();
+  EXPECT_EQ(wrong, 0);
+  for (int i = 0; i < 8; ++i)
+  {
+    ASSERT_NE(ring.claim(), nullptr);
+    ring.commit();
+  }
+  EXPECT_EQ(ring.claim(), nullptr);
+}
+}  // namespace
+}  // namespace hjt

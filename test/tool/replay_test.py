@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin replay`."""
+import os
+import signal
+import subprocess
+import time
+
+import genpy
+import rosbag
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+import tool
+
+
+class Replay(tool.ToolTest):
+    def replay(self, name="in.bag", out="out.bag", *arguments):
+        return self.succeed("replay", name, "--out", out, *arguments)
+
+    def test_originals_are_untouched_and_everything_is_in_order_of_time(self):
+        tool.write_recording(self.path("in.bag"))
+        self.replay()
+        original = tool.raw_messages(self.path("in.bag"))
+        replayed = tool.raw_messages(self.path("out.bag"))
+        topics = {message[0] for message in original}
+        self.assertEqual({message[0] for message in replayed} - topics, tool.SIMULATED_TOPICS)
+        for topic in topics:
+            self.assertEqual([message for message in replayed if message[0] == topic],
+                             [message for message in original if message[0] == topic])
+        with rosbag.Bag(self.path("in.bag")) as before, rosbag.Bag(self.path("out.bag")) as after:
+            headers = {connection.topic: connection.header for connection in after._get_connections()}
+            for connection in before._get_connections():
+                self.assertEqual(headers[connection.topic], connection.header)
+        # The file itself, not only its index, is in order: message positions ascend with time.
+        with rosbag.Bag(self.path("out.bag")) as bag:
+            entries = sorted(((entry.chunk_pos, entry.offset), entry.time) for entry in bag._get_entries())
+        self.assertEqual([at for _, at in entries], sorted(at for _, at in entries))
+
+    def test_simulated_messages_carry_the_simulated_instant(self):
+        tool.write_recording(self.path("in.bag"), duration=0.2)
+        self.replay()
+        for topic, period in [("joint_states", 0.001), ("encoders", 0.001), ("contact_forces", 0.01), ("health", 0.1)]:
+            messages = tool.series(self.path("out.bag"), f"/joint_twin/{topic}")
+            self.assertEqual(len(messages), int(0.2011 / period), topic)
+            for index, (at, message) in enumerate(messages):
+                self.assertAlmostEqual(at, (index + 1) * period, delta=1e-9)
+                self.assertAlmostEqual((message.header.stamp - genpy.Time(tool.START)).to_sec(), at, delta=1e-9)
+        states = tool.series(self.path("out.bag"), "/joint_twin/joint_states")
+        self.assertEqual(states[0][1].name, ["elbow_joint_motor", "elbow_joint"])
+        self.assertGreater(max(message.position[0] for _, message in states), 0.1)
+
+    def test_commands_count_at_their_header_stamp(self):
+        # The same stamps recorded with another delay: the same simulated messages.
+        tool.write_recording(self.path("in.bag"), delay=0.001)
+        tool.write_recording(self.path("late.bag"), delay=0.003)
+        self.replay()
+        self.replay("late.bag", "late_out.bag")
+        topics = ["/joint_twin/joint_states", "/joint_twin/contact_forces"]
+        first = tool.raw_messages(self.path("out.bag"), topics)
+        second = tool.raw_messages(self.path("late_out.bag"), topics)
+        self.assertGreater(len(first), 200)
+        self.assertEqual(second[:len(first)], first)
+
+    def test_unstamped_torques_count_at_the_time_of_recording(self):
+        with rosbag.Bag(self.path("in.bag"), "w") as bag:
+            for step in range(26):
+                at = genpy.Time(tool.START) + genpy.Duration.from_sec(0.008 * step)
+                bag.write("/joint_twin/motor_torque_command", Float64(0.4), at)
+                bag.write("/joint_twin/load_torque", Float64(5.0 if step < 13 else 7.0), at)
+        self.replay("in.bag", "out.bag", "--set", "joint.name=elbow_joint")
+        states = tool.series(self.path("out.bag"), "/joint_twin/joint_states")
+        self.assertEqual({message.effort[0] for _, message in states}, {0.4})
+
+    def test_same_input_gives_the_same_bytes(self):
+        tool.write_recording(self.path("in.bag"))
+        self.replay()
+        self.replay("in.bag", "again.bag")
+        self.assertEqual(tool.read_bytes(self.path("out.bag")), tool.read_bytes(self.path("again.bag")))
+
+    def test_torques_that_are_not_finite_are_refused_and_counted(self):
+        tool.write_recording(self.path("in.bag"), duration=0.1)
+        with rosbag.Bag(self.path("in.bag"), "a") as bag:
+            for index, torque in enumerate([float("nan"), float("inf")]):
+                message = tool.stamped_torque("elbow_joint", torque, 0.05)
+                bag.write("/joint_twin/command", message, message.header.stamp + genpy.Duration(0, 100 + index))
+        done = self.replay()
+        self.assertIn("2 inputs were not finite and refused", done.stderr)
+        for _, message in tool.series(self.path("out.bag"), "/joint_twin/joint_states"):
+            for value in [*message.position, *message.velocity, *message.effort]:
+                self.assertTrue(abs(value) < 1e6, value)
+
+    def test_bag_without_inputs_says_what_it_holds(self):
+        with rosbag.Bag(self.path("in.bag"), "w") as bag:
+            bag.write("/chatter", Float64(1.0), genpy.Time(5))
+        self.fail_with(1, ["no torque on an input topic", "/joint_twin/command", "/chatter (std_msgs/Float64)"],
+                       "replay", "in.bag", "--out", "out.bag")
+        self.assertEqual(os.listdir(self.directory), ["in.bag"])
+
+    def test_other_joints_are_not_mistaken_for_this_one(self):
+        tool.write_recording(self.path("in.bag"), joint="elbow_joint")
+        self.fail_with(1, ["commands other joints (elbow_joint)", "joint.name = wrist"],
+                       "replay", "in.bag", "--out", "out.bag", "--set", "joint.name=wrist")
+        self.assertIn("joint.name = elbow_joint", self.replay().stderr)
+
+    def test_wrong_types_and_clocks_are_refused(self):
+        with rosbag.Bag(self.path("in.bag"), "w") as bag:
+            bag.write("/joint_twin/command", Float64(1.0), genpy.Time(5))
+        self.fail_with(1, ["/joint_twin/command has type std_msgs/Float64, expected sensor_msgs/JointState"],
+                       "replay", "in.bag", "--out", "out.bag")
+        with rosbag.Bag(self.path("in.bag"), "w") as bag:
+            bag.write("/joint_twin/command", tool.stamped_torque("joint", 0.1, 0.0), genpy.Time(tool.START + 3600))
+        self.fail_with(1, ["the clocks do not agree"], "replay", "in.bag", "--out", "out.bag")
+
+    def test_topics_of_an_earlier_replay_are_not_mixed(self):
+        tool.write_recording(self.path("in.bag"), duration=0.02)
+        self.replay()
+        self.fail_with(1, ["out.bag holds /joint_twin/", "already"], "replay", "out.bag", "--out", "twice.bag")
+
+    def test_damaged_and_foreign_files_are_refused(self):
+        tool.write_recording(self.path("in.bag"))
+        whole = tool.read_bytes(self.path("in.bag"))
+        for name, content in [("empty", b""), ("text", b"time,motor_torque\n0,1\n"), ("magic", b"#ROSBAG V2.0\n"),
+                              ("head", whole[:5000]), ("tail", whole[:-1000])]:
+            with self.subTest(name):
+                with open(self.path("bad.bag"), "wb") as file:
+                    file.write(content)
+                self.fail_with(1, ["bad.bag"], "replay", "bad.bag", "--out", "out.bag", "--json")
+                self.assertFalse(os.path.exists(self.path("out.bag")))
+        self.fail_with(1, ["nowhere.bag"], "replay", "nowhere.bag", "--out", "out.bag")
+
+    def test_what_stands_before_a_damaged_chunk_is_a_readable_bag(self):
+        with rosbag.Bag(self.path("in.bag"), "w", chunk_threshold=5000) as bag:
+            for step in range(200):
+                message = tool.stamped_torque("elbow_joint", 0.1, 0.001 * step)
+                bag.write("/joint_twin/command", message, message.header.stamp)
+                bag.write("/foreign", JointState(name=["x" * 100]), message.header.stamp)
+        with rosbag.Bag(self.path("in.bag")) as bag:
+            entries = sorted((entry.chunk_pos, entry.offset)
+                             for entry in bag._get_entries(bag._get_connections(["/foreign"])))
+            chunk, offset = entries[120]
+            record = bag._chunk_headers[chunk].data_pos + offset
+        # The kind of the record, message data, becomes one that there is not.
+        content = bytearray(tool.read_bytes(self.path("in.bag")))
+        kind = content.index(b"op=\x02", record) + 3
+        self.assertLess(kind - record, 100)
+        content[kind] = 9
+        with open(self.path("bad.bag"), "wb") as file:
+            file.write(content)
+        done = self.fail_with(1, ["bad.bag"], "replay", "bad.bag", "--out", "out.bag")
+        self.assertIn("out.bag is readable", done.stderr)
+        self.assertGreater(len(tool.raw_messages(self.path("out.bag"))), 100)
+
+    def test_existing_output_is_kept_without_force(self):
+        tool.write_recording(self.path("in.bag"), duration=0.02)
+        self.write("out.bag", "precious")
+        self.fail_with(1, ["out.bag exists; --force overwrites it"], "replay", "in.bag", "--out", "out.bag")
+        self.assertEqual(tool.read_bytes(self.path("out.bag")), b"precious")
+        self.replay("in.bag", "out.bag", "--force")
+        self.fail_with(1, ["is the input itself"], "replay", "in.bag", "--out", "in.bag", "--force")
+
+    def test_interrupts_close_the_bag(self):
+        tool.write_recording(self.path("in.bag"), duration=60.0)
+        for number in [signal.SIGTERM, signal.SIGINT]:
+            process = subprocess.Popen([self.executable, "replay", "in.bag", "--out", f"{int(number)}.bag"],
+                                       cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            time.sleep(1.5)
+            process.send_signal(number)
+            _, errors = process.communicate(timeout=30)
+            self.assertEqual(process.returncode, 128 + number)
+            self.assertIn(b"readable up to here", errors)
+            self.assertGreater(len(tool.raw_messages(self.path(f"{int(number)}.bag"))), 10)
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin simulate`."""
+import csv
+import os
+import signal
+import subprocess
+import time
+
+import rosbag
+
+import tool
+
+
+class Simulate(tool.ToolTest):
+    def rows(self, name):
+        with open(self.path(name)) as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_bag_holds_the_nodes_topics_at_their_rates(self):
+        self.succeed("simulate", "--duration", 0.2, "--torque", 0.4, "--out", "a.bag")
+        with rosbag.Bag(self.path("a.bag")) as bag:
+            counts = {topic: info.message_count for topic, info in bag.get_type_and_topic_info().topics.items()}
+        self.assertEqual(counts, {"/joint_twin/joint_states": 200, "/joint_twin/encoders": 200,
+                                  "/joint_twin/contact_forces": 20, "/joint_twin/health": 2})
+        for _, message in tool.series(self.path("a.bag"), "/joint_twin/joint_states"):
+            self.assertEqual(message.name, ["joint_motor", "joint"])
+
+    def test_constant_torque_does_not_time_out(self):
+        summary = self.succeed_json("simulate", "--duration", 0.3, "--torque", 0.25, "--out", "a.csv")
+        self.assertEqual(summary["command_timeouts"], 0)
+        rows = self.rows("a.csv")
+        self.assertEqual(len(rows), 300)
+        self.assertEqual({row["motor_torque"] for row in rows}, {0.25})
+        self.assertEqual(rows[-1]["time"], 0.3)
+        self.assertGreater(rows[-1]["motor_angle"], 1.0)
+        self.assertEqual(rows[-1]["motor_angle"], summary["motor_angle"])
+
+    def test_profile_is_held_between_its_rows(self):
+        self.write("p.csv", "motor_torque,time,load_torque,brake\n0.4,0,2.5,0\n-0.2,0.1,-1.5,0\n0.3,0.2,0,1\n")
+        self.succeed("simulate", "--profile", "p.csv", "--duration", 0.25, "--out", "a.csv")
+        for row in self.rows("a.csv"):
+            expected = (0.4, 2.5, 0.0) if row["time"] < 0.1 else (-0.2, -1.5, 0.0) if row["time"] < 0.2 else \
+                       (0.3, 0.0, 1.0)
+            self.assertEqual((row["motor_torque"], row["load_torque"], row["brake"]), expected, row["time"])
+
+    def test_duration_defaults_to_the_profiles(self):
+        self.write("p.csv", "time,motor_torque\n0,0.1\n0.05,0.2\n")
+        self.assertEqual(self.succeed_json("simulate", "--profile", "p.csv", "--out", "a.bag")["simulated_time"], 0.05)
+
+    def test_same_input_gives_the_same_bytes(self):
+        for name in ["a", "b"]:
+            for kind in ["bag", "csv"]:
+                self.succeed("simulate", "--duration", 0.1, "--torque", 0.4, "--load", 3, "--out", f"{name}.{kind}")
+        for kind in ["bag", "csv"]:
+            self.assertEqual(tool.read_bytes(self.path(f"a.{kind}")), tool.read_bytes(self.path(f"b.{kind}")))
+
+    def test_torque_beyond_the_limit_is_clamped_and_counted(self):
+        done = self.run_tool("simulate", "--duration", 0.02, "--torque", 50, "--load", 1000, "--out", "a.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("motor.torque_limit", done.stderr)
+        self.assertIn("output.load_torque_limit", done.stderr)
+        self.assertEqual({(row["motor_torque"], row["load_torque"]) for row in self.rows("a.csv")}, {(2.87, 284.0)})
+
+    def test_bad_profiles_are_refused_with_their_place(self):
+        for text, parts in [("time,motor_torque\n0,0.1\n0.1,\n", [":3: column 'motor_torque' is empty"]),
+                            ("time,motor_torque\n0,0.1\n0.1\n", [":3: too few columns"]),
+                            ("time,motor_torque\n0,0.1,7\n", [":2: too many columns"]),
+                            ("time,motor_torque\n0,nan\n", [":2: column 'motor_torque': 'nan' is not a finite"]),
+                            ("time,motor_torque\n0,zero\n", ["'zero' is not a finite number"]),
+                            ("time,motor_torque\n0,1\n0,1\n", [":3: column 'time' must start at 0 or later and ascend"]),
+                            ("time,motor_torque\n-1,1\n", [":2: column 'time' must start at 0 or later"]),
+                            ("time,motor_torque,brake\n0,1,2\n", [":2: column 'brake' must be 0 or 1"]),
+                            ("time,torque\n0,1\n", [":1: column 'motor_torque' is missing"]),
+                            ("time,motor_torque\n", ["has no rows"]), ("", ["p.csv"])]:
+            with self.subTest(text):
+                self.write("p.csv", text)
+                self.fail_with(1, parts, "simulate", "--profile", "p.csv", "--out", "a.bag", "--json")
+                self.assertFalse(os.path.exists(self.path("a.bag")))
+        self.fail_with(1, ["nowhere.csv cannot be read"], "simulate", "--profile", "nowhere.csv", "--out", "a.bag")
+
+    def test_existing_output_is_kept_without_force(self):
+        arguments = ["simulate", "--duration", 0.01, "--torque", 0.1, "--out"]
+        for name in ["a.bag", "a.csv"]:
+            self.write(name, "precious")
+            self.fail_with(1, [f"{name} exists; --force overwrites it"], *arguments, name)
+            self.assertEqual(tool.read_bytes(self.path(name)), b"precious")
+            self.succeed(*arguments, name, "--force")
+        self.fail_with(1, ["cannot be written"], *arguments, "nowhere/a.bag")
+
+    def test_interrupts_close_the_bag(self):
+        for number in [signal.SIGTERM, signal.SIGINT]:
+            name = f"{int(number)}.bag"
+            process = subprocess.Popen([self.executable, "simulate", "--duration", "1000", "--torque", "0.4", "--out", name],
+                                       cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            time.sleep(1.0)
+            process.send_signal(number)
+            _, errors = process.communicate(timeout=30)
+            self.assertEqual(process.returncode, 128 + number)
+            self.assertIn(b"readable up to here", errors)
+            self.assertGreater(len(tool.raw_messages(self.path(name))), 10)
+
+
+if __name__ == "__main__":
+    tool.main()

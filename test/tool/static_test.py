@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The static analyses and the command line of the offline tool."""
+import csv
+import math
+
+import tool
+
+
+class CommandLine(tool.ToolTest):
+    def test_wrong_usage_ends_with_2(self):
+        for arguments in [[], ["fly"], ["insert", "--wings"], ["stiffness"], ["stiffness", "--torques", "5,many"],
+                          ["stiffness", "--torques", "nan"], ["stiffness", "--torques", "inf"],
+                          ["turn", "--load", "1", "--angle-range", "1"],
+                          ["turn", "--load", "1", "--angle-range", "1", "--steps", "0"],
+                          ["simulate", "--duration", "1", "--out", "a.bag"],
+                          ["simulate", "--torque", "1", "--out", "a.bag"],
+                          ["simulate", "--duration", "-1", "--torque", "1", "--out", "a.bag"],
+                          ["simulate", "--duration", "1", "--torque", "nan", "--out", "a.bag"],
+                          ["simulate", "--duration", "1", "--torque", "1", "--out", "a.txt"],
+                          ["import", "a.csv", "--joint", "6", "--out", "a.bag"],
+                          ["import", "a.csv", "--out", "a.bag"], ["replay", "a.bag"]]:
+            with self.subTest(arguments):
+                self.fail_with(2, [], *arguments)
+
+    def test_help_and_version_end_with_0(self):
+        self.assertIn("SI units", self.succeed("--help").stdout)
+        self.assertRegex(self.succeed("--version").stdout, r"^joint_twin \d+\.\d+\.\d+$")
+
+    def test_wrong_parameters_are_named(self):
+        self.fail_with(1, ["gear.wave_amplitude = 0.5 [m] is out of range, allowed: 0 ... 0.01 [m]"],
+                       "insert", "--json", "--set", "gear.wave_amplitude=0.5")
+        self.fail_with(1, ["unknown parameter gear.wave_amplitud ", "did you mean gear.wave_amplitude?"],
+                       "insert", "--set", "gear.wave_amplitud=0.3e-3")
+        overlay = self.write("overlay.yaml", "contact:\n  stiffness: 1e8\n")
+        self.fail_with(1, [f"{overlay}:2: contact.stiffness = '1e8'", "[N/m]", "write 1.0e+8"],
+                       "insert", "--config", overlay)
+        self.fail_with(1, ["nowhere.yaml: cannot be read"], "insert", "--config", "nowhere.yaml")
+        self.fail_with(1, ["no default configuration in 'nowhere'"], "insert", "--config-dir", "nowhere")
+
+    def test_config_dir_comes_from_the_environment_too(self):
+        done = self.run_tool("insert", environment={"HJT_CONFIG_DIR": self.directory})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(self.directory, done.stderr)
+
+    def test_later_overlay_wins_and_set_wins_over_all(self):
+        first = self.write("first.yaml", "motor:\n  torque_limit: 1.0\n")
+        second = self.write("second.yaml", "motor:\n  torque_limit: 2.0\n")
+        overlays = ["--config", first, "--config", second]
+        self.assertEqual(self.succeed_json("parameters", *overlays)["motor"]["torque_limit"], 2.0)
+        given = self.succeed_json("parameters", "--set", "motor.torque_limit=2.5", *overlays)
+        self.assertEqual(given["motor"]["torque_limit"], 2.5)
+
+    def test_parameters_describe_themselves(self):
+        text = self.succeed("parameters").stdout
+        self.assertRegex(text, r"(?m)^gear\.wave_amplitude: 0\.00035  # \[m\] ")
+        table = self.succeed("parameters", "--markdown").stdout
+        self.assertEqual(table.count("\n"), text.count("\n") + 2)
+
+
+class Insertion(tool.ToolTest):
+    def test_thesis_set_gives_the_thesis_numbers(self):
+        result = self.succeed_json("insert", "--config", "config/thesis_insertion.yaml")
+        for key, value in {"wave_generator_force_max": 538.82, "tension_min": 2278.3, "tension_max": 8044.4,
+                           "radius_major_axis": 30.9946e-3, "radius_minor_axis": 30.4130e-3}.items():
+            self.assertAlmostEqual(result[key] / value, 1.0, delta=1e-4, msg=key)
+        self.assertEqual(result["teeth_in_contact"], 82)
+
+    def test_json_has_the_promised_keys(self):
+        self.assertEqual(set(self.succeed_json("insert")),
+                         {"wave_generator_force_max", "wave_generator_force_min", "wave_generator_force_sum",
+                          "teeth_in_contact", "tension_min", "tension_max", "radius_major_axis", "radius_minor_axis",
+                          "bending_force_max", "residual", "iterations", "solve_time"})
+
+    def test_table_names_units(self):
+        text = self.succeed("insert").stdout
+        self.assertRegex(text, r"wave generator force, largest +6\.29\d* N\n")
+
+    def test_csv_holds_every_tooth_and_is_not_overwritten_unasked(self):
+        result = self.succeed_json("insert", "--csv", "teeth.csv")
+        with open(self.path("teeth.csv")) as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 200)
+        self.assertEqual(max(float(row["wave_generator_force"]) for row in rows), result["wave_generator_force_max"])
+        self.assertEqual(min(float(row["rim_tension"]) for row in rows), result["tension_min"])
+        before = tool.read_bytes(self.path("teeth.csv"))
+        self.fail_with(1, ["teeth.csv exists; --force overwrites it"], "insert", "--csv", "teeth.csv", "--json")
+        self.assertEqual(tool.read_bytes(self.path("teeth.csv")), before)
+        self.succeed("insert", "--csv", "teeth.csv", "--force")
+
+    def test_no_equilibrium_is_a_failure(self):
+        self.fail_with(1, ["no equilibrium found for the insertion"], "insert", "--json", "--set",
+                       "solver.max_iterations=1", "--set", "solver.max_step_cuts=0")
+
+
+class Stiffness(tool.ToolTest):
+    def test_rows_are_those_of_the_locked_wave_generator(self):
+        rows = self.succeed_json("stiffness", "--torques", "5,14,48")["rows"]
+        self.assertEqual([row["torque"] for row in rows], [5.0, 14.0, 48.0])
+        for row, angle in zip(rows, [-0.169142e-3, -0.472083e-3, -1.233447e-3]):
+            self.assertAlmostEqual(row["output_angle"] / angle, 1.0, delta=1e-4)
+        self.assertEqual(set(rows[0]), {"torque", "output_angle", "wave_generator_torque", "teeth_loaded",
+                                        "mesh_force_max", "wave_generator_force_sum", "residual"})
+
+    def test_torque_may_be_negative(self):
+        forth = self.succeed_json("stiffness", "--torques", "14")["rows"][0]
+        back = self.succeed_json("stiffness", "--torques", "-14")["rows"][0]
+        self.assertAlmostEqual(back["output_angle"], -forth["output_angle"], delta=1e-9)
+
+
+class Turn(tool.ToolTest):
+    def test_output_follows_by_the_ratio_over_a_tooth_pitch(self):
+        angle = 2 * math.pi / 200
+        rows = self.succeed_json("turn", "--load", 20, "--angle-range", repr(angle), "--steps", 4)["rows"]
+        self.assertEqual(set(rows[0]), {"wave_generator_angle", "output_angle", "wave_generator_torque"})
+        turned = rows[-1]["output_angle"] - rows[0]["output_angle"]
+        self.assertAlmostEqual(turned, angle / 101, delta=1e-11)
+
+
+if __name__ == "__main__":
+    tool.main()

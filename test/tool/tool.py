@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the offline tool share: running it, and small recordings to feed it."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import genpy
+import rosbag
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+JOINT_NAMES = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+               "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+SIMULATED_TOPICS = {"/joint_twin/joint_states", "/joint_twin/encoders", "/joint_twin/contact_forces",
+                    "/joint_twin/health"}
+START = 1000000000  # [s] ROS time at which the recordings made here begin
+
+
+class ToolTest(unittest.TestCase):
+    """A test in an empty directory of its own."""
+    executable = None
+
+    def setUp(self):
+        self.directory = tempfile.mkdtemp(prefix="joint_twin_test_")
+        self.addCleanup(shutil.rmtree, self.directory)
+
+    def path(self, name):
+        return os.path.join(self.directory, name)
+
+    def run_tool(self, *arguments, environment=None):
+        return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300, check=False,
+                              env=dict(os.environ, **(environment or {})))
+
+    def succeed(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def succeed_json(self, *arguments):
+        """The one JSON document on stdout; json.loads refuses anything beside it."""
+        return json.loads(self.succeed(*arguments, "--json").stdout)
+
+    def fail_with(self, exit_code, parts, *arguments):
+        """The tool must end with this code and say each of these parts on stderr, and nothing on stdout."""
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, exit_code, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in parts:
+            self.assertIn(part, done.stderr)
+        return done
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as file:
+            file.write(text)
+        return self.path(name)
+
+
+def read_bytes(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def raw_messages(path, topics=None):
+    """(topic, time, type, checksum, bytes) of each message, in the order of the bag."""
+    with rosbag.Bag(path) as bag:
+        return [(topic, time, raw[0], raw[2], raw[1]) for topic, raw, time in bag.read_messages(topics=topics, raw=True)]
+
+
+def series(path, topic):
+    """(time [s] since START, message) of one topic."""
+    with rosbag.Bag(path) as bag:
+        return [((time - genpy.Time(START)).to_sec(), message) for _, message, time in bag.read_messages(topics=[topic])]
+
+
+def stamped_torque(joint, torque, seconds):
+    message = JointState(name=[joint], effort=[torque])
+    message.header.stamp = genpy.Time(START) + genpy.Duration.from_sec(seconds)
+    return message
+
+
+def write_recording(path, duration=0.2, joint="elbow_joint", torque=0.4, load=5.0, delay=0.001):
+    """A bag as a live recording leaves it: stamped command and load, recorded a little later, and foreign topics."""
+    with rosbag.Bag(path, "w") as bag:
+        for step in range(int(duration * 125) + 1):
+            seconds = step * 0.008
+            recorded = genpy.Time(START) + genpy.Duration.from_sec(seconds + delay)
+            command = stamped_torque(joint, torque * math.sin(20.0 * seconds), seconds)
+            bag.write("/joint_twin/command", command, recorded)
+            bag.write("/joint_twin/load", stamped_torque(joint, load, seconds), recorded)
+            bag.write("/foreign", Float64(step), recorded)
+
+
+def telemetry_csv(rows=25, period=0.008):
+    """A UR controller's recording of this length, as lines with the header first; columns in an order of their own."""
+    names = ["timestamp"]
+    for quantity in ["target_moment", "actual_q", "actual_qd", "target_q", "actual_current"]:
+        names += [f"{quantity}_{joint}" for joint in range(6)]
+    lines = [",".join(names)]
+    for row in range(rows):
+        values = [row * period]
+        values += [float(joint) for joint in range(6)]                             # target_moment
+        values += [0.1 * joint + 0.001 * row for joint in range(6)]                # actual_q
+        values += [0.125] * 6                                                      # actual_qd
+        values += [0.0] * 6                                                        # target_q
+        values += [0.5 + joint for joint in range(6)]                              # actual_current
+        lines.append(",".join(f"{value:.6f}" for value in values))
+    return lines
+
+
+def main():
+    """First argument: the tool."""
+    ToolTest.executable = sys.argv.pop(1)
+    unittest.main(verbosity=2)
