@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Shared by the scripts beside it; to be sourced by bash, not run.
+# shellcheck shell=bash disable=SC2034
 set -euo pipefail
 
 PROJECT_DIR=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)

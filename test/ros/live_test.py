@@ -160,7 +160,7 @@ class Live(unittest.TestCase):
         listener = Listener(f"{NODE}/encoders", Encoders)
         message = listener.wait_for(1)[0]
         self.assertLess(abs(message.motor_angle_true), 1e-3)
-        self.assertEqual(message.motor_count, 0)
+        self.assertLessEqual(abs(message.motor_count), 1)
         listener.close()
 
     def test_brake_holds_and_releases(self):

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 // The GNU C library's own functions, under the names it keeps for those who replace the public ones.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C"
 {
   void* __libc_malloc(std::size_t size);
@@ -13,6 +14,7 @@ extern "C"
   void* __libc_realloc(void* memory, std::size_t size);
   void* __libc_memalign(std::size_t alignment, std::size_t size);
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace
 {

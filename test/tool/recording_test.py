@@ -23,8 +23,10 @@ class Recording(tool.ToolTest):
             self.assertEqual((summary["rows"], summary["joint"]), (10264, tool.JOINT_NAMES[joint]))
 
     def test_base_joint_turns_as_the_real_one(self):
+        # No independent proof: the friction of config/joints was found on this very recording. It shows that signs,
+        # units and stamps are right from the file to the simulated joint.
         # The first 14 s hold the whole first stroke of the base, -2.79 rad. Torques in, no feedback: what friction and
-        # inertia leave open adds up twice, so the stroke need only agree to 15 %, and the speed's course by correlation.
+        # inertia leave open adds up twice, so the stroke need only agree to 15 %, the speed's course by correlation.
         with open(RECORDING) as file:
             lines = file.read().splitlines()[:1 + 14 * 125]
         self.write("head.csv", "\n".join(lines) + "\n")
@@ -36,7 +38,8 @@ class Recording(tool.ToolTest):
         stroke = real[-1][1].position[0] - real[0][1].position[0]
         self.assertAlmostEqual(twin[-1][1].position[1] / stroke, 1.0, delta=0.15)
         real_speed = np.array([message.velocity[0] for _, message in real])
-        twin_speed = np.interp([at for at, _ in real], [at for at, _ in twin], [message.velocity[1] for _, message in twin])
+        twin_speed = np.interp([at for at, _ in real], [at for at, _ in twin],
+                               [message.velocity[1] for _, message in twin])
         self.assertGreater(np.corrcoef(real_speed, twin_speed)[0, 1], 0.95)
 
 

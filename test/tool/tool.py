@@ -69,13 +69,15 @@ def read_bytes(path):
 def raw_messages(path, topics=None):
     """(topic, time, type, checksum, bytes) of each message, in the order of the bag."""
     with rosbag.Bag(path) as bag:
-        return [(topic, time, raw[0], raw[2], raw[1]) for topic, raw, time in bag.read_messages(topics=topics, raw=True)]
+        return [(topic, time, raw[0], raw[2], raw[1])
+                for topic, raw, time in bag.read_messages(topics=topics, raw=True)]
 
 
 def series(path, topic):
     """(time [s] since START, message) of one topic."""
     with rosbag.Bag(path) as bag:
-        return [((time - genpy.Time(START)).to_sec(), message) for _, message, time in bag.read_messages(topics=[topic])]
+        return [((time - genpy.Time(START)).to_sec(), message)
+                for _, message, time in bag.read_messages(topics=[topic])]
 
 
 def stamped_torque(joint, torque, seconds):

@@ -88,7 +88,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{1e-9, 10.0}, "motor's rotor");
   visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{0.0, 10.0}, "wave generator");
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{0.0, 1e3},
-        "Coulomb friction at the motor shaft: motor, seals and gear without the elements modelled here");
+        "Coulomb friction at the motor shaft beyond bearing, outer race and flanks");
   visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{0.0, 1e3}, "viscous friction, motor side");
   visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{0.0, 1e4}, "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{1e-3, 1e5},
