@@ -26,6 +26,8 @@ TurnWindow::TurnWindow(const GearParameters& gear)
 void TurnWindow::reset() noexcept
 {
   started_ = false;
+  direction_ = 1;
+  newest_ = 0;
   count_ = 0;
 }
 

@@ -191,7 +191,8 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
       *twin_, inbox_, [this] { return clock_.load(); },
-      [&](Twin& twin) {
+      [&](Twin& twin)
+      {
         if (auto* message = ring.claim())
         {
           twin.toothForces(forces);
@@ -235,20 +236,22 @@ TEST(SlotRing, HandsOverInOrderAndRefusesWhenFull)
 {
   constexpr int MESSAGES = 100000;
   SlotRing<int> ring(8, 0);
-  std::thread writer([&] {
-    for (int i = 0; i < MESSAGES;)
-    {
-      if (int* slot = ring.claim())
+  std::thread writer(
+      [&]
       {
-        *slot = i++;
-        ring.commit();
-      }
-      else
-      {
-        std::this_thread::yield();
-      }
-    }
-  });
+        for (int i = 0; i < MESSAGES;)
+        {
+          if (int* slot = ring.claim())
+          {
+            *slot = i++;
+            ring.commit();
+          }
+          else
+          {
+            std::this_thread::yield();
+          }
+        }
+      });
   int wrong = 0;
   for (int i = 0; i < MESSAGES;)
   {

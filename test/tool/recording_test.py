@@ -10,8 +10,7 @@ import numpy as np
 
 import tool
 
-CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(CHECKOUT, "..", "shared", "telemetry"))
+DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
 RECORDING = os.path.join(DIRECTORY, "ur5_cb", "ur5_cb_no6.csv")
 
 

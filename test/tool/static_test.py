@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The static analyses and the command line of the offline tool."""
 import csv
+import json
 import math
+import os
+import shutil
 
 import tool
 
@@ -41,6 +44,21 @@ class CommandLine(tool.ToolTest):
         done = self.run_tool("insert", environment={"HJT_CONFIG_DIR": self.directory})
         self.assertEqual(done.returncode, 1)
         self.assertIn(self.directory, done.stderr)
+
+    def test_an_installed_tool_reads_the_installed_configuration(self):
+        given = json.loads(self.succeed("parameters", "--json").stdout)
+        folder = self.path("prefix/lib/harmonic_joint_twin")
+        os.makedirs(folder)
+        shutil.copy(self.executable, folder)
+        shutil.copytree(os.path.join(tool.CHECKOUT, "config"), self.path("prefix/share/harmonic_joint_twin/config"))
+        gear = self.path("prefix/share/harmonic_joint_twin/config/gear.yaml")
+        with open(gear) as file:
+            text = file.read()
+        self.write(gear, text.replace("wave_amplitude: 0.35e-3", "wave_amplitude: 0.34e-3"))
+        self.executable = os.path.join(folder, os.path.basename(self.executable))
+        installed = self.succeed_json("parameters", "--config", "config/joints/elbow.yaml")
+        self.assertEqual((given["gear"]["wave_amplitude"], installed["gear"]["wave_amplitude"]), (0.35e-3, 0.34e-3))
+        self.assertEqual(installed["joint"]["name"], "elbow_joint")
 
     def test_later_overlay_wins_and_set_wins_over_all(self):
         first = self.write("first.yaml", "motor:\n  torque_limit: 1.0\n")

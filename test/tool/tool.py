@@ -14,6 +14,7 @@ import rosbag
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
+CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 JOINT_NAMES = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
                "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 SIMULATED_TOPICS = {"/joint_twin/joint_states", "/joint_twin/encoders", "/joint_twin/contact_forces",
