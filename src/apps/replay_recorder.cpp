@@ -36,9 +36,9 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
   return topics;
 }
 
-/// Records given topics, each message at the time it comes. What `rosbag record` cannot: its queues of 100 messages lose
-/// joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it looks for
-/// topics only once the clock runs, and misses what came first. Here queues have no bound.
+/// Records given topics, each message at the time it comes. `rosbag record` cannot serve here: its queues of 100
+/// messages lose joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it
+/// looks for topics only once the clock runs, and misses what came first. Here queues have no bound.
 class TopicRecorder
 {
 public:

@@ -68,15 +68,15 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
     }
     return;
   }
-  double largest = 0.0;
+  double farthest = 0.0;
   for (int i = 0; i < n; ++i)
   {
-    double step;
+    double nearness;
     own(i, x, y);
-    store(i, closestPointNear(a, b, x, y, step));
-    largest = std::max(largest, std::abs(step));
+    store(i, closestPointNear(a, b, x, y, nearness));
+    farthest = std::max(farthest, nearness);
   }
-  if (!(largest < NEAR_STEP))
+  if (!(farthest < NEAR_POINT))
   {
     for (int i = 0; i < n; ++i)
     {

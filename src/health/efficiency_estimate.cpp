@@ -13,7 +13,7 @@ constexpr double MAX_EFFICIENCY = 1.01;
 }  // namespace
 
 EfficiencyEstimate::EfficiencyEstimate(const HealthParameters& parameters)
-  : window_(std::llround(1e9 * parameters.efficiency_window)), forgetting_(parameters.efficiency_window)
+  : window_(std::llround(1e9 * parameters.averaging_time)), forgetting_(parameters.averaging_time)
 {
 }
 

@@ -7,8 +7,8 @@ namespace hjt
 {
 StiffnessEstimate::StiffnessEstimate(const HealthParameters& parameters)
   : torque_span_(parameters.stiffness_torque_span)
-  , forgetting_(parameters.efficiency_window)
-  , recent_torque_(std::llround(1e9 * parameters.efficiency_window))
+  , forgetting_(parameters.averaging_time)
+  , recent_torque_(std::llround(1e9 * parameters.averaging_time))
 {
 }
 

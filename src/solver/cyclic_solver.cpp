@@ -3,6 +3,11 @@
 
 namespace hjt
 {
+namespace
+{
+constexpr int CUP = 4;  // column of the border after the last block's four
+}  // namespace
+
 CyclicSolver::CyclicSolver(int teeth)
   : last_(teeth / 2 - 1), inverse_(last_), upper_(last_), border_(last_), corner_inverse_(Corner::Zero())
 {
@@ -12,14 +17,14 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
 {
   Corner corner = Corner::Zero();
   corner.topLeftCorner<4, 4>() = tangent.diagonal[last_];
-  corner.topRightCorner<4, 1>() = tangent.cup_direction.segment<4>(4 * last_);
-  corner.bottomLeftCorner<1, 4>() = tangent.cup_direction.segment<4>(4 * last_).transpose();
-  corner(4, 4) = -1.0 / tangent.cup_stiffness;
+  corner.block<4, 1>(0, CUP) = tangent.cup_direction.segment<4>(4 * last_);
+  corner.block<1, 4>(CUP, 0) = tangent.cup_direction.segment<4>(4 * last_).transpose();
+  corner(CUP, CUP) = -1.0 / tangent.cup_stiffness;
 
   Block4 diagonal = tangent.diagonal[0];
   Border border;
   border.leftCols<4>() = tangent.upper[last_].transpose();
-  border.col(4) = tangent.cup_direction.segment<4>(0);
+  border.col(CUP) = tangent.cup_direction.segment<4>(0);
   for (int p = 0; p < last_; ++p)
   {
     const bool final = p + 1 == last_;
@@ -41,7 +46,7 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
     diagonal.noalias() -= coupling.transpose() * upper_[p];
     Border next;
     next.leftCols<4>().setZero();
-    next.col(4) = tangent.cup_direction.segment<4>(4 * (p + 1));
+    next.col(CUP) = tangent.cup_direction.segment<4>(4 * (p + 1));
     next.noalias() -= coupling.transpose() * border_[p];
     border = next;
   }

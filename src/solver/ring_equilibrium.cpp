@@ -183,7 +183,7 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.3;  // better than this, the factors serve another iteration
+  constexpr double GOOD_CONTRACTION = 0.1;  // better than this, the factors serve another iteration
   SolveStatus status;
   predict(target);
   if (model_.meshed)

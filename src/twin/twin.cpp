@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
@@ -38,8 +39,9 @@ struct Twin::Impl
     queue.clear();
     counters = {};
     now = ((stamp + step_length - 1) / step_length) * step_length;
+    simulated_until = stamp;
+    in_force_since.fill(std::numeric_limits<Stamp>::min());
     command = 0.0;
-    command_stamp = now;
     commanded = false;
     load_torque = 0.0;
     brake_engaged = parameters.brake.engaged_at_start;
@@ -64,10 +66,11 @@ struct Twin::Impl
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
+  Stamp simulated_until{};  // an input with an earlier stamp is late: now, or the start if that is not on the grid
   InputQueue queue;
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the input in force, by kind
   TwinCounters counters;
   double command{};        // last motor torque command [N.m]
-  Stamp command_stamp{};
   bool commanded{};        // a command is in force, not timed out
   double load_torque{};    // last load torque, clamped [N.m]
   bool load_clamped{};
@@ -87,11 +90,16 @@ void Twin::Impl::takeInputs() noexcept
   Input input;
   while (queue.pop(now, input))
   {
+    Stamp& since = in_force_since[static_cast<std::size_t>(input.kind)];
+    if (input.stamp < since)
+    {
+      continue;  // late, and a newer one is in force
+    }
+    since = input.stamp;
     switch (input.kind)
     {
       case InputKind::MOTOR_TORQUE:
         command = input.value;
-        command_stamp = input.stamp;
         commanded = true;
         break;
       case InputKind::LOAD_TORQUE:
@@ -109,8 +117,8 @@ void Twin::Impl::takeInputs() noexcept
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
-  const auto timeout = static_cast<double>(parameters.input.command_timeout) * 1e9;
-  if (commanded && static_cast<double>(now - command_stamp) > timeout)
+  const double age = 1e-9 * static_cast<double>(now - in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)]);
+  if (commanded && age > parameters.input.command_timeout)
   {
     commanded = false;
     ++counters.command_timeouts;
@@ -121,6 +129,7 @@ double Twin::Impl::commandInForce() noexcept
 void Twin::Impl::step() noexcept
 {
   now += step_length;
+  simulated_until = now;
   takeInputs();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
   const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
@@ -199,17 +208,17 @@ void Twin::reset(Stamp stamp) noexcept
 
 void Twin::commandMotorTorque(Stamp stamp, double torque) noexcept
 {
-  impl_->queue.push({ stamp, InputKind::MOTOR_TORQUE, torque }, impl_->now);
+  impl_->queue.push({ stamp, InputKind::MOTOR_TORQUE, torque }, impl_->simulated_until);
 }
 
 void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 {
-  impl_->queue.push({ stamp, InputKind::LOAD_TORQUE, torque }, impl_->now);
+  impl_->queue.push({ stamp, InputKind::LOAD_TORQUE, torque }, impl_->simulated_until);
 }
 
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
-  impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->now);
+  impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
 }
 
 bool Twin::step(Stamp until) noexcept

@@ -31,7 +31,7 @@ HealthParameters health()
 {
   HealthParameters health;
   health.stiffness_torque_span = 10.0;
-  health.efficiency_window = 0.5;
+  health.averaging_time = 0.5;
   return health;
 }
 

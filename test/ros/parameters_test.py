@@ -53,7 +53,8 @@ class Parameters(unittest.TestCase):
         self.assertLess(duration, EXIT_TIME)
 
     def test_every_joint_starts_dumps_its_parameters_and_ends_cleanly_on_sigint(self):
-        for joint, name in (("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"), ("elbow", "elbow_joint")):
+        names = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint"}
+        for joint, name in names.items():
             with self.subTest(joint=joint):
                 self.check_start(configuration_files(joint))
                 self.check_clean_exit(signal.SIGINT)

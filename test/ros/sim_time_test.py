@@ -84,7 +84,7 @@ class SimTime(unittest.TestCase):
     def test_3_a_stamped_command_acts_from_its_instant_on_though_it_came_ahead_of_the_clock(self):
         command_stamp = 101 * SECOND
         self.send(self.command, command_stamp, 0.25)
-        wait_until(lambda: self.diagnostics.number("Input", "Age of the last command [s]") < -0.4, "the command to arrive")
+        wait_until(lambda: self.diagnostics.number("Input", "Age of the last command [s]") < -0.4, "the command")
         self.states.clear()
         self.run_clock(100 * SECOND + 501 * MILLISECOND, 101 * SECOND + 60 * MILLISECOND)
         for message in self.states.messages():

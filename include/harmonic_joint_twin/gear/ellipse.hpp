@@ -37,23 +37,27 @@ inline double closestPointStep(double a, double b, double x, double y, double c,
   return -slope / bend;
 }
 
-/// Largest first step for which `closestPointNear` is good: a step of size e leaves an error of 0.02 e^2.
-constexpr double NEAR_STEP = 1e-4;
+/// How far a point may be from the ellipse for `closestPointNear`: relative to the semi-axes, twice the depth [-].
+constexpr double NEAR_POINT = 0.04;
 
 /// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
 /// approximated). Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
 ///
-/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, so one
-/// step reaches 1e-10 rad. Straight-line code for the compiler to vectorise; `step` tells whether it was near enough.
-inline EllipseFoot closestPointNear(double a, double b, double x, double y, double& step) noexcept
+/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
+/// step of size e leaves an error of 0.02 e^2, so one step reaches 1e-10 rad. Straight-line code with few divisions, for
+/// the compiler to vectorise; `nearness` is to be compared with NEAR_POINT.
+inline EllipseFoot closestPointNear(double a, double b, double x, double y, double& nearness) noexcept
 {
-  const double start_c = x * b;
-  const double start_s = y * a;
-  const double start = 1.0 / std::sqrt(start_c * start_c + start_s * start_s);
-  const double c = start_c * start;
-  const double s = start_s * start;
-  step = closestPointStep(a, b, x, y, c, s);
+  const double c0 = x * (1.0 / a);
+  const double s0 = y * (1.0 / b);
+  // (c0, s0) has length sqrt(1 + q): the series of its inverse is off by q^4 / 4.
+  const double q = c0 * c0 + s0 * s0 - 1.0;
+  const double inverse = 1.0 - q * (0.5 - q * (0.375 - q * 0.3125));
+  const double c = c0 * inverse;
+  const double s = s0 * inverse;
+  const double step = closestPointStep(a, b, x, y, c, s);
   const double scale = 1.0 - 0.5 * step * step;
+  nearness = std::abs(q);
   return footAt(a, b, x, y, scale * (c - step * s), scale * (s + step * c));
 }
 

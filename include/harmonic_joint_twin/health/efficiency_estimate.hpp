@@ -14,7 +14,7 @@ namespace hjt
 /// Law:   eta = <P_j> / <P_m>  driving, both > 0;   eta = <P_m> / <P_j>  driven back by the load, both < 0
 /// where  P_m  motor torque times motor speed: what the motor puts in                                 [W]
 ///        P_j  joint torque times output speed: what the circular spline passes on to the load        [W]
-///        <>   exponential mean over `health.efficiency_window`
+///        <>   exponential mean over `health.averaging_time`
 ///
 /// Not valid
 /// - before one window has passed,

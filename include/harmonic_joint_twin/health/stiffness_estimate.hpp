@@ -13,7 +13,7 @@ namespace hjt
 /// Torsional stiffness of the drive: slope of the joint torque over the torsion.
 ///
 /// Recursive least squares of  T = T_0 + K tau, each sample weighted with the time it stands for and forgotten
-/// exponentially over the efficiency window.
+/// exponentially over health.averaging_time.
 /// where  T    joint torque                          [N.m]
 ///        tau  torsion                               [rad]
 ///        K    torsional stiffness                   [N.m/rad]

@@ -125,8 +125,8 @@ void visitFields(P& p, Visitor&& visit)
 
   visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{1e-3, 1e5},
         "joint torque must have varied this much before a stiffness is estimated");
-  visit("health.efficiency_window", "s", p.health.efficiency_window, Range{1e-3, 1e4},
-        "time constant of the mean power that the efficiency is taken from");
+  visit("health.averaging_time", "s", p.health.averaging_time, Range{1e-3, 1e4},
+        "time constant over which efficiency and stiffness forget");
 
   visit("input.command_timeout", "s", p.input.command_timeout, Range{1e-3, INF},
         "a torque command older than this counts as zero");

@@ -137,7 +137,7 @@ struct SensorParameters
 struct HealthParameters
 {
   double stiffness_torque_span{};
-  double efficiency_window{};
+  double averaging_time{};
 };
 
 struct InputParameters

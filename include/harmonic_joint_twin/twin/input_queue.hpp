@@ -16,6 +16,7 @@ enum class InputKind : std::uint8_t
   LOAD_TORQUE,
   BRAKE
 };
+constexpr std::size_t INPUT_KINDS = 3;
 
 struct Input
 {
@@ -41,7 +42,7 @@ public:
   void clear() noexcept;
   bool empty() const noexcept { return size_ == 0; }
 
-  /// `now`: the instant already simulated.
+  /// `now`: up to where has been simulated; an earlier stamp is late.
   void push(const Input& input, Stamp now) noexcept;
 
   /// Takes the earliest input with a stamp not after `instant`. False: there is none.

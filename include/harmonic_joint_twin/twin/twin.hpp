@@ -121,7 +121,7 @@ public:
   void reset(Stamp stamp) noexcept;
 
   /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
-  /// its stamp; one that comes too late acts at once and is counted.
+  /// its stamp; one that comes too late is counted and acts at once, unless a newer one of its kind is in force.
   void commandMotorTorque(Stamp stamp, double torque) noexcept;  ///< [N.m] motor shaft
   void commandLoadTorque(Stamp stamp, double torque) noexcept;   ///< [N.m] output, > 0 resists positive motion
   void commandBrake(Stamp stamp, bool engaged) noexcept;
