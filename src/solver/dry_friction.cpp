@@ -5,6 +5,32 @@
 
 namespace hjt
 {
+namespace
+{
+/// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops falling.
+/// Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there in `slope`.
+template <class Gradient>
+double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, Eigen::Vector2d& slope)
+{
+  constexpr int MAX_BISECTIONS = 60;
+  constexpr double FLAT = 0.1;  // of the first slope
+  const double first = slope.dot(change);
+  slope = gradient(v + change);
+  double low = 0.0;
+  double high = 1.0;
+  double length = 1.0;
+  double here = slope.dot(change);
+  for (int i = 0; i < MAX_BISECTIONS && (length < 1.0 || here > 0.0) && std::abs(here) > FLAT * std::abs(first); ++i)
+  {
+    (here > 0.0 ? high : low) = length;
+    length = 0.5 * (low + high);
+    slope = gradient(v + length * change);
+    here = slope.dot(change);
+  }
+  return length;
+}
+}  // namespace
+
 /// Slip speed at which a term is half way to full friction: what it sees at the regularising motor speed, the output
 /// following or held, whichever slips more.
 double DryFriction::width(const FrictionTerm& term, double follow) const noexcept
@@ -16,56 +42,36 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
                                    const Eigen::Vector2d& free_speeds, double step) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
-  constexpr double ENOUGH = 1e-11;  // relative change of the speeds
-  const auto potential = [&](const Eigen::Vector2d& v) {
-    const Eigen::Vector2d change = v - free_speeds;
-    const Eigen::Vector2d mean = v + old_speeds;
-    double value = 0.5 * change.dot(inertia_.cwiseProduct(change)) + 0.25 * step * mean.dot(friction.viscous * mean);
-    for (const FrictionTerm& term : friction.terms)
-    {
-      value += step * term.strength * std::hypot(term.slip.dot(v), width(term, follow));
-    }
-    return value;
-  };
-
-  Eigen::Vector2d v = old_speeds;
-  double value = potential(v);
-  for (int i = 0; i < MAX_ITERATIONS; ++i)
-  {
-    Eigen::Vector2d gradient = inertia_.cwiseProduct(v - free_speeds) + 0.5 * step * friction.viscous * (v + old_speeds);
-    Eigen::Matrix2d hessian = 0.5 * step * friction.viscous;
+  constexpr double ENOUGH = 1e-12;  // relative change of the speeds
+  Eigen::Matrix2d hessian;
+  const auto gradient = [&](const Eigen::Vector2d& v) {
+    Eigen::Vector2d sum = inertia_.cwiseProduct(v - free_speeds) + 0.5 * step * friction.viscous * (v + old_speeds);
+    hessian = 0.5 * step * friction.viscous;
     hessian.diagonal() += inertia_;
     for (const FrictionTerm& term : friction.terms)
     {
       const double e = width(term, follow);
       const double slip = term.slip.dot(v);
       const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
-      gradient += step * term.strength * slip * inverse * term.slip;
+      sum += step * term.strength * slip * inverse * term.slip;
       hessian += step * term.strength * e * e * inverse * inverse * inverse * term.slip * term.slip.transpose();
     }
+    return sum;
+  };
+
+  Eigen::Vector2d v = old_speeds;
+  Eigen::Vector2d slope = gradient(v);
+  for (int i = 0; i < MAX_ITERATIONS; ++i)
+  {
     const double determinant = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(1, 0);
-    const Eigen::Vector2d change(-(hessian(1, 1) * gradient[0] - hessian(0, 1) * gradient[1]) / determinant,
-                                 -(hessian(0, 0) * gradient[1] - hessian(1, 0) * gradient[0]) / determinant);
-    double length = 1.0;
-    Eigen::Vector2d trial = v + change;
-    double trial_value = potential(trial);
-    while (trial_value > value && length > 1e-9)
-    {
-      length *= 0.5;
-      trial = v + length * change;
-      trial_value = potential(trial);
-    }
-    if (trial_value > value)
+    const Eigen::Vector2d change(-(hessian(1, 1) * slope[0] - hessian(0, 1) * slope[1]) / determinant,
+                                 -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant);
+    if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
+        std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(follow) * width_))
     {
       break;
     }
-    v = trial;
-    value = trial_value;
-    if (length * std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
-        length * std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(follow) * width_))
-    {
-      break;
-    }
+    v += searchLine(gradient, v, change, slope) * change;
   }
   return v;
 }

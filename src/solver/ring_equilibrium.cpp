@@ -22,99 +22,113 @@ double largest(const Eigen::VectorXd& forces) noexcept
 }
 }  // namespace
 
+RingEquilibrium::Equilibrium::Equilibrium(const RingModel& model)
+  : shape(model.restShape({}))
+  , by_wave_generator(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
+  , by_output(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
+  , stiffness(Eigen::Matrix2d::Zero())
+{
+}
+
 RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters& parameters)
   : model_(model)
   , parameters_(parameters)
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
   , solver_(model.rest.teeth())
   , tangent_(model.rest.teeth())
-  , shape_(model.restShape({}))
   , forces_(model.rest.teeth())
-  , by_wave_generator_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
-  , by_output_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
-  , stiffness_(Eigen::Matrix2d::Zero())
-  , good_shape_(shape_)
-  , kept_shape_(shape_)
-  , start_points_(shape_.points)
-  , scratch_(shape_.points)
-  , old_space_(shape_.space)
-  , step_(shape_.points)
+  , now_(model)
+  , start_(now_)
+  , halfway_(now_)
+  , kept_(now_)
+  , start_points_(now_.shape.points)
+  , scratch_(now_.shape.points)
+  , old_space_(now_.shape.space)
+  , step_(now_.shape.points)
   , columns_(2 * model.rest.teeth(), 2)
 {
 }
 
 SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
 {
-  position_ = target;
-  position_.wave_amplitude = 0.0;
-  shape_.points = model_.rest.points();
-  shape_.updateGeometry();
-  by_wave_generator_.setZero();
-  by_output_.setZero();
-  stiffness_.setZero();
-  const SolveStatus round = solve(position_);
+  now_.position = target;
+  now_.position.wave_amplitude = 0.0;
+  now_.shape.points = model_.rest.points();
+  now_.shape.updateGeometry();
+  now_.by_wave_generator.setZero();
+  now_.by_output.setZero();
+  now_.stiffness.setZero();
+  const SolveStatus round = solve(now_.position);
   return round.ok() ? moveTo(target) : round;
+}
+
+SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
+{
+  kept_ = now_;
+  const SolveStatus status = insert(target);
+  if (!status.ok())
+  {
+    now_ = kept_;
+    model_.forces(now_.shape, now_.position, forces_);
+  }
+  return status;
 }
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
-  SolveStatus total;
-  if (target == position_)
+  if (target == now_.position)
   {
-    total.residual = residual_;
-    return total;
+    SolveStatus unmoved;
+    unmoved.residual = now_.residual;
+    return unmoved;
   }
-  const DrivePosition start = position_;
-  good_shape_ = shape_;
-  DrivePosition good_position = position_;
+  start_ = now_;
+  const SolveStatus status = approach(target);
+  if (!status.ok())
+  {
+    now_ = start_;
+    model_.forces(now_.shape, now_.position, forces_);
+  }
+  return status;
+}
+
+/// Straight to the target; where that fails, by halved paths that grow again.
+SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
+{
+  SolveStatus total;
   double done = 0.0;
   double stride = 1.0;
   while (done < 1.0)
   {
     const double next = std::min(1.0, done + stride);
-    const SolveStatus status = solve(next < 1.0 ? between(start, target, next) : target);
+    const SolveStatus status = solve(next < 1.0 ? between(start_.position, target, next) : target);
     total.iterations += status.iterations;
     total.residual = status.residual;
     total.code = status.code;
     if (status.ok())
     {
-      residual_ = status.residual;
       done = next;
-      good_shape_ = shape_;
-      good_position = position_;
       stride *= 2.0;
+      if (done < 1.0)
+      {
+        halfway_ = now_;
+      }
       continue;
     }
-    shape_ = good_shape_;
-    position_ = good_position;
-    stride *= 0.5;
     if (++total.cuts > parameters_.max_step_cuts)
     {
-      model_.forces(shape_, position_, forces_);
-      return total;
+      break;
     }
+    now_ = done > 0.0 ? halfway_ : start_;
+    stride *= 0.5;
   }
   return total;
-}
-
-SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
-{
-  kept_shape_ = shape_;
-  const DrivePosition kept = position_;
-  const SolveStatus status = insert(target);
-  if (!status.ok())
-  {
-    shape_ = kept_shape_;
-    position_ = kept;
-    model_.forces(shape_, position_, forces_);
-  }
-  return status;
 }
 
 /// Values of a ring turned by `pitches` tooth pitches: those of tooth i, rotated, take the place of tooth i + pitches.
 void RingEquilibrium::turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept
 {
-  const int n = shape_.teeth();
+  const int n = now_.shape.teeth();
   const double c = std::cos(pitches * model_.rest.pitchAngle());
   const double s = std::sin(pitches * model_.rest.pitchAngle());
   int j = (pitches % n + n) % n;
@@ -126,24 +140,30 @@ void RingEquilibrium::turn(const Eigen::VectorXd& values, int pitches, Eigen::Ve
   }
 }
 
+/// The spaces turned likewise.
+void RingEquilibrium::turnSpaces(int pitches) noexcept
+{
+  const int n = now_.shape.teeth();
+  const int spaces = model_.gear.teeth_circular_spline;
+  for (int i = 0; i < n; ++i)
+  {
+    old_space_[((i + pitches) % n + n) % n] = ((now_.shape.space[i] + pitches) % spaces + spaces) % spaces;
+  }
+  now_.shape.space.swap(old_space_);
+}
+
 /// The whole state turned by `pitches` tooth pitches, the spaces with it.
 /// On a drive of equal teeth this is an equilibrium again, exactly; on a faulty one a good guess.
 void RingEquilibrium::shift(int pitches) noexcept
 {
-  const int n = shape_.teeth();
-  const int spaces = model_.gear.teeth_circular_spline;
-  for (Eigen::VectorXd* values : { &shape_.points, &by_wave_generator_, &by_output_ })
+  for (Eigen::VectorXd* values : { &now_.shape.points, &now_.by_wave_generator, &now_.by_output })
   {
     turn(*values, pitches, scratch_);
     values->swap(scratch_);
   }
-  for (int i = 0; i < n; ++i)
-  {
-    old_space_[((i + pitches) % n + n) % n] = ((shape_.space[i] + pitches) % spaces + spaces) % spaces;
-  }
-  shape_.space.swap(old_space_);
-  position_.wave_generator_angle += pitches * model_.rest.pitchAngle();
-  position_.output_angle += pitches * pitch_output_angle_;
+  turnSpaces(pitches);
+  now_.position.wave_generator_angle += pitches * model_.rest.pitchAngle();
+  now_.position.output_angle += pitches * pitch_output_angle_;
 }
 
 /// First guess at the target. Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is
@@ -153,8 +173,8 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
 {
   constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
   const double pitch = model_.rest.pitchAngle();
-  const double pitches = (target.wave_generator_angle - position_.wave_generator_angle) / pitch;
-  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < shape_.teeth())
+  const double pitches = (target.wave_generator_angle - now_.position.wave_generator_angle) / pitch;
+  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < now_.shape.teeth())
   {
     const int whole = static_cast<int>(std::floor(pitches));
     if (whole != 0)
@@ -165,20 +185,24 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
     const double blend = u * u * (3.0 - 2.0 * u);
     const double start_slope = u * (1.0 - u) * (1.0 - u);
     const double end_slope = -u * u * (1.0 - u);
-    const Eigen::VectorXd& slope = step_ = pitch * by_wave_generator_ + pitch_output_angle_ * by_output_;
+    const Eigen::VectorXd& slope = step_ = pitch * now_.by_wave_generator + pitch_output_angle_ * now_.by_output;
     turn(slope, 1, scratch_);
     scratch_ = start_slope * slope + end_slope * scratch_;
-    turn(shape_.points, 1, start_points_);
-    shape_.points += blend * (start_points_ - shape_.points) + scratch_;
-    shape_.points += (target.output_angle - position_.output_angle - u * pitch_output_angle_) * by_output_;
+    turn(now_.shape.points, 1, start_points_);
+    now_.shape.points += blend * (start_points_ - now_.shape.points) + scratch_;
+    now_.shape.points += (target.output_angle - now_.position.output_angle - u * pitch_output_angle_) * now_.by_output;
+    if (u > 0.5)
+    {
+      turnSpaces(1);  // the copy is the nearer one
+    }
   }
   else
   {
-    shape_.points += (target.wave_generator_angle - position_.wave_generator_angle) * by_wave_generator_ +
-                     (target.output_angle - position_.output_angle) * by_output_;
+    now_.shape.points += (target.wave_generator_angle - now_.position.wave_generator_angle) * now_.by_wave_generator +
+                     (target.output_angle - now_.position.output_angle) * now_.by_output;
   }
-  shape_.updateGeometry();
-  position_ = target;
+  now_.shape.updateGeometry();
+  now_.position = target;
 }
 
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
@@ -188,12 +212,13 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   predict(target);
   if (model_.meshed)
   {
-    model_.mesh.pairNearest(position_, shape_);
+    model_.mesh.pairNearest(now_.position, now_.shape);
   }
-  model_.forces(shape_, position_, forces_);
+  model_.forces(now_.shape, now_.position, forces_);
   status.residual = largest(forces_.teeth);
   if (status.residual <= parameters_.force_tolerance)
   {
+    now_.residual = status.residual;
     return status;  // the tangent of the last solve is good enough to have predicted this
   }
   bool fresh = false;
@@ -223,12 +248,13 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
     status.residual = residual;
   } while (true);
   updateSensitivities();
+  now_.residual = status.residual;
   return status;
 }
 
 bool RingEquilibrium::refactor() noexcept
 {
-  model_.tangent(shape_, position_, forces_, tangent_);
+  model_.tangent(now_.shape, now_.position, forces_, tangent_);
   return solver_.factor(tangent_);
 }
 
@@ -238,13 +264,13 @@ bool RingEquilibrium::searchLine(double residual) noexcept
   constexpr int MAX_HALVINGS = 7;
   step_ = forces_.teeth;
   solver_.solve<1>(step_);
-  start_points_ = shape_.points;
+  start_points_ = now_.shape.points;
   double length = 1.0;
   for (int i = 0; i < MAX_HALVINGS; ++i, length *= 0.5)
   {
-    shape_.points = start_points_ + length * step_;
-    shape_.updateGeometry();
-    model_.forces(shape_, position_, forces_);
+    now_.shape.points = start_points_ + length * step_;
+    now_.shape.updateGeometry();
+    model_.forces(now_.shape, now_.position, forces_);
     const double trial = largest(forces_.teeth);
     if (trial < (1.0 - 1e-4 * length) * residual || trial <= parameters_.force_tolerance)
     {
@@ -259,11 +285,11 @@ void RingEquilibrium::updateSensitivities() noexcept
   columns_.col(0) = -tangent_.wave_generator;
   columns_.col(1) = -tangent_.output;
   solver_.solve<2>(columns_);
-  by_wave_generator_ = columns_.col(0);
-  by_output_ = columns_.col(1);
-  const double cross = tangent_.wave_generator.dot(by_output_);
-  stiffness_(0, 0) = tangent_.wave_generator_stiffness + tangent_.wave_generator.dot(by_wave_generator_);
-  stiffness_(1, 1) = tangent_.output_stiffness + tangent_.output.dot(by_output_);
-  stiffness_(0, 1) = stiffness_(1, 0) = cross;
+  now_.by_wave_generator = columns_.col(0);
+  now_.by_output = columns_.col(1);
+  const double cross = tangent_.wave_generator.dot(now_.by_output);
+  now_.stiffness(0, 0) = tangent_.wave_generator_stiffness + tangent_.wave_generator.dot(now_.by_wave_generator);
+  now_.stiffness(1, 1) = tangent_.output_stiffness + tangent_.output.dot(now_.by_output);
+  now_.stiffness(0, 1) = now_.stiffness(1, 0) = cross;
 }
 }  // namespace hjt

@@ -44,6 +44,7 @@ struct Twin::Impl
     command = 0.0;
     commanded = false;
     load_torque = 0.0;
+    load_clamped = false;
     brake_engaged = parameters.brake.engaged_at_start;
     motor_velocity.reset();
     output_velocity.reset();

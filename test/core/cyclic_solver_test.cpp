@@ -4,8 +4,8 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
 #include "random_ring.hpp"

@@ -47,31 +47,29 @@ inline ElementUnderTest tensionOf(const RingModel& model)
 inline ElementUnderTest bendingOf(const RingModel& model)
 {
   return { [&model](auto& shape, auto&, auto& forces) { model.bending.addForces(shape, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent) {
-             model.bending.addTangent(shape, forces, tangent);
-           } };
+           [&model](auto& shape, auto&, auto& forces, auto& tangent)
+           { model.bending.addTangent(shape, forces, tangent); } };
 }
 
 inline ElementUnderTest contactOf(const RingModel& model)
 {
   return { [&model](auto& shape, auto& position, auto& forces) { model.contact.addForces(shape, position, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent) {
-             model.contact.addTangent(shape, forces, tangent);
-           } };
+           [&model](auto& shape, auto&, auto& forces, auto& tangent)
+           { model.contact.addTangent(shape, forces, tangent); } };
 }
 
 inline ElementUnderTest cupOf(const RingModel& model)
 {
   return { [&model](auto& shape, auto&, auto& forces) { model.cup.addForces(shape, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent) { model.cup.addTangent(shape, forces, tangent); } };
+           [&model](auto& shape, auto&, auto& forces, auto& tangent)
+           { model.cup.addTangent(shape, forces, tangent); } };
 }
 
 inline ElementUnderTest meshOf(const RingModel& model)
 {
   return { [&model](auto& shape, auto& position, auto& forces) { model.mesh.addForces(shape, position, forces); },
-           [&model](auto& shape, auto& position, auto& forces, auto& tangent) {
-             model.mesh.addTangent(shape, position, forces, tangent);
-           } };
+           [&model](auto& shape, auto& position, auto& forces, auto& tangent)
+           { model.mesh.addTangent(shape, position, forces, tangent); } };
 }
 
 /// The ring's coordinates in one row: 2 N of the tooth points [m], wave generator angle, output angle [rad].
@@ -100,9 +98,9 @@ inline FiniteDifference differentiate(const ElementUnderTest& element, RingShape
   for (Eigen::Index k = 0; k < size; ++k)
   {
     const bool point = k < size - 2;
-    double& coordinate = point              ? shape.points[k] :
-                         k == size - 2      ? position.wave_generator_angle :
-                                              position.output_angle;
+    double& coordinate = point         ? shape.points[k] :
+                         k == size - 2 ? position.wave_generator_angle :
+                                         position.output_angle;
     const double middle = coordinate;
     const double step = point ? POINT_STEP : ANGLE_STEP;
     coordinate = middle + step;

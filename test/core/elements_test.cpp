@@ -171,7 +171,8 @@ class CupTorsionRanges : public testing::TestWithParam<double>
 {
 };
 // Mean rotations [rad] on every slope of the law: the shipped breakpoints lie at 0.4516e-3 and 1.1316e-3 rad.
-INSTANTIATE_TEST_SUITE_P(BothSigns, CupTorsionRanges, testing::Values(0.3e-3, -0.3e-3, 0.8e-3, -0.8e-3, 5e-3, -5e-3, 0.3));
+INSTANTIATE_TEST_SUITE_P(BothSigns, CupTorsionRanges,
+                         testing::Values(0.3e-3, -0.3e-3, 0.8e-3, -0.8e-3, 5e-3, -5e-3, 0.3));
 
 TEST_P(CupTorsionRanges, IsTheGradientOfItsEnergy)
 {
@@ -228,7 +229,9 @@ TEST(CupTorsion, StoresTheIntegralOfItsTorque)
 class AnyElement : public testing::TestWithParam<std::string>
 {
 protected:
-  AnyElement() : model_(shippedParameters({ "ring.bending_law=" + std::string(absolute() ? "absolute" : "curvature") })) {}
+  AnyElement() : model_(shippedParameters({ "ring.bending_law=" + std::string(absolute() ? "absolute" : "curvature") }))
+  {
+  }
 
   static bool absolute() { return GetParam() == "absolute bending"; }
 
@@ -272,8 +275,8 @@ TEST_P(AnyElement, MirroredShapeGivesMirroredForces)
       mirror.space[(shape.teeth() - i) % shape.teeth()] = (spaces - shape.space[i]) % spaces;
     }
     const RingForces forces = element().forces(shape, position);
-    const RingForces other = element().forces(
-        mirror, { -position.wave_generator_angle, -position.output_angle, position.wave_amplitude });
+    const RingForces other =
+        element().forces(mirror, { -position.wave_generator_angle, -position.output_angle, position.wave_amplitude });
     // Rounding of the coordinates (4e-18 m) against 1e-6 ... 1e-4 m of displacement.
     EXPECT_LT(relativeError(mirrored(forces.teeth), other.teeth), 1e-9);
     EXPECT_NEAR(forces.energy, other.energy, 1e-9 * forces.energy);

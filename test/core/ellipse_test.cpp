@@ -18,9 +18,8 @@ double closestByScan(double a, double b, double x, double y)
 {
   constexpr int SAMPLES = 2000;
   const auto distance = [&](double t) { return std::hypot(a * std::cos(t) - x, b * std::sin(t) - y); };
-  const auto slope = [&](double t) {
-    return -(a * std::cos(t) - x) * a * std::sin(t) + (b * std::sin(t) - y) * b * std::cos(t);
-  };
+  const auto slope = [&](double t)
+  { return -(a * std::cos(t) - x) * a * std::sin(t) + (b * std::sin(t) - y) * b * std::cos(t); };
   double best = 0.0;
   for (int i = 1; i < SAMPLES; ++i)
   {

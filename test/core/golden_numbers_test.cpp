@@ -95,7 +95,8 @@ TEST(ThesisChapter6, IsMetByTheStaticEquilibrium)
   for (int i = 0; i < n; ++i)
   {
     const double psi = TWO_PI * i / n;
-    gap = std::max({ gap, std::abs(result.tooth_x[i] - a * std::cos(psi)), std::abs(result.tooth_y[i] - b * std::sin(psi)) });
+    gap = std::max(
+        { gap, std::abs(result.tooth_x[i] - a * std::cos(psi)), std::abs(result.tooth_y[i] - b * std::sin(psi)) });
   }
   expectGolden(gap, 0.145e-3, 1e-6, "to the polar estimate, eq. 6.1");
   // Read from the thesis' text and figures: 538.8 N at the major axis, none at the minor; rim force about 2300 N at the
@@ -113,12 +114,12 @@ TEST(GoldenStiffness, WaveGeneratorLocked)
 {
   struct Row
   {
-    double torque;             // [N.m]
-    double angle;              // [mrad]
-    double ratio;              // 101 T_WG / T [-]
+    double torque;  // [N.m]
+    double angle;   // [mrad]
+    double ratio;   // 101 T_WG / T [-]
     int teeth;
-    double mesh_force;         // [N]
-    double wave_generator_sum; // [N]
+    double mesh_force;          // [N]
+    double wave_generator_sum;  // [N]
   };
   const std::vector<Row> golden{ { 5.0, -0.169142, -1.0043, 10, 30.26, 1083.4 },
                                  { 14.0, -0.472083, -0.9995, 12, 61.74, 1104.5 },

@@ -74,7 +74,8 @@ TEST_F(Ring, IsTwoFoldSymmetric)
   for (int i = 0; i < half; ++i)
   {
     // Equilibrium to 5e-7 N over the softest contact in the ring, some 1e5 N/m.
-    EXPECT_NEAR((ring_.shape().points.segment<2>(2 * i) + ring_.shape().points.segment<2>(2 * (i + half))).norm(), 0.0, 5e-12);
+    EXPECT_NEAR((ring_.shape().points.segment<2>(2 * i) + ring_.shape().points.segment<2>(2 * (i + half))).norm(), 0.0,
+                5e-12);
     EXPECT_NEAR(ring_.forces().flank_force[i], ring_.forces().flank_force[i + half], 1e-4) << i;
     EXPECT_NEAR(ring_.forces().contact_force[i], ring_.forces().contact_force[i + half], 1e-4) << i;
   }
@@ -229,8 +230,11 @@ TEST_F(Ring, StoresTheWorkDoneOnIt)
   // Round a closed way through the plane of both angles, with teeth coming into mesh and leaving it on all sides of it:
   // along each leg the work of the torques is what the stored energy has changed by, and in all it is nothing.
   constexpr int STEPS = 400;
-  const std::vector<Eigen::Vector2d> corners{ { 0.0, -1e-3 }, { 0.1, 1e-3 }, { 0.08, 3e-3 }, { -0.02, -2e-3 }, { 0.0, -1e-3 } };
-  const auto angles = [&](std::size_t leg, double part) {
+  const std::vector<Eigen::Vector2d> corners{
+    { 0.0, -1e-3 }, { 0.1, 1e-3 }, { 0.08, 3e-3 }, { -0.02, -2e-3 }, { 0.0, -1e-3 }
+  };
+  const auto angles = [&](std::size_t leg, double part)
+  {
     const Eigen::Vector2d corner = corners[leg] + part * (corners[leg + 1] - corners[leg]);
     return Eigen::Vector2d(corner[0], corner[0] / ratio() + corner[1]);
   };

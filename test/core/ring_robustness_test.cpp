@@ -112,9 +112,9 @@ TEST_P(RingOfTeeth, IsInsertedOrSaysThatItIsNot)
 {
   // The other sizes of the shipped gear fit about 200 teeth only; far from that the teeth stand in each other's way.
   const int teeth = GetParam();
-  expectInsertedOrSaid({ "gear.teeth_flexspline=" + std::to_string(teeth),
-                         "gear.teeth_circular_spline=" + std::to_string(teeth + 2) },
-                       teeth >= 160 && teeth <= 240);
+  expectInsertedOrSaid(
+      { "gear.teeth_flexspline=" + std::to_string(teeth), "gear.teeth_circular_spline=" + std::to_string(teeth + 2) },
+      teeth >= 160 && teeth <= 240);
 }
 
 /// All that a ring shows, to be compared bit by bit.
@@ -170,11 +170,13 @@ TEST(FailedMove, LeavesTheLastGoodStateToTheLastBit)
   ASSERT_TRUE(ring.moveTo({ 0.02, -1e-3, w }).ok());
   const Snapshot good(ring);
   for (const DrivePosition& absurd :
-       { DrivePosition{ NOT_A_NUMBER, 0.0, w }, DrivePosition{ 0.0, NOT_A_NUMBER, w }, DrivePosition{ 0.0, 0.0, NOT_A_NUMBER },
-         DrivePosition{ ENDLESS, 0.0, w }, DrivePosition{ 0.0, -ENDLESS, w }, DrivePosition{ 0.02, 1e300, w },
-         DrivePosition{ 1e300, 0.0, w }, DrivePosition{ 0.02, 1e6, w }, DrivePosition{ 1.02, -1e6, w } })
+       { DrivePosition{ NOT_A_NUMBER, 0.0, w }, DrivePosition{ 0.0, NOT_A_NUMBER, w },
+         DrivePosition{ 0.0, 0.0, NOT_A_NUMBER }, DrivePosition{ ENDLESS, 0.0, w }, DrivePosition{ 0.0, -ENDLESS, w },
+         DrivePosition{ 0.02, 1e300, w }, DrivePosition{ 1e300, 0.0, w }, DrivePosition{ 0.02, 1e6, w },
+         DrivePosition{ 1.02, -1e6, w } })
   {
-    SCOPED_TRACE(testing::PrintToString(absurd.wave_generator_angle) + " " + testing::PrintToString(absurd.output_angle));
+    SCOPED_TRACE(testing::PrintToString(absurd.wave_generator_angle) + " " +
+                 testing::PrintToString(absurd.output_angle));
     EXPECT_FALSE(ring.moveTo(absurd).ok());
     good.expectSame(ring);
   }
@@ -238,10 +240,10 @@ TEST(FaultyTooth, LeavesARingThatStillTurns)
   const Parameters parameters = shippedParameters();
   const double w = parameters.gear.wave_amplitude;
   RingModel model(parameters);
-  model.mesh.stiffness()[4] = 0.0;        // broken off
-  model.bending.stiffness()[40] *= 0.2;   // cracked rim
+  model.mesh.stiffness()[4] = 0.0;       // broken off
+  model.bending.stiffness()[40] *= 0.2;  // cracked rim
   model.tension.stiffness()[40] *= 0.2;
-  model.mesh.clearance()[90] = 5e-6;      // worn
+  model.mesh.clearance()[90] = 5e-6;  // worn
   RingEquilibrium ring(model, parameters.solver);
   ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
   for (int k = 1; k <= 300; ++k)
@@ -289,9 +291,8 @@ TEST(Overload, MakesTheTeethOfASoftGearJump)
 {
   // Flat flanks on a rim that gives way: under the circular spline turned on by three of its pitches the teeth climb
   // out, and find the next space.
-  const Parameters parameters =
-      shippedParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7", "mesh.flank_angle=1.0",
-                          "mesh.engagement_depth=200.0e-6" });
+  const Parameters parameters = shippedParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7",
+                                                    "mesh.flank_angle=1.0", "mesh.engagement_depth=200.0e-6" });
   const double w = parameters.gear.wave_amplitude;
   const double space = TWO_PI / parameters.gear.teeth_circular_spline;
   const RingModel model(parameters);

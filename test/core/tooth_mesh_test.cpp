@@ -33,8 +33,8 @@ struct ToothByDefinition
     const double axis = position.output_angle + TWO_PI * shape.space[i] / gear.teeth_circular_spline;
     xi = -x * std::sin(axis) + y * std::cos(axis);
     zeta = x * std::cos(axis) + y * std::sin(axis);
-    clearance = mesh.flank_clearance + (gear.flexspline_inner_radius + mid_height + gear.wave_amplitude - zeta) *
-                                           std::tan(mesh.flank_angle);
+    clearance = mesh.flank_clearance +
+                (gear.flexspline_inner_radius + mid_height + gear.wave_amplitude - zeta) * std::tan(mesh.flank_angle);
     depth = zeta + 0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline;
     const double u = std::clamp(depth / mesh.engagement_depth, 0.0, 1.0);
     const double engaged = u * u * (3.0 - 2.0 * u);
@@ -45,8 +45,7 @@ struct ToothByDefinition
       const double width = mesh.smoothing;
       const bool ramp = pen < width;
       const double force = ramp ? 0.5 * pen * pen / width : pen - 0.5 * width;
-      const double work = ramp ? pen * pen * pen / (6.0 * width) :
-                                 0.5 * pen * (pen - width) + width * width / 6.0;
+      const double work = ramp ? pen * pen * pen / (6.0 * width) : 0.5 * pen * (pen - width) + width * width / 6.0;
       energy += mesh.stiffness * cos_flank * cos_flank * engaged * work;
       normal_force += side * mesh.stiffness * cos_flank * engaged * force;
     }
@@ -188,7 +187,11 @@ TEST_P(Mesh, PairsTeethOutOfContactWithTheNearestSpaceAndNoOthers)
       ASSERT_GE(shape_.space[i], 0);
       ASSERT_LT(shape_.space[i], parameters_.gear.teeth_circular_spline);
       const ToothByDefinition at = tooth(i);
-      ASSERT_LE(std::abs(std::atan2(at.xi, at.zeta)), 0.5 * space * (1.0 + 1e-9)) << i;
+      // Where a tooth cannot touch however it is tilted, its place at rest is taken for its own.
+      const double reach = shape_.points.segment<2>(2 * i).norm() + parameters_.gear.toothMidHeight() +
+                           0.5 * parameters_.gear.tooth_height_flexspline;
+      const bool can_touch = reach > parameters_.gear.tip_radius_circular_spline;
+      ASSERT_LE(std::abs(std::atan2(at.xi, at.zeta)), (can_touch ? 0.5 : 0.75) * space * (1.0 + 1e-9)) << i;
     }
   }
   EXPECT_GT(changed, 1000);
@@ -206,7 +209,8 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
   }
   const double output_speed = 7.0;
   const double beta = parameters_.mesh.flank_angle;
-  const auto placeAfter = [&](double time, int i) {
+  const auto placeAfter = [&](double time, int i)
+  {
     RingShape moved = shape_;
     moved.points += time * speeds;
     moved.updateGeometry();

@@ -2,93 +2,23 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "support/allocation_count.hpp"
+#include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
+#include "twin_runs.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr Stamp SECOND = 1000000000;
-constexpr Stamp MILLISECOND = 1000000;
-
-void advance(Twin& twin, Stamp until)
-{
-  while (twin.step(until))
-  {
-  }
-}
-
-/// Outputs as a row of numbers, for comparison bit by bit; without the padding of the struct.
-std::vector<double> numbers(const JointOutputs& o)
-{
-  return { static_cast<double>(o.stamp), o.motor_angle,      o.motor_velocity,        o.output_angle,
-           o.output_velocity,            o.motor_torque,     o.load_torque,           o.wave_generator_torque,
-           o.joint_torque,               o.friction_torque,  o.torsional_stiffness,   o.energy_residual,
-           o.brake_engaged ? 1.0 : 0.0,  o.converged ? 1. : 0., static_cast<double>(o.iterations), o.residual };
-}
-
-bool allFinite(const std::vector<double>& values)
-{
-  for (const double value : values)
-  {
-    if (!std::isfinite(value))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Stamped torques, loads and a brake at random times over `duration`, in order of time.
-std::vector<Input> randomInputs(unsigned seed, Stamp duration, double motor, double load)
-{
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
-  std::uniform_int_distribution<Stamp> pause(100000, 20 * MILLISECOND);
-  std::vector<Input> inputs;
-  for (Stamp stamp = 1; stamp < duration; stamp += pause(random))
-  {
-    const double choice = part(random);
-    if (choice < 0.5)
-    {
-      inputs.push_back({ stamp, InputKind::MOTOR_TORQUE, motor * part(random) });
-    }
-    else if (choice < 0.9)
-    {
-      inputs.push_back({ stamp, InputKind::LOAD_TORQUE, load * part(random) });
-    }
-    else
-    {
-      inputs.push_back({ stamp, InputKind::BRAKE, part(random) < 0.0 ? 1.0 : 0.0 });
-    }
-  }
-  return inputs;
-}
-
-void give(Twin& twin, const Input& input)
-{
-  switch (input.kind)
-  {
-    case InputKind::MOTOR_TORQUE:
-      twin.commandMotorTorque(input.stamp, input.value);
-      break;
-    case InputKind::LOAD_TORQUE:
-      twin.commandLoadTorque(input.stamp, input.value);
-      break;
-    case InputKind::BRAKE:
-      twin.commandBrake(input.stamp, input.value != 0.0);
-      break;
-  }
-}
-
 /// Every output of a run with all inputs known from the start.
 std::vector<std::vector<double>> record(Twin& twin, const std::vector<Input>& inputs, Stamp duration)
 {
@@ -158,8 +88,10 @@ TEST(TwinRepeats, AfterAReset)
 TEST(TwinReset, StartsAtTheFirstInstantNotBeforeTheStamp)
 {
   Twin twin(shippedParameters());
-  for (const auto& [stamp, instant] :
-       { std::pair<Stamp, Stamp>{ 0, 0 }, { 1, 100000 }, { 100000, 100000 }, { 1234567890123456789, 1234567890123500000 } })
+  for (const auto& [stamp, instant] : { std::pair<Stamp, Stamp>{ 0, 0 },
+                                        { 1, 100000 },
+                                        { 100000, 100000 },
+                                        { 1234567890123456789, 1234567890123500000 } })
   {
     twin.reset(stamp);
     EXPECT_EQ(twin.stamp(), instant);
@@ -275,8 +207,8 @@ TEST(TwinDrive, HoldsItsSpeedLimit)
 
 TEST(TwinBrake, HoldsBelowItsTorqueAndSlipsAboveIt)
 {
-  const Parameters parameters = shippedParameters({ "motor.torque_limit=20.0", "input.command_timeout=10.0",
-                                                    "output.load_torque_limit=1000.0" });
+  const Parameters parameters =
+      shippedParameters({ "motor.torque_limit=20.0", "input.command_timeout=10.0", "output.load_torque_limit=1000.0" });
   Twin twin(parameters);
   twin.commandBrake(0, true);
   twin.commandMotorTorque(0, 0.9 * parameters.brake.holding_torque);
@@ -296,127 +228,13 @@ TEST(TwinConstruction, RefusesWhatItCannotRun)
 {
   EXPECT_THROW(Twin(shippedParameters({ "contact.law=polar" })), ParameterError);
   EXPECT_THROW(Twin(shippedParameters({ "contact.stiffness=1.0e+12" })), ParameterError);
-  EXPECT_THROW(Twin(shippedParameters({ "solver.rate=100", "publish.joint_states_rate=100",
-                                        "publish.encoders_rate=100", "output.load_inertia=0.0" })),
+  EXPECT_THROW(Twin(shippedParameters({ "solver.rate=100", "publish.joint_states_rate=100", "publish.encoders_rate=100",
+                                        "output.load_inertia=0.0" })),
                ParameterError);
   EXPECT_THROW(Twin(shippedParameters({ "solver.stepper=runge_kutta4" })), ParameterError);
   // A light motor on the gear swings as fast as a light output.
   EXPECT_THROW(Twin(shippedParameters({ "motor.rotor_inertia=1.0e-9", "motor.wave_generator_inertia=0.0" })),
                ParameterError);
-}
-
-/// Frozen out of convergence: hardly an iteration, no shorter step, forces to rounding.
-TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
-{
-  const Parameters easy = shippedParameters();
-  Parameters parameters = easy;
-  int failing = 0;
-  for (const int iterations : { 8, 9, 10, 12 })
-  {
-    // Just as many iterations as the insertion needs, and no halved path.
-    parameters.solver.max_iterations = iterations;
-    parameters.solver.max_step_cuts = 0;
-    parameters.output.load_torque_limit = 1e6;
-    try
-    {
-      Twin twin(parameters);
-      twin.commandLoadTorque(MILLISECOND, 1e5);
-      twin.commandLoadTorque(100 * MILLISECOND, 0.0);
-      JointOutputs good = twin.outputs();
-      for (bool failed = false; twin.step(100 * MILLISECOND - 1);)
-      {
-        const JointOutputs now = twin.outputs();
-        ASSERT_TRUE(allFinite(numbers(now)));
-        if (!now.converged)
-        {
-          ++failing;
-          failed = true;
-          EXPECT_EQ(now.motor_angle, good.motor_angle);
-          EXPECT_EQ(now.output_angle, good.output_angle);
-          EXPECT_EQ(now.motor_velocity, 0.0);
-          EXPECT_EQ(now.output_velocity, 0.0);
-          EXPECT_EQ(now.joint_torque, good.joint_torque);
-        }
-        else
-        {
-          good = now;
-        }
-        (void)failed;
-      }
-      if (failing > 0)
-      {
-        EXPECT_GT(twin.counters().solver_failures, 0U);
-        EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
-        advance(twin, 300 * MILLISECOND);
-        EXPECT_TRUE(twin.outputs().converged);
-        return;
-      }
-    }
-    catch (const ParameterError&)
-    {
-      continue;  // not even the insertion
-    }
-  }
-  FAIL() << "no failure could be provoked";
-}
-
-class ViolentRun : public testing::TestWithParam<unsigned>
-{
-};
-INSTANTIATE_TEST_SUITE_P(Seeds, ViolentRun, testing::Values(91U, 92U, 93U));
-
-TEST_P(ViolentRun, StaysFiniteEverywhere)
-{
-  // A soft gear, whose teeth jump below 250 N.m, under loads of up to 1000 N.m and full motor torque to and fro.
-  Twin twin(shippedParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7", "mesh.flank_angle=1.0",
-                                "mesh.engagement_depth=200.0e-6", "output.load_torque_limit=1000.0",
-                                "input.command_timeout=10.0" }));
-  ToothForces teeth = twin.makeToothForces();
-  for (const Input& input : randomInputs(GetParam(), SECOND / 5, 4.0, 1000.0))
-  {
-    give(twin, input);
-  }
-  double torsion = 0.0;
-  while (twin.step(SECOND / 5))
-  {
-    ASSERT_TRUE(allFinite(numbers(twin.outputs()))) << twin.stamp();
-    torsion = std::max(torsion, std::abs(twin.outputs().motor_angle / 101.0 - twin.outputs().output_angle));
-    if (twin.counters().steps % 10 == 0)
-    {
-      twin.toothForces(teeth);
-      for (const std::vector<double>* values : { &teeth.wave_generator_force, &teeth.rim_tension, &teeth.bending_force,
-                                                 &teeth.mesh_force, &teeth.tooth_x, &teeth.tooth_y })
-      {
-        ASSERT_TRUE(allFinite(*values)) << twin.stamp();
-      }
-      const HealthReport health = twin.health();
-      ASSERT_TRUE(allFinite({ health.transmission_ratio, health.torsion, health.torsional_stiffness,
-                              health.torsional_stiffness_model, health.lobe_mesh_force[0], health.lobe_mesh_force[1],
-                              health.lobe_asymmetry, health.wave_generator_load, health.friction_torque,
-                              health.efficiency, health.kinematic_error, health.energy_residual,
-                              health.solver_residual }))
-          << twin.stamp();
-    }
-  }
-  // Further than a pitch of the circular spline: teeth have jumped.
-  EXPECT_GT(torsion, 2.0 * 3.14159 / 202.0);
-}
-
-TEST(ViolentRunOfTheShippedJoint, ConvergesInEveryStep)
-{
-  // Motor torque to and fro between its limits, loads up to the joint's 150 N.m, the brake thrown in at full speed.
-  for (const unsigned seed : { 71U, 72U, 73U })
-  {
-    Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
-    for (const Input& input : randomInputs(seed, SECOND / 2, 2.87, 150.0))
-    {
-      give(twin, input);
-    }
-    while (twin.step(SECOND / 2))
-    {
-      ASSERT_TRUE(twin.outputs().converged) << "seed " << seed << " at " << twin.stamp();
-    }
-  }
 }
 
 TEST(TwinLoop, DoesNotAllocate)
@@ -462,9 +280,9 @@ TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
   EXPECT_GT(health.friction_torque, twin.parameters().motor.coulomb_torque);
   EXPECT_NEAR(health.torsional_stiffness_model, 33e3, 12e3);
   const EncoderReadings encoders = twin.encoders();
-  const double motor_count = 2.0 * 3.14159265358979 / 4320.0;
+  const double motor_count = TWO_PI / 4320.0;
   EXPECT_NEAR(encoders.motor_angle, twin.outputs().motor_angle, motor_count);
-  EXPECT_NEAR(encoders.output_angle, twin.outputs().output_angle, 2.0 * 3.14159265358979 / (1 << 19));
+  EXPECT_NEAR(encoders.output_angle, twin.outputs().output_angle, TWO_PI / (1 << 19));
 }
 }  // namespace
 }  // namespace hjt

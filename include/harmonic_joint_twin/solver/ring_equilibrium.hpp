@@ -48,21 +48,36 @@ public:
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return model_; }
-  const RingShape& shape() const noexcept { return shape_; }
-  const DrivePosition& position() const noexcept { return position_; }
+  const RingShape& shape() const noexcept { return now_.shape; }
+  const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return forces_; }
 
   /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
-  const Eigen::VectorXd& byWaveGenerator() const noexcept { return by_wave_generator_; }
-  const Eigen::VectorXd& byOutput() const noexcept { return by_output_; }
+  const Eigen::VectorXd& byWaveGenerator() const noexcept { return now_.by_wave_generator; }
+  const Eigen::VectorXd& byOutput() const noexcept { return now_.by_output; }
 
   /// Second derivatives of the stored energy by (wave generator, output) angle, the ring following [N.m/rad].
-  const Eigen::Matrix2d& stiffness() const noexcept { return stiffness_; }
+  const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
 private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
+  /// All that a failed move must bring back.
+  struct Equilibrium
+  {
+    explicit Equilibrium(const RingModel& model);
+
+    RingShape shape;
+    DrivePosition position;
+    Eigen::VectorXd by_wave_generator;
+    Eigen::VectorXd by_output;
+    Eigen::Matrix2d stiffness;
+    double residual{};  // [N]
+  };
+
+  SolveStatus approach(const DrivePosition& target) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
+  void turnSpaces(int pitches) noexcept;
   void shift(int pitches) noexcept;
   void predict(const DrivePosition& target) noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
@@ -75,16 +90,12 @@ private:
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   CyclicSolver solver_;
   RingTangent tangent_;
-  RingShape shape_;
   RingForces forces_;
-  DrivePosition position_;
-  double residual_{};  // at the last equilibrium [N]
-  Eigen::VectorXd by_wave_generator_;
-  Eigen::VectorXd by_output_;
-  Eigen::Matrix2d stiffness_;
+  Equilibrium now_;
+  Equilibrium start_;    // of the present move
+  Equilibrium halfway_;  // the farthest point of the present move
+  Equilibrium kept_;     // before inserting anew
   // Scratch, sized once.
-  RingShape good_shape_;
-  RingShape kept_shape_;
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;

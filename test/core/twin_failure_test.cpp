@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// A rim that gives way under flat flanks: its teeth jump below 250 N.m.
+const std::vector<std::string> SOFT_GEAR{
+  "contact.stiffness=1.0e+6",       "ring.tension_stiffness=5.0e+7",   "mesh.flank_angle=1.0",
+  "mesh.engagement_depth=200.0e-6", "output.load_torque_limit=1000.0", "input.command_timeout=10.0"
+};
+
+TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
+{
+  // Where a tooth jumps there is no equilibrium near; few iterations and no shorter path leave no way across.
+  std::vector<std::string> assignments = SOFT_GEAR;
+  assignments.insert(assignments.end(), { "solver.max_iterations=10", "solver.max_step_cuts=0" });
+  Twin twin(shippedParameters(assignments));
+  twin.commandLoadTorque(MILLISECOND, 600.0);
+  twin.commandLoadTorque(100 * MILLISECOND, 0.0);
+  JointOutputs good = twin.outputs();
+  std::uint64_t failures = 0;
+  while (twin.step(100 * MILLISECOND - 1))
+  {
+    const JointOutputs& now = twin.outputs();
+    ASSERT_TRUE(allFinite(numbers(now))) << twin.stamp();
+    if (now.converged)
+    {
+      good = now;
+      continue;
+    }
+    ++failures;
+    ASSERT_EQ(now.motor_angle, good.motor_angle);
+    ASSERT_EQ(now.output_angle, good.output_angle);
+    ASSERT_EQ(now.joint_torque, good.joint_torque);
+    ASSERT_EQ(now.motor_velocity, 0.0);
+    ASSERT_EQ(now.output_velocity, 0.0);
+  }
+  EXPECT_GT(failures, 0U);
+  EXPECT_EQ(twin.counters().solver_failures, failures);
+  HealthReport health = twin.health();
+  EXPECT_EQ(health.solver_state, SolverState::FAILED);
+  EXPECT_EQ(health.solver_failures, failures);
+  // The load gone, it finds its way back and stays there.
+  advance(twin, 150 * MILLISECOND);
+  health = twin.health();
+  const std::uint64_t before = twin.counters().solver_failures;
+  advance(twin, 200 * MILLISECOND);
+  EXPECT_EQ(twin.counters().solver_failures, before);
+  EXPECT_EQ(twin.health().solver_state, SolverState::OK);
+}
+
+class ViolentRun : public testing::TestWithParam<unsigned>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, ViolentRun, testing::Values(91U, 92U, 93U));
+
+TEST_P(ViolentRun, StaysFiniteEverywhere)
+{
+  // Loads of up to 1000 N.m and full motor torque to and fro.
+  Twin twin(shippedParameters(SOFT_GEAR));
+  ToothForces teeth = twin.makeToothForces();
+  for (const Input& input : randomInputs(GetParam(), SECOND / 5, 4.0, 1000.0))
+  {
+    give(twin, input);
+  }
+  double torsion = 0.0;
+  while (twin.step(SECOND / 5))
+  {
+    ASSERT_TRUE(allFinite(numbers(twin.outputs()))) << twin.stamp();
+    torsion = std::max(torsion, std::abs(twin.outputs().motor_angle / 101.0 - twin.outputs().output_angle));
+    if (twin.counters().steps % 10 == 0)
+    {
+      twin.toothForces(teeth);
+      for (const std::vector<double>* values : { &teeth.wave_generator_force, &teeth.rim_tension, &teeth.bending_force,
+                                                 &teeth.mesh_force, &teeth.tooth_x, &teeth.tooth_y })
+      {
+        ASSERT_TRUE(allFinite(*values)) << twin.stamp();
+      }
+      const HealthReport health = twin.health();
+      ASSERT_TRUE(
+          allFinite({ health.transmission_ratio, health.torsion, health.torsional_stiffness,
+                      health.torsional_stiffness_model, health.lobe_mesh_force[0], health.lobe_mesh_force[1],
+                      health.lobe_asymmetry, health.wave_generator_load, health.friction_torque, health.efficiency,
+                      health.kinematic_error, health.energy_residual, health.solver_residual }))
+          << twin.stamp();
+    }
+  }
+  // Further than a pitch of the circular spline: teeth have jumped.
+  EXPECT_GT(torsion, TWO_PI / 202.0);
+}
+
+TEST(ViolentRunOfTheShippedJoint, ConvergesInEveryStepAndLosesNoEnergy)
+{
+  // Motor torque to and fro between its limits, loads up to the joint's 150 N.m, the brake thrown in at full speed.
+  for (const unsigned seed : { 71U, 72U, 73U })
+  {
+    Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
+    for (const Input& input : randomInputs(seed, SECOND / 2, 2.87, 150.0))
+    {
+      give(twin, input);
+    }
+    while (twin.step(SECOND / 2))
+    {
+      ASSERT_TRUE(twin.outputs().converged) << "seed " << seed << " at " << twin.stamp();
+      // Some hundred joules go through; a ring that falls into another equilibrium loses tens of them at once.
+      ASSERT_LT(std::abs(twin.outputs().energy_residual), 0.5) << "seed " << seed << " at " << twin.stamp();
+    }
+  }
+}
+}  // namespace
+}  // namespace hjt
