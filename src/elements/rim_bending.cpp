@@ -100,7 +100,8 @@ void RimBending::addTangent(const RingShape& shape, const RingForces& forces, Ri
   }
 }
 
-void RimBending::addAbsoluteTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
+void RimBending::addAbsoluteTangent(const RingShape& shape, const RingForces& forces,
+                                    RingTangent& tangent) const noexcept
 {
   for (int i = 0; i < shape.teeth(); ++i)
   {
@@ -113,7 +114,8 @@ void RimBending::addAbsoluteTangent(const RingShape& shape, const RingForces& fo
   }
 }
 
-void RimBending::addCurvatureTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
+void RimBending::addCurvatureTangent(const RingShape& shape, const RingForces& forces,
+                                     RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
   Eigen::Vector2d g_before = turnGradient(shape, n - 1);

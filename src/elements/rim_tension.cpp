@@ -4,7 +4,8 @@
 namespace hjt
 {
 RimTension::RimTension(const RingParameters& parameters, const ToothRing& rest)
-  : stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.tension_stiffness)), rest_length_(rest.segmentLength())
+  : stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.tension_stiffness))
+  , rest_length_(rest.segmentLength())
 {
 }
 

@@ -27,8 +27,8 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const
   }
 }
 
-double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& rates) const
-    noexcept
+double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces,
+                                 const Eigen::VectorXd& rates) const noexcept
 {
   double sum = 0.0;
   for (int i = 0; i < shape.teeth(); ++i)
@@ -36,16 +36,16 @@ double InterfaceFriction::torque(const RingShape& shape, const RingForces& force
     const int j = shape.next(i);
     const int h = shape.previous(i);
     const Chord chord = shape.chord(i);
-    const double tilt = (chord.normal.x() * (rates[2 * j] - rates[2 * h]) +
-                         chord.normal.y() * (rates[2 * j + 1] - rates[2 * h + 1])) /
-                        chord.length;
+    const double tilt =
+        (chord.normal.x() * (rates[2 * j] - rates[2 * h]) + chord.normal.y() * (rates[2 * j + 1] - rates[2 * h + 1])) /
+        chord.length;
     sum += forces.contact_force[i] * std::abs(tilt);
   }
   return parameters_.friction_coefficient * parameters_.slip_lever * sum;
 }
 
-void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates, JointFriction& friction)
-    const noexcept
+void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
+                      JointFriction& friction) const noexcept
 {
   const double* m = rates.by_motor.data();
   const double* o = rates.by_output.data();

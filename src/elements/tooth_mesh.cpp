@@ -11,8 +11,8 @@ namespace hjt
 /// A tooth in the axes of its space.
 struct ToothMesh::Engagement
 {
-  Eigen::Vector2d radial;   // axis of the space
-  Eigen::Vector2d across;   // counter-clockwise of it
+  Eigen::Vector2d radial;  // axis of the space
+  Eigen::Vector2d across;  // counter-clockwise of it
   Chord chord;
   double xi;
   double zeta;
@@ -50,8 +50,8 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   }
 }
 
-ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output, int i) const
-    noexcept
+ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output,
+                                        int i) const noexcept
 {
   const int k = shape.space[i];
   const double ax = axes_[2 * k];
@@ -166,8 +166,8 @@ void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position
     const Eigen::Vector2d hq = hessian * q;
     const Block2 mixed = -lever * hq * n.transpose();
     const double by_turn = lever * lever * q.dot(hq) - lever / tooth.chord.length * outward;
-    const Block2 chord = by_turn * n * n.transpose() +
-                         lever / tooth.chord.length * along * (n * q.transpose() + q * n.transpose());
+    const Block2 chord =
+        by_turn * n * n.transpose() + lever / tooth.chord.length * along * (n * q.transpose() + q * n.transpose());
     const int h = shape.previous(i);
     const int j = shape.next(i);
     tangent.addDiagonal(i, hessian);
@@ -185,7 +185,27 @@ void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position
     tangent.output.segment<2>(2 * i) += gradient_rate;
     tangent.output.segment<2>(2 * j) += neighbour_rate;
     tangent.output.segment<2>(2 * h) -= neighbour_rate;
-    tangent.output_stiffness += -xi_rate * tooth.zeta + zeta_rate * tooth.xi - at.by_xi * tooth.xi - at.by_zeta * tooth.zeta;
+    tangent.output_stiffness +=
+        -xi_rate * tooth.zeta + zeta_rate * tooth.xi - at.by_xi * tooth.xi - at.by_zeta * tooth.zeta;
+  }
+}
+
+/// Where tooth 0 at rest lies among the spaces, plus a half for rounding, between 0 and twice their number.
+double ToothMesh::firstSpace(double output_angle) const noexcept
+{
+  const double turns = output_angle / TWO_PI;
+  const double part = turns - std::floor(turns);
+  // An angle that is no number has no space; any will do, the forces will tell.
+  return 0.5 + spaces_ * (part >= 0.0 && part <= 1.0 ? 1.0 - part : 0.0);
+}
+
+void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept
+{
+  const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
+  const double first = firstSpace(position.output_angle);
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    shape.space[i] = static_cast<int>(first + i * spaces_a_tooth) % spaces_;
   }
 }
 
@@ -194,8 +214,7 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
   const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
-  const double turned = position.output_angle * spaces_ / TWO_PI;
-  const double first = 0.5 + spaces_ * (1.0 + std::floor(turned / spaces_)) - turned;
+  const double first = firstSpace(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
     if (outOfReach(shape, i))

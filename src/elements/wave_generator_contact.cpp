@@ -35,8 +35,8 @@ WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, 
 }
 
 /// Feet of the normals from all tooth points, in the housing's axes.
-void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position, RingForces& forces) const
-    noexcept
+void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position,
+                                    RingForces& forces) const noexcept
 {
   const double c = std::cos(position.wave_generator_angle);
   const double s = std::sin(position.wave_generator_angle);
@@ -47,18 +47,20 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
   double* normal = forces.contact_normal.data();
   double* depth = forces.contact_depth.data();
   double* curvature = forces.contact_curvature.data();
-  const auto store = [&](int i, const EllipseFoot& foot) {
+  const auto store = [&](int i, const EllipseFoot& foot)
+  {
     normal[2 * i] = c * foot.normal_x - s * foot.normal_y;
     normal[2 * i + 1] = s * foot.normal_x + c * foot.normal_y;
     depth[i] = foot.depth;
     curvature[i] = foot.curvature;
   };
-  const auto own = [&](int i, double& x, double& y) {
+  const auto own = [&](int i, double& x, double& y)
+  {
     x = c * point[2 * i] + s * point[2 * i + 1];
     y = c * point[2 * i + 1] - s * point[2 * i];
   };
-  double x;
-  double y;
+  double x = 0.0;
+  double y = 0.0;
   if (law_ == ContactLaw::POLAR)
   {
     for (int i = 0; i < n; ++i)
@@ -71,7 +73,7 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
   double farthest = 0.0;
   for (int i = 0; i < n; ++i)
   {
-    double nearness;
+    double nearness = 0.0;
     own(i, x, y);
     store(i, closestPointNear(a, b, x, y, nearness));
     farthest = std::max(farthest, nearness);
@@ -86,8 +88,8 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
   }
 }
 
-void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const
-    noexcept
+void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
+                                     RingForces& forces) const noexcept
 {
   findFeet(shape, position, forces);
   for (int i = 0; i < shape.teeth(); ++i)
@@ -104,8 +106,8 @@ void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition
   }
 }
 
-void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const
-    noexcept
+void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces,
+                                      RingTangent& tangent) const noexcept
 {
   for (int i = 0; i < shape.teeth(); ++i)
   {

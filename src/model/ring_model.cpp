@@ -46,7 +46,7 @@ RingShape RingModel::restShape(const DrivePosition& position) const
   RingShape shape(rest.teeth());
   shape.points = rest.points();
   shape.updateGeometry();
-  mesh.pairNearest(position, shape);
+  mesh.pairAtRest(position, shape);
   return shape;
 }
 }  // namespace hjt

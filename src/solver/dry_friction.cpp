@@ -29,6 +29,17 @@ double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vec
   }
   return length;
 }
+
+/// Friction that acts on the motor shaft alone [N.m].
+double shaftStrength(const JointFriction& friction) noexcept
+{
+  double strength = 0.0;
+  for (const FrictionTerm& term : friction.terms)
+  {
+    strength += term.slip[1] == 0.0 ? term.strength * std::abs(term.slip[0]) : 0.0;
+  }
+  return strength;
+}
 }  // namespace
 
 /// Slip speed at which a term is half way to full friction: what it sees at the regularising motor speed, the output
@@ -42,9 +53,11 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
                                    const Eigen::Vector2d& free_speeds, double step) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
-  constexpr double ENOUGH = 1e-12;  // relative change of the speeds
+  constexpr double ENOUGH = 1e-12;     // relative change of the speeds
+  constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: slower, the motor may really be at rest
   Eigen::Matrix2d hessian;
-  const auto gradient = [&](const Eigen::Vector2d& v) {
+  const auto gradient = [&](const Eigen::Vector2d& v)
+  {
     Eigen::Vector2d sum = inertia_.cwiseProduct(v - free_speeds) + 0.5 * step * friction.viscous * (v + old_speeds);
     hessian = 0.5 * step * friction.viscous;
     hessian.diagonal() += inertia_;
@@ -59,25 +72,45 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
     return sum;
   };
 
-  Eigen::Vector2d v = old_speeds;
-  Eigen::Vector2d slope = gradient(v);
-  for (int i = 0; i < MAX_ITERATIONS; ++i)
+  // Down to the minimum, or with the motor at rest to the minimum over the output's speed alone.
+  const auto descend = [&](Eigen::Vector2d& v, bool motor_free)
   {
-    const double determinant = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(1, 0);
-    const Eigen::Vector2d change(-(hessian(1, 1) * slope[0] - hessian(0, 1) * slope[1]) / determinant,
-                                 -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant);
-    if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
-        std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(follow) * width_))
+    Eigen::Vector2d slope = gradient(v);
+    for (int i = 0; i < MAX_ITERATIONS; ++i)
     {
-      break;
+      const double determinant = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(1, 0);
+      Eigen::Vector2d change(0.0, -slope[1] / hessian(1, 1));
+      if (motor_free)
+      {
+        change = { -(hessian(1, 1) * slope[0] - hessian(0, 1) * slope[1]) / determinant,
+                   -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
+      }
+      if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
+          std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(follow) * width_))
+      {
+        break;
+      }
+      v += searchLine(gradient, v, change, slope) * change;
     }
-    v += searchLine(gradient, v, change, slope) * change;
+    return slope;
+  };
+
+  Eigen::Vector2d v = old_speeds;
+  descend(v, true);
+  if (std::abs(v[0]) < STICK_RANGE * width_)
+  {
+    Eigen::Vector2d at_rest(0.0, v[1]);
+    const Eigen::Vector2d slope = descend(at_rest, false);
+    if (std::abs(slope[0]) <= step * shaftStrength(friction))
+    {
+      return at_rest;
+    }
   }
   return v;
 }
 
-Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double follow, const Eigen::Vector2d& speeds) const
-    noexcept
+Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double follow,
+                                    const Eigen::Vector2d& speeds) const noexcept
 {
   Eigen::Vector2d torque = -friction.viscous * speeds;
   for (const FrictionTerm& term : friction.terms)

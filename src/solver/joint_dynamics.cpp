@@ -67,7 +67,8 @@ double JointDynamics::follow() const noexcept
 void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
 {
   const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.shape(), ring_.position(), ring_.forces(), rates, follow(), speeds, inputs, running_, friction_);
+  model_.friction(ring_.shape(), ring_.position(), ring_.forces(), rates, follow(), speeds, inputs, running_,
+                  friction_);
 }
 
 void JointDynamics::operator()(const JointState& x, JointState& rate, double) noexcept

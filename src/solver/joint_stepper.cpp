@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <sstream>
 
+#include "harmonic_joint_twin/gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 
 namespace hjt
@@ -16,9 +19,10 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
 {
   if (!reset())
   {
-    throw ParameterError("these parameters have no equilibrium: the insertion of the wave generator did not converge "
-                         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
-                         std::to_string(dynamics_.status.residual) + " N)");
+    throw ParameterError(
+        "these parameters have no equilibrium: the insertion of the wave generator did not converge "
+        "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
+        std::to_string(dynamics_.status.residual) + " N)");
   }
   checkStep(parameters);
 }
@@ -26,28 +30,31 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
 void JointStepper::checkStep(const Parameters& parameters)
 {
   constexpr double MAX_PHASE = 1.5;  // rad a step; the leapfrog is stable below 2
-  // Stiffest motion: the lighter of output and (reduced) motor against the stiffest slope of the cup.
+  // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
-  const double stiffness = parameters.cup.torsion_stiffness[2];
-  const double frequency = std::sqrt(stiffness / inertia[1]);
+  const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
+  const double stiffness = *std::max_element(slopes.begin(), slopes.end());
+  const double ratio = nominalRatio(parameters.gear);
+  const double frequency = std::sqrt(stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)));
   if (frequency * step_ > MAX_PHASE)
   {
     std::ostringstream text;
-    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with output inertia " << inertia[1]
-         << " kg.m^2 the joint can swing at " << frequency << " rad/s, which needs at least " << frequency / MAX_PHASE
-         << " Hz (or a larger output.load_inertia)";
+    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << inertia[0]
+         << " kg.m^2 at the motor and " << inertia[1] << " kg.m^2 at the output the joint can swing at " << frequency
+         << " rad/s, which needs at least " << frequency / MAX_PHASE << " Hz (or a larger output.load_inertia)";
     throw ParameterError(text.str());
   }
   if (kind_ == StepperKind::RUNGE_KUTTA4)
   {
     constexpr double MARGIN = 0.5;  // friction's slope times the step over the inertia; 2.78 is the stability limit
-    const double needed = step_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
+    const double needed =
+        step_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
     if (parameters.solver.stiction_velocity < needed)
     {
       std::ostringstream text;
       text << "solver.stiction_velocity = " << parameters.solver.stiction_velocity
-           << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least " << needed
-           << " rad/s at this solver.rate (brake.holding_torque counts)";
+           << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least "
+           << needed << " rad/s at this solver.rate (brake.holding_torque counts)";
       throw ParameterError(text.str());
     }
   }

@@ -16,6 +16,12 @@ DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fra
            a.wave_amplitude + fraction * (b.wave_amplitude - a.wave_amplitude) };
 }
 
+/// Which of its two contacts a tooth is in, as bits.
+char contactsOf(const RingForces& forces, int i) noexcept
+{
+  return static_cast<char>((forces.meshed[i] != 0 ? 1 : 0) + (forces.contact_depth[i] > 0.0 ? 2 : 0));
+}
+
 double largest(const Eigen::VectorXd& forces) noexcept
 {
   return forces.lpNorm<Eigen::Infinity>();
@@ -44,6 +50,7 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , start_points_(now_.shape.points)
   , scratch_(now_.shape.points)
   , old_space_(now_.shape.space)
+  , factored_contacts_(static_cast<std::size_t>(model.rest.teeth()))
   , step_(now_.shape.points)
   , columns_(2 * model.rest.teeth(), 2)
 {
@@ -55,6 +62,7 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   now_.position.wave_amplitude = 0.0;
   now_.shape.points = model_.rest.points();
   now_.shape.updateGeometry();
+  model_.mesh.pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
@@ -83,11 +91,12 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
     return unmoved;
   }
   start_ = now_;
-  const SolveStatus status = approach(target);
+  SolveStatus status = approach(target);
   if (!status.ok())
   {
     now_ = start_;
     model_.forces(now_.shape, now_.position, forces_);
+    status.residual = std::isfinite(status.residual) ? status.residual : now_.residual;
   }
   return status;
 }
@@ -199,7 +208,7 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
   else
   {
     now_.shape.points += (target.wave_generator_angle - now_.position.wave_generator_angle) * now_.by_wave_generator +
-                     (target.output_angle - now_.position.output_angle) * now_.by_output;
+                         (target.output_angle - now_.position.output_angle) * now_.by_output;
   }
   now_.shape.updateGeometry();
   now_.position = target;
@@ -216,7 +225,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   }
   model_.forces(now_.shape, now_.position, forces_);
   status.residual = largest(forces_.teeth);
-  if (status.residual <= parameters_.force_tolerance)
+  if (status.residual <= parameters_.force_tolerance && !slopesChanged())
   {
     now_.residual = status.residual;
     return status;  // the tangent of the last solve is good enough to have predicted this
@@ -247,13 +256,39 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
     fresh = residual < GOOD_CONTRACTION * status.residual;
     status.residual = residual;
   } while (true);
+  if (slopesChanged() && !refactor())
+  {
+    status.code = SolveCode::SINGULAR;
+    return status;
+  }
   updateSensitivities();
   now_.residual = status.residual;
   return status;
 }
 
+/// Whether a tooth has begun or ceased to touch, or the cup has come to another slope, since the tangent was factored.
+bool RingEquilibrium::slopesChanged() const noexcept
+{
+  if (model_.cup.stiffness(forces_.cup_rotation) != tangent_.cup_stiffness)
+  {
+    return true;
+  }
+  for (int i = 0; i < now_.shape.teeth(); ++i)
+  {
+    if (factored_contacts_[i] != contactsOf(forces_, i))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool RingEquilibrium::refactor() noexcept
 {
+  for (int i = 0; i < now_.shape.teeth(); ++i)
+  {
+    factored_contacts_[i] = contactsOf(forces_, i);
+  }
   model_.tangent(now_.shape, now_.position, forces_, tangent_);
   return solver_.factor(tangent_);
 }

@@ -130,8 +130,8 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
     {
       status = balanceOutput(ring, angle, load_torque);
     }
-    rows.push_back({ status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque,
-                     status.residual });
+    rows.push_back(
+        { status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque, status.residual });
     if (progress)
     {
       progress(i);

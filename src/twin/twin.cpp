@@ -38,7 +38,7 @@ struct Twin::Impl
     stepper.reset();
     queue.clear();
     counters = {};
-    now = ((stamp + step_length - 1) / step_length) * step_length;
+    now = (stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length) * step_length;
     simulated_until = stamp;
     in_force_since.fill(std::numeric_limits<Stamp>::min());
     command = 0.0;
@@ -71,9 +71,9 @@ struct Twin::Impl
   InputQueue queue;
   std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the input in force, by kind
   TwinCounters counters;
-  double command{};        // last motor torque command [N.m]
-  bool commanded{};        // a command is in force, not timed out
-  double load_torque{};    // last load torque, clamped [N.m]
+  double command{};      // last motor torque command [N.m]
+  bool commanded{};      // a command is in force, not timed out
+  double load_torque{};  // last load torque, clamped [N.m]
   bool load_clamped{};
   bool brake_engaged{};
   JointOutputs outputs;
@@ -104,7 +104,8 @@ void Twin::Impl::takeInputs() noexcept
         commanded = true;
         break;
       case InputKind::LOAD_TORQUE:
-        load_torque = std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit);
+        load_torque =
+            std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit);
         load_clamped = load_torque != input.value;
         break;
       case InputKind::BRAKE:
@@ -118,7 +119,8 @@ void Twin::Impl::takeInputs() noexcept
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
-  const double age = 1e-9 * static_cast<double>(now - in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)]);
+  const double age =
+      1e-9 * static_cast<double>(now - in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)]);
   if (commanded && age > parameters.input.command_timeout)
   {
     commanded = false;
@@ -187,8 +189,9 @@ Twin::Twin(const Parameters& parameters)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
-    throw ParameterError("contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
-                         "allowed for the running twin: normal");
+    throw ParameterError(
+        "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
+        "allowed for the running twin: normal");
   }
   impl_ = std::make_unique<Impl>(parameters);
 }
@@ -270,7 +273,8 @@ HealthReport Twin::health() noexcept
   const JointOutputs& joint = impl_->outputs;
   const RingForces& forces = impl_->stepper.dynamics().ring().forces();
   const MotionIndicators motion = impl_->monitor.indicators();
-  const LobeLoads lobes = lobeLoads({ forces.flank_force, forces.contact_force, impl_->tooth_angles, joint.motor_angle });
+  const LobeLoads lobes =
+      lobeLoads({ forces.flank_force, forces.contact_force, impl_->tooth_angles, joint.motor_angle });
   HealthReport report;
   report.transmission_ratio_valid = motion.transmission_ratio.valid;
   report.transmission_ratio = motion.transmission_ratio.value;

@@ -50,6 +50,8 @@ struct RandomStep
     return value;
   }
 
+  double shaft() const { return friction.terms.front().strength; }  // [N.m]
+
   JointFriction friction;
   Eigen::Vector2d inertia;
   Eigen::Vector2d old;
@@ -94,7 +96,9 @@ TEST(DryFriction, IsTheMinimumFoundByBruteForce)
     const Eigen::Vector2d brute(motor, best_output(motor));
     // Values near a minimum are flat: two numbers that agree to rounding are all that can be asked of them.
     const double scale = step.potential(step.old) + step.potential(step.free) + step.potential({ 0.0, 0.0 });
-    EXPECT_LE(step.potential(v), step.potential(brute) + 1e-14 * scale) << k;
+    // A motor at rest is held exactly; the potential rounds the kink there off by the regularising speed.
+    const double kink = v[0] == 0.0 ? STEP * step.shaft() * WIDTH : 0.0;
+    EXPECT_LE(step.potential(v), step.potential(brute) + 1e-14 * scale + kink) << k;
     stuck += std::abs(v[0]) < 100.0 * WIDTH ? 1 : 0;
   }
   EXPECT_GT(stuck, 3);
@@ -122,7 +126,8 @@ TEST(DryFriction, LeavesNoForceUnbalanced)
     }
     // The search ends where the potential no longer falls by its own rounding: half the digits of the speeds, and of
     // what sticks, friction within 1e-6 rad/s, some fewer.
-    EXPECT_LT(std::abs(error[0]), 1e-4 * scale[0]) << k;
+    const double held = v[0] == 0.0 ? STEP * step.shaft() : 0.0;
+    EXPECT_LE(std::abs(error[0]), 1e-4 * scale[0] + held) << k;
     EXPECT_LT(std::abs(error[1]), 1e-4 * scale[1]) << k;
   }
 }
@@ -156,8 +161,7 @@ TEST_F(Slider, SticksBelowBreakaway)
     {
       speed = stepped(speed, share * COULOMB);
     }
-    // Regularised friction c v / sqrt(v^2 + e^2) carries the share at this speed, found as well as the search ends.
-    EXPECT_NEAR(speed, WIDTH * share / std::sqrt(1.0 - share * share), 1e-6 * WIDTH) << share;
+    EXPECT_EQ(speed, 0.0) << share;
   }
 }
 

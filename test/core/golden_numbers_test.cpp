@@ -201,7 +201,8 @@ TEST_F(GoldenTurn, RatioComesOutOfTheContactsWithoutDrift)
   }
   RecordProperty("largest_error_at_pitches", testing::PrintToString(largest));
   RecordProperty("drift", testing::PrintToString(error(rows().size() - 1)));
-  // The state after a tooth pitch is the same with the teeth renumbered. Loads are balanced to 1e-8 N.m over 3e4 N.m/rad.
+  // The state after a tooth pitch is the same with the teeth renumbered. Loads are balanced to 1e-8 N.m over
+  // 3e4 N.m/rad.
   EXPECT_LT(largest, 1e-12);
 }
 

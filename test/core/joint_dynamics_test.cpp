@@ -69,7 +69,11 @@ double energyResidual(const Parameters& parameters, unsigned seed, bool brake)
   {
     const double angle = stepper.motorAngle();
     const double speed = stepper.speeds()[0];
-    EXPECT_TRUE(stepper.step(inputs.next(model.motor, speed))) << "step " << i;
+    if (!stepper.step(inputs.next(model.motor, speed)))
+    {
+      ADD_FAILURE() << "not converged in step " << i;
+      return HUGE_VAL;
+    }
     residual = std::max(residual, std::abs(stepper.energyResidual()));
     travel += std::abs(stepper.motorAngle() - angle);
     reversals += speed * stepper.speeds()[0] < 0.0 ? 1 : 0;
@@ -136,7 +140,9 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
       strength += term.strength * std::abs(term.slip[0] + dynamics.follow() * term.slip[1]);
     }
     const Eigen::Vector2d off = leapfrog.frictionTorque() - law;
-    worst = std::max(worst, std::abs(off[0] + dynamics.follow() * off[1]) / strength);
+    // A motor at rest takes what it needs of the friction on its shaft, which is the first term.
+    const double held = after[0] == 0.0 ? dynamics.friction().terms.front().strength : 0.0;
+    worst = std::max(worst, (std::abs(off[0] + dynamics.follow() * off[1]) - held) / strength);
   }
   RecordProperty("worst_relative_error", testing::PrintToString(worst));
   // The speeds are found to 1e-11; where the joint sticks, the slope of friction over 1e-6 rad/s magnifies that.
@@ -145,8 +151,8 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
 
 TEST(Dissipation, IsNeverNegative)
 {
-  // Friction is taken at the end of a step, work at its mean speed. In a step that turns a slip round, friction may thus
-  // push along for a part of the step: by no more than its strength times half the slip before.
+  // Friction is taken at the end of a step, work at its mean speed. In a step that turns a slip round, friction may
+  // thus push along for a part of the step: by no more than its strength times half the slip before.
   const Parameters parameters = shippedParameters({}, { "joints/elbow" });
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
@@ -198,8 +204,8 @@ TEST(Stiction, HoldsTheMotorToTheLastBit)
   EXPECT_GT(stepper.motorAngle(), 1.0);
 }
 
-/// A joint that is smooth all along its way: no dry friction, which the leapfrog takes at the end of its step; all contacts
-/// rounded; torque that comes and goes gently, so that no tooth comes into mesh or leaves it.
+/// A joint that is smooth all along its way: no dry friction, which the leapfrog takes at the end of its step; all
+/// contacts rounded; torque that comes and goes gently, so that no tooth comes into mesh or leaves it.
 class SmoothJoint : public testing::Test
 {
 protected:
@@ -345,7 +351,7 @@ TEST(FreeSwing, DecaysAtTheFrequencyOfTheLockedGear)
     EXPECT_LT(energies[k], energies[k - 1]);
   }
   const double half_period = (crossings[3] - crossings[1]) / 2.0 / parameters.solver.rate;
-  // The gear stiffens from 29e3 to 33e3 N.m/rad with the teeth that mesh, and mesh friction stiffens it while it sticks.
+  // The gear stiffens from 29e3 to 33e3 N.m/rad with the teeth that mesh, and by mesh friction while it sticks.
   EXPECT_NEAR(PI / half_period, std::sqrt(stiffness / model.inertia()[1]), 0.15 * PI / half_period);
   EXPECT_LT(energies.back(), 0.99 * energies.front());
 }

@@ -194,7 +194,8 @@ TEST_F(Ring, SensitivitiesAreTheRatesOfTheMovingRing)
 
 TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
 {
-  // Steps as at full motor speed, 317 rad/s at 10 kHz. Newton may keep old factors, but not across a change of contacts.
+  // Steps as at full motor speed, 317 rad/s at 10 kHz. Newton may keep old factors, but not across a change of
+  // contacts.
   constexpr unsigned SEED = 51;
   SCOPED_TRACE("seed " + std::to_string(SEED));
   std::mt19937 random(SEED);

@@ -24,7 +24,10 @@ public:
   void addTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
 
   /// Tension of segment i, pull > 0 [N].
-  double tension(const RingShape& shape, int i) const noexcept { return stiffness_[i] * (shape.lengths[i] - rest_length_); }
+  double tension(const RingShape& shape, int i) const noexcept
+  {
+    return stiffness_[i] * (shape.lengths[i] - rest_length_);
+  }
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per segment [N/m]
 

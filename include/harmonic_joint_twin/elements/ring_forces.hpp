@@ -34,18 +34,19 @@ struct RingForces
     energy = 0.0;
   }
 
-  Eigen::VectorXd teeth;           ///< 2 N, on the tooth points [N]
-  double wave_generator_torque{};  ///< on the wave generator [N.m]
-  double output_torque{};          ///< on the circular spline [N.m]
-  double energy{};                 ///< stored [J]
-  Eigen::VectorXd contact_force;   ///< N, normal force of the wave generator on each tooth, >= 0 [N]
-  Eigen::VectorXd contact_depth;   ///< N, depth of each tooth point inside the wave generator [m]
+  Eigen::VectorXd teeth;              ///< 2 N, on the tooth points [N]
+  double wave_generator_torque{};     ///< on the wave generator [N.m]
+  double output_torque{};             ///< on the circular spline [N.m]
+  double energy{};                    ///< stored [J]
+  Eigen::VectorXd contact_force;      ///< N, normal force of the wave generator on each tooth, >= 0 [N]
+  Eigen::VectorXd contact_depth;      ///< N, depth of each tooth point inside the wave generator [m]
   Eigen::VectorXd contact_curvature;  ///< N, of the wave generator there [1/m]
-  Eigen::VectorXd contact_normal;  ///< 2 N, its direction, outward [-]
-  Eigen::VectorXd flank_force;     ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
-  std::vector<char> meshed;        ///< N, tooth touches a flank [-]
-  Eigen::VectorXd bending_moment;  ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
-  double cup_rotation{};           ///< mean rotation of the tooth points [rad]
+  Eigen::VectorXd contact_normal;     ///< 2 N, its direction, outward [-]
+  Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
+  std::vector<char> meshed;           ///< N, tooth touches a flank [-]
+  Eigen::VectorXd
+      bending_moment;     ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
+  double cup_rotation{};  ///< mean rotation of the tooth points [rad]
 };
 
 using Block2 = Eigen::Matrix2d;
@@ -79,7 +80,10 @@ struct RingTangent
     output_stiffness = 0.0;
   }
 
-  void addDiagonal(int i, const Block2& block) noexcept { diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (i & 1)) += block; }
+  void addDiagonal(int i, const Block2& block) noexcept
+  {
+    diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (i & 1)) += block;
+  }
 
   /// Adds `block` at (i, j) and its transpose at (j, i); j is i+1 or i+2, cyclic.
   void addPair(int i, int j, const Block2& block) noexcept

@@ -60,8 +60,8 @@ public:
   }
 
   /// Adds to the viscous matrix.
-  void add(const RingShape& shape, const RingForces& forces, const RingRates& rates, JointFriction& friction) const
-      noexcept;
+  void add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
+           JointFriction& friction) const noexcept;
 
 private:
   double tension_;  // [N.s/m]

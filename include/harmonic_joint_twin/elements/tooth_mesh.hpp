@@ -30,6 +30,9 @@ public:
   void addTangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
                   RingTangent& tangent) const noexcept;
 
+  /// Pairs every tooth with the space nearest to its angle at rest.
+  void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
+
   /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
   void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
 
@@ -46,6 +49,7 @@ private:
   Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
   Law law(const Engagement& tooth, int i) const noexcept;
   bool outOfReach(const RingShape& shape, int i) const noexcept;
+  double firstSpace(double output_angle) const noexcept;
 
   int spaces_;
   double mid_height_;

@@ -8,7 +8,7 @@ namespace hjt
 /// Foot of the normal from a point to an ellipse, in the ellipse's own axes.
 struct EllipseFoot
 {
-  double normal_x;   ///< outward unit normal at the foot [-]
+  double normal_x;  ///< outward unit normal at the foot [-]
   double normal_y;
   double depth;      ///< distance of the point inside the ellipse along the normal; < 0 outside [m]
   double curvature;  ///< of the ellipse at the foot [1/m]

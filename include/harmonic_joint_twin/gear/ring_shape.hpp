@@ -32,10 +32,7 @@ struct Chord
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
 struct RingShape
 {
-  explicit RingShape(int teeth)
-    : points(2 * teeth), directions(2 * teeth), lengths(teeth), space(teeth, 0)
-  {
-  }
+  explicit RingShape(int teeth) : points(2 * teeth), directions(2 * teeth), lengths(teeth), space(teeth, 0) {}
 
   int teeth() const noexcept { return static_cast<int>(lengths.size()); }
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }

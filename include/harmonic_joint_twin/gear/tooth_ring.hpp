@@ -15,10 +15,10 @@ public:
   explicit ToothRing(const GearParameters& gear);
 
   int teeth() const noexcept { return static_cast<int>(points_.size()) / 2; }
-  double pitchAngle() const noexcept { return pitch_angle_; }          ///< [rad]
-  double segmentLength() const noexcept { return segment_length_; }    ///< tooth i to i+1 [m]
-  const Eigen::VectorXd& points() const noexcept { return points_; }   ///< 2 N [m]
-  const Eigen::VectorXd& radial() const noexcept { return radial_; }   ///< 2 N, unit vectors to each tooth [-]
+  double pitchAngle() const noexcept { return pitch_angle_; }             ///< [rad]
+  double segmentLength() const noexcept { return segment_length_; }       ///< tooth i to i+1 [m]
+  const Eigen::VectorXd& points() const noexcept { return points_; }      ///< 2 N [m]
+  const Eigen::VectorXd& radial() const noexcept { return radial_; }      ///< 2 N, unit vectors to each tooth [-]
   const Eigen::VectorXd& segments() const noexcept { return segments_; }  ///< 2 N, unit vectors from i to i+1 [-]
 
 private:

@@ -18,7 +18,7 @@ struct JointInputs
   double motor_torque{};  ///< at the shaft, after the drive's limits [N.m]
   double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
-  double temperature{};   ///< of the drive [degC]
+  double temperature{};  ///< of the drive [degC]
 };
 
 /// The whole joint: ring, motor, bearing, load, frictions. Constant after construction.
@@ -35,8 +35,8 @@ struct JointModel
   }
 
   /// All torques but friction, on motor and output [N.m].
-  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position, const JointInputs& inputs) const
-      noexcept
+  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
+                         const JointInputs& inputs) const noexcept
   {
     return { inputs.motor_torque + forces.wave_generator_torque,
              forces.output_torque + load.gravityTorque(position.output_angle) - inputs.load_torque };

@@ -27,118 +27,126 @@ void visitFields(P& p, Visitor&& visit)
   visit("joint.name", p.joint.name, "name of the joint in JointState messages; the motor is NAME_motor");
   visit("joint.hardware_id", p.joint.hardware_id, "hardware id in /diagnostics (REP-107: the serial number)");
 
-  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{8, 4000}, "teeth of the flexspline, even");
-  visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{10, 4002},
+  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 }, "teeth of the flexspline, even");
+  visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
         "teeth of the circular spline: two more than the flexspline");
-  visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{1e-3, 1.0},
+  visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{ 1e-3, 1.0 },
         "inner radius of the undeformed flexspline, also the mean radius of the wave generator");
-  visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{0.0, 1e-2},
+  visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{ 0.0, 1e-2 },
         "w0: the wave generator's semi-axes are the inner radius plus and minus w0");
-  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{1e-5, 1e-1}, "flexspline rim under the teeth");
-  visit("gear.tooth_height_flexspline", "m", p.gear.tooth_height_flexspline, Range{1e-5, 1e-1},
+  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{ 1e-5, 1e-1 }, "flexspline rim under the teeth");
+  visit("gear.tooth_height_flexspline", "m", p.gear.tooth_height_flexspline, Range{ 1e-5, 1e-1 },
         "height of a flexspline tooth");
-  visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{1e-3, 1.0},
+  visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{ 1e-3, 1.0 },
         "tip radius of the circular spline's teeth");
 
-  visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{1.0, 1e13},
+  visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
-  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{0.0, 1e6}, "dashpot beside it");
-  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{0.0, 1e6}, "dashpot of each tooth to the housing");
-  visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{0.0, 1e8},
+  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");
+  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{ 0.0, 1e6 }, "dashpot of each tooth to the housing");
+  visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
         "bending stiffness of the rim per segment");
   visit("ring.bending_law", p.ring.bending_law,
         "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
 
-  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{1.0, 1e12}, "wave generator to flexspline, per tooth");
-  visit("contact.damping", "N.s/m", p.contact.damping, Range{0.0, 1e6}, "dashpot of the same contact");
+  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 }, "wave generator to flexspline, per tooth");
+  visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
   visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
-  visit("contact.smoothing", "m", p.contact.smoothing, Range{0.0, 1e-4}, "C1 ramp of the contact; 0 = exact law");
-  visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{0.0, 2.0},
+  visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
+  visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
         "friction between the bearing's outer race and the flexspline");
-  visit("contact.slip_lever", "m", p.contact.slip_lever, Range{0.0, 1e-1},
+  visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
         "distance between the neutral fibres of rim and outer race: lever of the slip between them");
 
-  visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{0.0, 1e12}, "stiffness of a tooth pair along the flank normal");
-  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{0.0, 1.4}, "angle of the flank from the tooth's axis");
-  visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{-1e-3, 1e-3},
+  visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{ 0.0, 1e12 },
+        "stiffness of a tooth pair along the flank normal");
+  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle of the flank from the tooth's axis");
+  visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
         "half clearance at full engagement; negative = interference");
-  visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{1e-9, 1e-2},
+  visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
         "depth over which a tooth's stiffness grows from none to full");
-  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{0.0, 1e-4}, "C1 ramp of the contact; 0 = exact law");
-  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{0.0, 2.0}, "flank friction at rest");
-  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{0.0, 2.0}, "flank friction when sliding");
-  visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{1e-9, 1e3},
+  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
+  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 }, "flank friction at rest");
+  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 }, "flank friction when sliding");
+  visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
         "sliding speed at which static has turned into kinetic friction");
 
-  visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{1.0, 1e9},
+  visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
         "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
-  visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{0.0, 1e6},
+  visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
         "torques at which the slope changes, ascending");
 
-  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{0.0, 100.0}, "f0 of Palmgren's law");
-  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{0.0, 1.0}, "f1 of Palmgren's law");
-  visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{1e-3, 1.0}, "pitch diameter of the balls");
-  visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{1e-7, 1e-1},
+  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 }, "f0 of Palmgren's law");
+  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
+  visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
+  visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         "kinematic viscosity of the grease's base oil at viscosity_temperature");
-  visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{-60.0, 200.0},
+  visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
         "temperature the viscosity is given at");
-  visit("bearing.viscosity_slope", "1/degC", p.bearing.viscosity_slope, Range{0.0, 1.0},
+  visit("bearing.viscosity_slope", "1/degC", p.bearing.viscosity_slope, Range{ 0.0, 1.0 },
         "relative fall of the viscosity per degree");
 
-  visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{1e-9, 10.0}, "motor's rotor");
-  visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{0.0, 10.0}, "wave generator");
-  visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{0.0, 1e3},
+  visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, "motor's rotor");
+  visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 }, "wave generator");
+  visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
         "Coulomb friction at the motor shaft beyond bearing, outer race and flanks");
-  visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{0.0, 1e3}, "viscous friction, motor side");
-  visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{0.0, 1e4}, "larger commands are clamped and counted");
-  visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{1e-3, 1e5},
+  visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
+        "viscous friction, motor side");
+  visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{ 0.0, 1e4 },
+        "larger commands are clamped and counted");
+  visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
         "the drive gives no torque that would speed the motor up beyond this");
 
-  visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{1e-7, 100.0},
+  visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{ 1e-7, 100.0 },
         "circular spline and what turns with it inside the joint");
-  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{0.0, 1e4}, "what the joint carries");
-  visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{0.0, 1e6}, "viscous friction, joint side");
-  visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{0.0, 1e5}, "m g l of the load; 0 = none");
-  visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{-6.2831853071795865, 6.2831853071795865},
+  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, "what the joint carries");
+  visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{ 0.0, 1e6 },
+        "viscous friction, joint side");
+  visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 }, "m g l of the load; 0 = none");
+  visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
         "joint angle at which the load hangs straight down");
-  visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{0.0, 1e6},
+  visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{ 0.0, 1e6 },
         "larger external torques are clamped and counted");
 
-  visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{0.0, 1e4}, "motor side; above it the brake slips");
+  visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{ 0.0, 1e4 },
+        "motor side; above it the brake slips");
   visit("brake.engaged_at_start", p.brake.engaged_at_start, "state of the brake after start and reset");
 
-  visit("solver.rate", "Hz", p.solver.rate, Range{100.0, 1e6}, "steps per simulated second; must divide 1e9 ns evenly");
+  visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
+        "steps per simulated second; must divide 1e9 ns evenly");
   visit("solver.stepper", p.solver.stepper,
         "leapfrog: one ring solve a step, exact stiction; runge_kutta4: Boost.odeint's, four solves a step");
-  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{1e-9, 10.0},
+  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 10.0 },
         "largest out-of-balance force on any tooth");
-  visit("solver.max_iterations", "-", p.solver.max_iterations, Range{1, 1000}, "Newton iterations per attempt");
-  visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{0, 30}, "halvings of a step that does not converge");
-  visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{1e-12, 1e3},
+  visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 }, "Newton iterations per attempt");
+  visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
+        "halvings of a step that does not converge");
+  visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
         "motor speed below which friction is regularised");
 
-  visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{1, 1 << 30},
+  visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{ 1, 1 << 30 },
         "counts of the motor encoder after quadrature");
-  visit("sensors.output_bits", "-", p.sensors.output_bits, Range{1, 30}, "resolution of the absolute output encoder");
-  visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{1e-6, 10.0},
+  visit("sensors.output_bits", "-", p.sensors.output_bits, Range{ 1, 30 }, "resolution of the absolute output encoder");
+  visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
         "encoder velocities are differences over this time");
 
-  visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{1e-3, 1e5},
+  visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{ 1e-3, 1e5 },
         "joint torque must have varied this much before a stiffness is estimated");
-  visit("health.averaging_time", "s", p.health.averaging_time, Range{1e-3, 1e4},
+  visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
         "time constant over which efficiency and stiffness forget");
 
-  visit("input.command_timeout", "s", p.input.command_timeout, Range{1e-3, INF},
+  visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         "a torque command older than this counts as zero");
-  visit("input.hold_back", "s", p.input.hold_back, Range{0.0, 10.0},
+  visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
         "live, the twin stays this far behind the clock, so that stamped commands arrive in time");
   visit("input.wait_for_first_input", p.input.wait_for_first_input,
         "true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant");
-  visit("input.temperature", "degC", p.input.temperature, Range{-40.0, 150.0}, "temperature of the drive");
+  visit("input.temperature", "degC", p.input.temperature, Range{ -40.0, 150.0 }, "temperature of the drive");
 
-  visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{1e-3, 1e6}, "must divide solver.rate");
-  visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{1e-3, 1e6}, "must divide solver.rate");
-  visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{1e-3, 1e6}, "must divide solver.rate");
-  visit("publish.health_rate", "Hz", p.publish.health_rate, Range{1e-3, 1e6}, "must divide solver.rate");
+  visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
+        "must divide solver.rate");
+  visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
 }
 }  // namespace hjt

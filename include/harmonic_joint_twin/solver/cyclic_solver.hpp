@@ -26,8 +26,8 @@ public:
 
   /// Solves K x = b in place for the columns of `b` (2 N rows, row-major so that a block is contiguous).
   template <int COLUMNS>
-  void solve(Eigen::Matrix<double, Eigen::Dynamic, COLUMNS, COLUMNS == 1 ? Eigen::ColMajor : Eigen::RowMajor>& b) const
-      noexcept;
+  void solve(Eigen::Matrix<double, Eigen::Dynamic, COLUMNS, COLUMNS == 1 ? Eigen::ColMajor : Eigen::RowMajor>& b)
+      const noexcept;
 
 private:
   static constexpr int BORDER = 5;

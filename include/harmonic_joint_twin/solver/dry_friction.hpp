@@ -12,11 +12,14 @@ namespace hjt
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
 ///
 /// Convex, so it has one solution whatever the step: friction sticks, slides and reverses without a mode switch.
-/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2.
+/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2. A motor that friction
+/// on its shaft can hold comes to rest exactly.
 class DryFriction
 {
 public:
-  DryFriction(const Eigen::Vector2d& inertia, double stiction_velocity) : inertia_(inertia), width_(stiction_velocity) {}
+  DryFriction(const Eigen::Vector2d& inertia, double stiction_velocity) : inertia_(inertia), width_(stiction_velocity)
+  {
+  }
 
   /// `follow`: output speed over motor speed in plain running; scales the regularisation of slips at the output.
   Eigen::Vector2d solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,

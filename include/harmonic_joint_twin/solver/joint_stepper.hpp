@@ -26,7 +26,7 @@ public:
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
-  double energyResidual() const noexcept;  ///< energy in - stored - dissipated since reset [J]
+  double energyResidual() const noexcept;                           ///< energy in - stored - dissipated since reset [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
@@ -45,8 +45,8 @@ private:
   JointState x_{ JointState::Zero() };
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
-  double balance_{};         // motor work - load work - dissipated - kinetic energy [J]
-  double stored_at_start_{}; // [J]
+  double balance_{};          // motor work - load work - dissipated - kinetic energy [J]
+  double stored_at_start_{};  // [J]
   double throughput_{};
 };
 }  // namespace hjt

@@ -53,6 +53,7 @@ public:
   const RingForces& forces() const noexcept { return forces_; }
 
   /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
+  /// Of the last factored tangent: with the teeth that touch now, at a shape at most a Newton step away.
   const Eigen::VectorXd& byWaveGenerator() const noexcept { return now_.by_wave_generator; }
   const Eigen::VectorXd& byOutput() const noexcept { return now_.by_output; }
 
@@ -82,6 +83,7 @@ private:
   void predict(const DrivePosition& target) noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
+  bool slopesChanged() const noexcept;
   bool searchLine(double residual) noexcept;
   void updateSensitivities() noexcept;
 
@@ -99,6 +101,7 @@ private:
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
+  std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
   Eigen::VectorXd step_;
   Columns columns_;
 };

@@ -12,21 +12,21 @@ namespace hjt
 struct InsertionResult
 {
   bool converged{};
-  double wave_generator_force_max{};  ///< [N]
-  double wave_generator_force_min{};  ///< [N]
-  double wave_generator_force_sum{};  ///< [N]
-  int teeth_in_contact{};             ///< with the wave generator
-  double tension_min{};               ///< [N]
-  double tension_max{};               ///< [N]
-  double radius_major_axis{};         ///< of tooth 0 [m]
-  double radius_minor_axis{};         ///< of tooth N/4 [m]
-  double bending_force_max{};         ///< [N]
-  double residual{};                  ///< [N]
-  int iterations{};                   ///< Newton iterations in all
-  double solve_time{};                ///< [s]
-  std::vector<double> tooth_x;        ///< per tooth [m]
-  std::vector<double> tooth_y;        ///< per tooth [m]
-  std::vector<double> radius;         ///< per tooth [m]
+  double wave_generator_force_max{};         ///< [N]
+  double wave_generator_force_min{};         ///< [N]
+  double wave_generator_force_sum{};         ///< [N]
+  int teeth_in_contact{};                    ///< with the wave generator
+  double tension_min{};                      ///< [N]
+  double tension_max{};                      ///< [N]
+  double radius_major_axis{};                ///< of tooth 0 [m]
+  double radius_minor_axis{};                ///< of tooth N/4 [m]
+  double bending_force_max{};                ///< [N]
+  double residual{};                         ///< [N]
+  int iterations{};                          ///< Newton iterations in all
+  double solve_time{};                       ///< [s]
+  std::vector<double> tooth_x;               ///< per tooth [m]
+  std::vector<double> tooth_y;               ///< per tooth [m]
+  std::vector<double> radius;                ///< per tooth [m]
   std::vector<double> angle_deviation;       ///< psi - psi0, per tooth [rad]
   std::vector<double> wave_generator_force;  ///< per tooth [N]
   std::vector<double> rim_tension;           ///< per tooth, to the next [N]
@@ -38,9 +38,9 @@ InsertionResult analyseInsertion(const Parameters& parameters);
 struct StiffnessRow
 {
   bool converged{};
-  double torque{};                    ///< load [N.m]
-  double output_angle{};              ///< relative to zero load [rad]
-  double wave_generator_torque{};     ///< the wave generator must be held with, reduced sign of the load [N.m]
+  double torque{};                 ///< load [N.m]
+  double output_angle{};           ///< relative to zero load [rad]
+  double wave_generator_torque{};  ///< of the flexspline on the wave generator, -torque/101 [N.m]
   int teeth_loaded{};
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_sum{};  ///< [N]
@@ -55,7 +55,7 @@ struct TurnRow
   bool converged{};
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
-  double wave_generator_torque{};  ///< [N.m]
+  double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
   double residual{};               ///< [N]
 };
 /// `progress` is called with each step done.

@@ -14,33 +14,33 @@ namespace hjt
 /// What the joint does at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
 struct JointOutputs
 {
-  Stamp stamp{};                    ///< simulated instant [ns]
-  double motor_angle{};             ///< wave generator, true
+  Stamp stamp{};         ///< simulated instant [ns]
+  double motor_angle{};  ///< wave generator, true
   double motor_velocity{};
-  double output_angle{};            ///< circular spline, true
+  double output_angle{};  ///< circular spline, true
   double output_velocity{};
-  double motor_torque{};            ///< applied, after command timeout and limits
-  double load_torque{};             ///< external torque at the output, > 0 resists positive motion
-  double wave_generator_torque{};   ///< of the wave generator on the flexspline: what the motor must deliver without friction
-  double joint_torque{};            ///< of the mesh on the circular spline
-  double friction_torque{};         ///< all friction reduced to the motor shaft by power, >= 0
-  double torsional_stiffness{};     ///< local, wave generator locked [N.m/rad]
-  double energy_residual{};         ///< energy in - stored - dissipated since reset [J]
+  double motor_torque{};           ///< applied, after command timeout and limits
+  double load_torque{};            ///< external torque at the output, > 0 resists positive motion
+  double wave_generator_torque{};  ///< of the wave generator on the flexspline: the motor's, less friction and inertia
+  double joint_torque{};           ///< of the mesh on the circular spline
+  double friction_torque{};        ///< all friction reduced to the motor shaft by power, >= 0
+  double torsional_stiffness{};    ///< local, wave generator locked [N.m/rad]
+  double energy_residual{};        ///< energy in - stored - dissipated since reset [J]
   bool brake_engaged{};
-  bool converged{ true };           ///< false: the ring did not converge and the last good state is held
-  std::uint32_t iterations{};       ///< Newton iterations of the last step
-  double residual{};                ///< largest out-of-balance force [N]
+  bool converged{ true };      ///< false: the ring did not converge and the last good state is held
+  std::uint32_t iterations{};  ///< Newton iterations of the last step
+  double residual{};           ///< largest out-of-balance force [N]
 };
 
 /// Readings of both encoders.
 struct EncoderReadings
 {
   std::int64_t motor_count{};
-  double motor_angle{};             ///< [rad]
-  double motor_velocity{};          ///< difference over the velocity window [rad/s]
+  double motor_angle{};     ///< [rad]
+  double motor_velocity{};  ///< difference over the velocity window [rad/s]
   std::uint32_t output_count{};
-  double output_angle{};            ///< unwrapped [rad]
-  double output_velocity{};         ///< [rad/s]
+  double output_angle{};     ///< unwrapped [rad]
+  double output_velocity{};  ///< [rad/s]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
@@ -92,13 +92,13 @@ struct HealthReport
 struct TwinCounters
 {
   std::uint64_t steps{};
-  std::uint64_t solver_failures{};       ///< steps that did not converge: last good state held
-  std::uint64_t step_cuts{};             ///< steps that needed a shorter path
+  std::uint64_t solver_failures{};  ///< steps that did not converge: last good state held
+  std::uint64_t step_cuts{};        ///< steps that needed a shorter path
   InputCounters input;
-  std::uint64_t torque_clamped{};        ///< steps on which the command exceeded motor.torque_limit
-  std::uint64_t load_clamped{};          ///< steps on which the load exceeded output.load_torque_limit
-  std::uint64_t speed_limited{};         ///< steps on which the drive held torque back at motor.speed_limit
-  std::uint64_t command_timeouts{};      ///< times the command ran into input.command_timeout
+  std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit
+  std::uint64_t load_clamped{};      ///< steps on which the load exceeded output.load_torque_limit
+  std::uint64_t speed_limited{};     ///< steps on which the drive held torque back at motor.speed_limit
+  std::uint64_t command_timeouts{};  ///< times the command ran into input.command_timeout
 };
 
 /// The joint twin: commanded torques in, encoder angles, tooth forces and health out. Knows no ROS.
