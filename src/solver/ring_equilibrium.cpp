@@ -66,8 +66,9 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
-  const SolveStatus round = solve(now_.position);
-  return round.ok() ? moveTo(target) : round;
+  model_.forces(now_.shape, now_.position, forces_);
+  now_.residual = largest(forces_.teeth);
+  return moveTo(target);
 }
 
 SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
@@ -84,7 +85,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
-  if (target == now_.position)
+  if (target == now_.position && now_.residual <= parameters_.force_tolerance)
   {
     SolveStatus unmoved;
     unmoved.residual = now_.residual;
