@@ -199,13 +199,19 @@ double ToothMesh::firstSpace(double output_angle) const noexcept
   return 0.5 + spaces_ * (part >= 0.0 && part <= 1.0 ? 1.0 - part : 0.0);
 }
 
+/// Space nearest to the angle at rest of tooth i of `teeth`.
+int ToothMesh::spaceAtRest(double first, int i, int teeth) const noexcept
+{
+  const double spaces_a_tooth = static_cast<double>(spaces_) / teeth;
+  return static_cast<int>(first + i * spaces_a_tooth) % spaces_;
+}
+
 void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept
 {
-  const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
   const double first = firstSpace(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    shape.space[i] = static_cast<int>(first + i * spaces_a_tooth) % spaces_;
+    shape.space[i] = spaceAtRest(first, i, shape.teeth());
   }
 }
 
@@ -213,14 +219,13 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
   const double first = firstSpace(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
     if (outOfReach(shape, i))
     {
       // The tooth's angle at rest is near enough while it cannot touch.
-      shape.space[i] = static_cast<int>(first + i * spaces_a_tooth) % spaces_;
+      shape.space[i] = spaceAtRest(first, i, shape.teeth());
       continue;
     }
     const Engagement tooth = engage(shape, cos_output, sin_output, i);

@@ -50,6 +50,7 @@ private:
   Law law(const Engagement& tooth, int i) const noexcept;
   bool outOfReach(const RingShape& shape, int i) const noexcept;
   double firstSpace(double output_angle) const noexcept;
+  int spaceAtRest(double first, int i, int teeth) const noexcept;
 
   int spaces_;
   double mid_height_;
