@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of the validation: sections that run the tool, judge what comes out, and say it in words, tables and figures."""
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass, field
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
+
+from bounds import number  # noqa: E402
+
+# Okabe and Ito's colours: told apart by every eye, and in grey.
+BLUE, ORANGE, GREEN, RED, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#666666"
+STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
+         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
+         "lines.linewidth": 1.3, "legend.frameon": False, "legend.fontsize": 8, "figure.dpi": 110,
+         "svg.hashsalt": "harmonic_joint_twin"}
+
+
+class ToolError(RuntimeError):
+    """The tool was run and failed."""
+
+
+@dataclass
+class Row:
+    """One judged quantity."""
+    name: str
+    quantity: str
+    source: str
+    bound: object
+    value: float
+    unit: str
+    reason: str
+
+    @property
+    def holds(self):
+        return self.bound.holds(self.value)
+
+
+@dataclass
+class Settings:
+    """What one validation is run with."""
+    tool: str
+    out: str  # folder of the page
+    work: str  # folder for what the runs write
+    fast: bool = False  # only what takes a few seconds; no figures
+    arguments: tuple = ()  # given to every run of the tool after its own, e.g. a deliberately wrong parameter
+
+    @property
+    def images(self):
+        return os.path.join(self.out, "images", "validation")
+
+
+@dataclass
+class Page:
+    """One section of the page while it is being built."""
+    section: str
+    settings: Settings
+    rows: list = field(default_factory=list)
+    lines: list = field(default_factory=list)
+    commands: list = field(default_factory=list)
+    pending: list = field(default_factory=list)  # rows not yet in a table
+    results: dict = field(default_factory=dict)
+
+    @property
+    def fast(self):
+        return self.settings.fast
+
+    def tool(self, *arguments):
+        """Runs `joint_twin ARGUMENTS --json` and gives the parsed document. The same call is run once."""
+        return json.loads(self.run(*arguments, "--json"))
+
+    def run(self, *arguments):
+        """Runs `joint_twin ARGUMENTS` and gives what it printed. The same call is run once."""
+        command = tuple(str(argument) for argument in arguments)
+        if command not in self.results:
+            line = [self.settings.tool, *command, *self.settings.arguments]
+            done = subprocess.run(line, capture_output=True, text=True, cwd=self.settings.work, check=False)
+            if done.returncode:
+                raise ToolError(f"joint_twin {' '.join(line[1:])}: exit code {done.returncode}\n{done.stderr.strip()}")
+            self.commands.append("joint_twin " + " ".join(line[1:]))
+            self.results[command] = done.stdout
+        return self.results[command]
+
+    def scratch(self, name):
+        """Path for a file that a run writes or reads; relative, as the runs see it, is `name` itself."""
+        return os.path.join(self.settings.work, name)
+
+    def heading(self, text):
+        self._flush()
+        self.lines += [f"### {text}", ""]
+
+    def text(self, markdown):
+        self._flush()
+        self.lines += [markdown.strip(), ""]
+
+    def table(self, header, rows):
+        """A table that shows and does not judge."""
+        self._flush()
+        self.lines += markdown_table(header, rows) + [""]
+
+    def check(self, name, quantity, source, bound, value, unit, reason):
+        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is."""
+        if any(row.name == name for row in self.rows):
+            raise ValueError(f"two rows are called {name}")
+        row = Row(name, quantity, source, bound, float(value), unit, reason)
+        self.rows.append(row)
+        self.pending.append(row)
+
+    def figure(self, name, caption, draw, size=(8.0, 3.2)):
+        """`draw` fills a matplotlib figure, which is written beside the page."""
+        self._flush()
+        if self.fast:
+            return
+        os.makedirs(self.settings.images, exist_ok=True)
+        with plt.rc_context(STYLE):
+            figure = plt.figure(figsize=size, constrained_layout=True)
+            draw(figure)
+            figure.savefig(os.path.join(self.settings.images, name + ".png"), metadata={"Software": None})
+            plt.close(figure)
+        self.lines += [f"![{caption}](images/validation/{name}.png)", "", f"*{caption}*", ""]
+
+    def finish(self):
+        self._flush()
+
+    def _flush(self):
+        if self.pending:
+            header = ["row", "quantity", "source", "expected", "twin", "tolerance", "verdict"]
+            cells = [[f"`{row.name}`", row.quantity, row.source, with_unit(row.bound.expected(), row.unit),
+                      with_unit(number(row.value), row.unit), f"{row.bound.tolerance(row.unit)}: {row.reason}",
+                      "holds" if row.holds else "**fails**"] for row in self.pending]
+            self.lines += markdown_table(header, cells) + [""]
+            self.pending = []
+
+
+def with_unit(text, unit):
+    return f"{text} {unit}".strip()
+
+
+def markdown_table(header, rows):
+    def line(cells):
+        return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
+
+    return [line(header), "|" + "---|" * len(header)] + [line(row) for row in rows]
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)

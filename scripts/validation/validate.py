@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the sections of the validation and writes the page. See `scripts/validate --help`."""
+import argparse
+import concurrent.futures
+import importlib
+import os
+import shlex
+import sys
+import tempfile
+import time
+
+from page import Page, Settings, markdown_table, say
+
+# Module and title, in the order of the page.
+SECTIONS = {
+    "thesis": "The thesis, chapter by chapter",
+    "invariants": "Invariants",
+    "catalogue": "Catalogue, size 25",
+    "teeth": "Teeth",
+    "manufacture": "Errors of manufacture",
+    "drives": "Real drives",
+    "size14": "Size 14",
+    "dynamics": "The quasi-static claim",
+}
+
+HEAD = """# Validation
+
+What the twin says, beside what it should say: the thesis it grew from, exact invariants, the gear maker's catalogue, recordings of real
+drives. Every number and figure below comes from runs of `joint_twin`; one command makes them all again:
+
+    scripts/validate
+
+It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate --set
+contact.stiffness=1.1e8` shows what a wrong parameter does (the page is then written to the folder of `--out`, never over this one).
+"""
+
+
+def build_section(name, settings):
+    """One section in a process of its own: gives the page and the seconds it took."""
+    started = time.monotonic()
+    sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+    os.makedirs(settings.work, exist_ok=True)
+    page = Page(name, settings)
+    importlib.import_module(name).build(page)
+    page.finish()
+    return page, time.monotonic() - started
+
+
+def write_page(path, pages):
+    rows = [row for page in pages for row in page.rows]
+    failing = [row for row in rows if not row.holds]
+    summary = [[f"[{SECTIONS[page.section]}](#{anchor(SECTIONS[page.section])})", len(page.rows),
+                sum(row.holds for row in page.rows)] for page in pages]
+    lines = [HEAD, f"**{len(rows)} rows; " + (f"{len(failing)} fail.**" if failing else "all hold.**"), ""]
+    lines += markdown_table(["section", "rows", "hold"], summary) + [""]
+    for page in pages:
+        lines += [f"## {SECTIONS[page.section]}", ""] + page.lines
+        lines += ["<details><summary>Runs of this section</summary>", "", "```sh"] + page.commands
+        lines += ["```", "", "</details>", ""]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines).rstrip() + "\n")
+
+
+def anchor(title):
+    return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")
+
+
+def report(pages):
+    for page in pages:
+        for row in page.rows:
+            if not row.holds:
+                print(f"FAILS {row.name}: {row.quantity}: {row.bound.expected()} expected "
+                      f"({row.bound.tolerance(row.unit)}), {row.value:.6g} {row.unit} came out")
+    rows = [row for page in pages for row in page.rows]
+    failing = sum(not row.holds for row in rows)
+    print(f"{len(rows)} rows, {len(rows) - failing} hold, {failing} fail")
+    return failing
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(
+        prog="validate", description="Holds the twin against thesis, catalogue, invariants and real drives; writes "
+        "validation.md and its figures. Exit code 0 only if every row holds, 1 if not or if a run failed.")
+    parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--section", action="append", choices=SECTIONS, metavar="NAME",
+                        help="only this section; repeatable: " + ", ".join(SECTIONS))
+    parser.add_argument("--fast", action="store_true", help="only rows that take a few seconds, no figures")
+    parser.add_argument("--config", action="append", default=[], metavar="FILE",
+                        help="overlay for every run, after its own: a deliberately wrong parameter, say")
+    parser.add_argument("--set", action="append", default=[], metavar="section.key=value",
+                        help="one parameter for every run, after its own")
+    parser.add_argument("--out", metavar="DIR", help="folder of page and figures (default: docs/ of the checkout; "
+                        "needed to write a page with --section, --fast, --config or --set)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="sections at a time")
+    options = parser.parse_args(arguments)
+    for path in options.config:
+        if not os.path.isfile(path):
+            parser.error(f"--config: no such file: {path}")
+    return options
+
+
+def main(arguments):
+    options = parse(arguments)
+    names = [name for name in SECTIONS if not options.section or name in options.section]
+    overlays = [word for path in options.config for word in ("--config", os.path.abspath(path))]
+    overlays += [word for assignment in options.set for word in ("--set", assignment)]
+    whole = not (options.section or options.fast or overlays)
+    out = options.out or (options.docs if whole else None)
+    failed = False
+    with tempfile.TemporaryDirectory(prefix="validate.") as work:
+        pages = {}
+        with concurrent.futures.ProcessPoolExecutor(max(1, options.jobs)) as pool:
+            running = {}
+            for name in names:
+                settings = Settings(options.tool, os.path.abspath(out or work), os.path.join(work, name), options.fast,
+                                    tuple(overlays))
+                running[pool.submit(build_section, name, settings)] = name
+            for done in concurrent.futures.as_completed(running):
+                name = running[done]
+                try:
+                    pages[name], seconds = done.result()
+                except Exception as error:  # pylint: disable=broad-except  (whatever stops one section: the others count)
+                    failed = True
+                    say(f"[{len(pages)}/{len(names)}] {name}: STOPPED: {error}")
+                    continue
+                say(f"[{len(pages)}/{len(names)}] {name}: {len(pages[name].rows)} rows, {seconds:.0f} s")
+        ordered = [pages[name] for name in names if name in pages]
+        if out and not failed:
+            os.makedirs(out, exist_ok=True)
+            write_page(os.path.join(out, "validation.md"), ordered)
+            say(f"page: {shlex.quote(os.path.join(out, 'validation.md'))}")
+    return 1 if report(ordered) or failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
