@@ -15,6 +15,9 @@ int main(int argc, char** argv)
   hjt::addInsertCommand(app, exit_code);
   hjt::addStiffnessCommand(app, exit_code);
   hjt::addTurnCommand(app, exit_code);
+  hjt::addLossesCommand(app, exit_code);
+  hjt::addBreakawayCommand(app, exit_code);
+  hjt::addHysteresisCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);

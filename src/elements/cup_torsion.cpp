@@ -28,6 +28,18 @@ double CupTorsion::meanRotation(const RingShape& shape) const noexcept
   return sum / shape.teeth();
 }
 
+double CupTorsion::meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept
+{
+  double sum = 0.0;
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const double x = shape.points[2 * i];
+    const double y = shape.points[2 * i + 1];
+    sum += (x * speeds[2 * i + 1] - y * speeds[2 * i]) / (x * x + y * y);
+  }
+  return sum / shape.teeth();
+}
+
 double CupTorsion::torque(double rotation) const noexcept
 {
   const double size = std::abs(rotation);

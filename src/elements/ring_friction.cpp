@@ -27,6 +27,16 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const
   }
 }
 
+void CupFriction::addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
+{
+  if (torque_ > 0.0)
+  {
+    friction.terms.push_back({ torque_,
+                               { CupTorsion::meanRotationRate(shape, rates.by_motor),
+                                 CupTorsion::meanRotationRate(shape, rates.by_output) } });
+  }
+}
+
 double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces,
                                  const Eigen::VectorXd& rates) const noexcept
 {

@@ -9,6 +9,7 @@ JointModel::JointModel(const Parameters& parameters)
   , load(parameters.output)
   , bearing(parameters.bearing)
   , mesh_friction(parameters.mesh)
+  , cup_friction(parameters.cup)
   , interface_friction(parameters.contact)
   , damping(parameters.ring, parameters.contact)
   , brake_torque(parameters.brake.holding_torque)
@@ -26,6 +27,7 @@ void JointModel::friction(const RingShape& shape, const DrivePosition& position,
                        interface_friction.torque(shape, forces, running);
   friction.terms.push_back({ shaft, { 1.0, 0.0 } });
   mesh_friction.addTerms(ring.mesh, shape, position, forces, rates, speeds, friction);
+  cup_friction.addTerm(shape, rates, friction);
   friction.viscous(0, 0) += motor.viscousFriction();
   friction.viscous(1, 1) += load.viscousFriction();
   damping.add(shape, forces, rates, friction);

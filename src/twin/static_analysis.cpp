@@ -7,19 +7,12 @@
 
 #include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "harmonic_joint_twin/twin/static_solver.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Statics are solved to rounding, whatever the running twin is content with.
-SolverParameters staticSolver(SolverParameters parameters)
-{
-  constexpr double STATIC_TOLERANCE = 5e-7;  // N; the tension stiffness times the rounding of a coordinate is 2e-8 N
-  parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
-  return parameters;
-}
-
 void fillTeeth(const RingEquilibrium& ring, InsertionResult& result)
 {
   const RingModel& model = ring.model();

@@ -181,7 +181,7 @@ TEST(Dissipation, IsNeverNegative)
 
 TEST(Stiction, HoldsTheMotorToTheLastBit)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = shippedParameters({ "motor.coulomb_torque=0.074" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   const double breakaway = parameters.motor.coulomb_torque;
@@ -215,7 +215,7 @@ protected:
     : parameters_(shippedParameters({ "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0", "mesh.smoothing=1.0e-6",
                                       "contact.friction_coefficient=0.0", "motor.coulomb_torque=0.0",
                                       "bearing.lubricant_factor=0.0", "bearing.load_factor=0.0",
-                                      "solver.force_tolerance=5.0e-7" }))
+                                      "cup.friction_torque=0.0", "solver.force_tolerance=5.0e-7" }))
     , model_(parameters_)
   {
   }
@@ -316,13 +316,13 @@ TEST(LeapfrogUnderOdeint, MarchesAsTheStepperDoes)
 TEST(FreeSwing, DecaysAtTheFrequencyOfTheLockedGear)
 {
   // The brake holds the motor; a load is put on the output, and taken away at once.
-  const Parameters parameters = shippedParameters({ "output.load_inertia=0.5" });
+  const Parameters parameters = shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=0.0" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   JointInputs inputs;
   inputs.temperature = parameters.input.temperature;
   inputs.brake_engaged = true;
-  inputs.load_torque = 10.0;
+  inputs.load_torque = 5.0;  // swings between 0 and 10 N.m: all on the cup's first slope
   for (int i = 0; i < 3000; ++i)
   {
     ASSERT_TRUE(stepper.step(inputs));
@@ -354,6 +354,42 @@ TEST(FreeSwing, DecaysAtTheFrequencyOfTheLockedGear)
   // The gear stiffens from 29e3 to 33e3 N.m/rad with the teeth that mesh, and by mesh friction while it sticks.
   EXPECT_NEAR(PI / half_period, std::sqrt(stiffness / model.inertia()[1]), 0.15 * PI / half_period);
   EXPECT_LT(energies.back(), 0.99 * energies.front());
+}
+
+TEST(FreeSwing, LosesTwiceTheCupsFrictionEveryHalfSwing)
+{
+  // Dry friction beside a spring: every half swing ends a constant nearer to rest, and the swing stops where the spring
+  // no longer overcomes the friction.
+  constexpr double FRICTION = 1.4;  // [N.m]
+  const Parameters parameters = shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=1.4" });
+  const JointModel model(parameters);
+  JointStepper stepper(parameters, model);
+  JointInputs inputs;
+  inputs.temperature = parameters.input.temperature;
+  inputs.brake_engaged = true;
+  inputs.load_torque = 12.0;
+  for (int i = 0; i < 10000; ++i)
+  {
+    ASSERT_TRUE(stepper.step(inputs));
+  }
+  inputs.load_torque = 0.0;
+  std::vector<double> turning_points;
+  double last = 0.0;
+  for (int i = 0; i < 10000; ++i)
+  {
+    ASSERT_TRUE(stepper.step(inputs));
+    const double speed = stepper.speeds()[1];
+    if (speed * last < 0.0)
+    {
+      turning_points.push_back(std::abs(stepper.dynamics().ring().forces().output_torque));
+    }
+    last = speed;
+  }
+  ASSERT_GT(turning_points.size(), 2U);
+  // Of the cup's rotation alone: rim and teeth twist a little beside it.
+  EXPECT_NEAR(turning_points[0] - turning_points[1], 2.0 * FRICTION, 0.15 * 2.0 * FRICTION);
+  EXPECT_LT(turning_points.back(), FRICTION);
+  EXPECT_LT(std::abs(last), 1e-6);
 }
 
 TEST(StepLength, ThatTheJointCannotBeMarchedWithIsRefused)

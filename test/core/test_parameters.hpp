@@ -26,6 +26,9 @@ inline Parameters shippedParameters(const std::vector<std::string>& assignments 
   return parseParameters(map);
 }
 
+/// The cup as the golden numbers of the working drive have it: with the catalogue's stiffness of the whole gear.
+constexpr const char* WHOLE_GEAR_CUP = "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]";
+
 /// The laws of the thesis' insertion; its contact law unless another is given.
 inline Parameters thesisParameters(const std::vector<std::string>& assignments = {})
 {

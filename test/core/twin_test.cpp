@@ -278,7 +278,7 @@ TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
   EXPECT_LT(health.lobe_asymmetry, 0.01);
   EXPECT_GT(health.wave_generator_load, 900.0);
   EXPECT_GT(health.friction_torque, twin.parameters().motor.coulomb_torque);
-  EXPECT_NEAR(health.torsional_stiffness_model, 33e3, 12e3);
+  EXPECT_NEAR(health.torsional_stiffness_model, 50e3, 5e3);
   const EncoderReadings encoders = twin.encoders();
   const double motor_count = TWO_PI / 4320.0;
   EXPECT_NEAR(encoders.motor_angle, twin.outputs().motor_angle, motor_count);

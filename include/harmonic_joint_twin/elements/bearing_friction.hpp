@@ -8,8 +8,12 @@ namespace hjt
 /// Friction of the wave generator's ball bearing after Palmgren (thesis eq. 7.31-7.33; both parts oppose the speed).
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
-///   T1 = f1 F d_m                                                                    [N.mm]
-/// where nu in mm^2/s falls exponentially with temperature, n in rpm, d_m in mm, F the sum of the contact forces [N].
+///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
+/// where nu  viscosity of the base oil after Ubbelohde and Walther (DIN 51563) [mm^2/s],
+///           lg lg(nu + 0.7) = lg lg(nu_0 + 0.7) - m lg(T / T_0), T in kelvin
+///       n   in rpm, d_m in mm
+///       F   sum of the contact forces between wave generator and flexspline [N]
+///       F_race  what the bearing's own outer race adds to the ball forces, bent to the ellipse as it is [N]
 class BearingFriction
 {
 public:
@@ -17,6 +21,9 @@ public:
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept;
+
+  /// Kinematic viscosity of the base oil [m^2/s] at a temperature [degC].
+  double viscosity(double temperature) const noexcept;
 
 private:
   BearingParameters parameters_;

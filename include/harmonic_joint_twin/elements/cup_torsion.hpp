@@ -24,9 +24,11 @@ public:
   CupTorsion(const CupParameters& parameters, const ToothRing& rest);
 
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
-  double torque(double rotation) const noexcept;               ///< C(Phi) [N.m]
-  double storedEnergy(double rotation) const noexcept;         ///< [J]
-  double stiffness(double rotation) const noexcept;            ///< dC/dPhi [N.m/rad]
+  /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
+  static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
+  double torque(double rotation) const noexcept;        ///< C(Phi) [N.m]
+  double storedEnergy(double rotation) const noexcept;  ///< [J]
+  double stiffness(double rotation) const noexcept;     ///< dC/dPhi [N.m/rad]
 
   void addForces(const RingShape& shape, RingForces& forces) const noexcept;
   /// `forces`: of the same shape.

@@ -22,8 +22,8 @@ struct FrictionTerm
 /// is left out.
 struct JointFriction
 {
-  /// Room for one term a tooth and the motor shaft's.
-  explicit JointFriction(int teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 1); }
+  /// Room for one term a tooth, the motor shaft's and the cup's.
+  explicit JointFriction(int teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 2); }
 
   void setZero() noexcept
   {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/elements/cup_torsion.hpp"
 #include "harmonic_joint_twin/elements/joint_friction.hpp"
 #include "harmonic_joint_twin/elements/ring_forces.hpp"
 #include "harmonic_joint_twin/elements/tooth_mesh.hpp"
@@ -31,6 +32,21 @@ public:
 
 private:
   MeshParameters parameters_;
+};
+
+/// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
+/// acts on the mean rotation of the rim, so it costs nothing while the drive runs at constant load; it opens the torsion
+/// loop and damps the output when the motor stands.
+class CupFriction
+{
+public:
+  explicit CupFriction(const CupParameters& parameters) : torque_(parameters.friction_torque) {}
+
+  /// Adds one term, or none if there is no friction.
+  void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept;
+
+private:
+  double torque_;  // [N.m]
 };
 
 /// Friction between the outer race of the wave generator's bearing and the flexspline.

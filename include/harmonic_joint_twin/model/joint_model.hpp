@@ -53,6 +53,7 @@ struct JointModel
   Load load;
   BearingFriction bearing;
   MeshFriction mesh_friction;
+  CupFriction cup_friction;
   InterfaceFriction interface_friction;
   RingDamping damping;
   double brake_torque;  ///< holding torque of the engaged brake, motor side [N.m]

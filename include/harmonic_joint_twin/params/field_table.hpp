@@ -75,16 +75,20 @@ void visitFields(P& p, Visitor&& visit)
         "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
   visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
         "torques at which the slope changes, ascending");
+  visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
+        "dry friction beside the cup's spring: half the height of its torsion loop");
 
   visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 }, "f0 of Palmgren's law");
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
+  visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
+        "sum of the ball forces with which the bearing's own outer race, bent to the ellipse, sits on the balls");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         "kinematic viscosity of the grease's base oil at viscosity_temperature");
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
         "temperature the viscosity is given at");
-  visit("bearing.viscosity_slope", "1/degC", p.bearing.viscosity_slope, Range{ 0.0, 1.0 },
-        "relative fall of the viscosity per degree");
+  visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
+        "slope m of the base oil in the viscosity-temperature chart (Ubbelohde-Walther, DIN 51563)");
 
   visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, "motor's rotor");
   visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 }, "wave generator");

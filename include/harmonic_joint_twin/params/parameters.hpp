@@ -72,12 +72,14 @@ struct CupParameters
 {
   std::array<double, 3> torsion_stiffness{};
   std::array<double, 2> torsion_breakpoints{};
+  double friction_torque{};
 };
 
 struct BearingParameters
 {
   double lubricant_factor{};
   double load_factor{};
+  double race_preload{};
   double pitch_diameter{};
   double viscosity{};
   double viscosity_temperature{};

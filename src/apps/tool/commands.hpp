@@ -18,6 +18,9 @@ enum ExitCode : int
 void addInsertCommand(CLI::App& app, int& exit_code);
 void addStiffnessCommand(CLI::App& app, int& exit_code);
 void addTurnCommand(CLI::App& app, int& exit_code);
+void addLossesCommand(CLI::App& app, int& exit_code);
+void addBreakawayCommand(CLI::App& app, int& exit_code);
+void addHysteresisCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);

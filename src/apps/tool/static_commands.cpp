@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "configuration.hpp"
+#include "not_converged.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "text_table.hpp"
@@ -20,13 +21,6 @@ namespace hjt
 namespace
 {
 using Json = nlohmann::ordered_json;
-
-int notConverged(const std::string& what, double residual)
-{
-  std::cerr << "joint_twin: no equilibrium found for " << what << " (largest out-of-balance force " << residual
-            << " N); see solver.max_iterations and solver.max_step_cuts\n";
-  return EXIT_FAILED;
-}
 
 struct InsertOptions : CommonOptions
 {

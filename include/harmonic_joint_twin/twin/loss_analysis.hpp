@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Where the friction comes from, each as a torque at the motor shaft, averaged over a tooth pitch [N.m].
+struct LossShares
+{
+  double bearing{};  ///< of the wave generator, Palmgren
+  double interface {
+  };                 ///< outer race in the rim
+  double mesh{};     ///< tooth flanks
+  double cup{};      ///< dry friction beside the cup's spring
+  double damping{};  ///< dashpots of the ring
+  double motor{};    ///< Coulomb and viscous of the motor, and viscous of the output
+
+  double gear() const { return bearing + interface + mesh + cup + damping; }  ///< what the gear alone loses
+};
+
+/// Steady turning at constant motor speed against a constant load.
+struct LossRow
+{
+  bool converged{};
+  double motor_speed{};   ///< [rad/s]
+  double load_torque{};   ///< at the output, > 0 resists [N.m]
+  double load_reduced{};  ///< what the load asks of the motor without friction, mean of load x d(output)/d(motor) [N.m]
+  LossShares loss;        ///< [N.m]
+  double gear_efficiency{};  ///< load power over motor power, the motor's own friction left out; 0 without load [-]
+  double residual{};         ///< largest out-of-balance force on a tooth [N]
+};
+
+/// One row for every speed and load, in this order: all speeds of the first load, then of the next.
+/// `positions`: wave generator angles per tooth pitch, >= 1. `progress`: called with the loads done.
+std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vector<double>& speeds,
+                                   const std::vector<double>& loads, int positions,
+                                   const std::function<void(int)>& progress);
+
+/// Torques at which the gear without its motor's own friction begins to move, at the temperature of the input section.
+struct Breakaway
+{
+  bool converged{};
+  double starting{};      ///< at the wave generator, no load: the largest over a tooth pitch [N.m]
+  double back_driving{};  ///< at the output, wave generator free: the load whose own pull overcomes the friction [N.m]
+  double residual{};      ///< [N]
+};
+Breakaway analyseBreakaway(const Parameters& parameters, int positions);
+}  // namespace hjt
