@@ -47,6 +47,7 @@ class Settings:
     tool: str
     out: str  # folder of the page
     work: str  # folder for what the runs write
+    telemetry: str  # folder of the recordings of real drives
     fast: bool = False  # only what takes a few seconds; no figures
     arguments: tuple = ()  # given to every run of the tool after its own, e.g. a deliberately wrong parameter
 

@@ -83,6 +83,7 @@ def parse(arguments):
         "validation.md and its figures. Exit code 0 only if every row holds, 1 if not or if a run failed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--telemetry", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--section", action="append", choices=SECTIONS, metavar="NAME",
                         help="only this section; repeatable: " + ", ".join(SECTIONS))
     parser.add_argument("--fast", action="store_true", help="only rows that take a few seconds, no figures")
@@ -113,8 +114,8 @@ def main(arguments):
         with concurrent.futures.ProcessPoolExecutor(max(1, options.jobs)) as pool:
             running = {}
             for name in names:
-                settings = Settings(options.tool, os.path.abspath(out or work), os.path.join(work, name), options.fast,
-                                    tuple(overlays))
+                settings = Settings(options.tool, os.path.abspath(out or work), os.path.join(work, name),
+                                    options.telemetry, options.fast, tuple(overlays))
                 running[pool.submit(build_section, name, settings)] = name
             for done in concurrent.futures.as_completed(running):
                 name = running[done]

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gear maker's catalogue, size 25, ratio 101: stiffness, friction, efficiency, accuracy."""
+import math
+
+import numpy as np
+
+from bounds import AtMost, Between, Within
+from page import BLUE, GREEN, GREY, ORANGE, RED, number
+
+ARCMIN = math.radians(1.0 / 60.0)
+RATIO = 101
+RPM_2000 = 2000.0 * math.pi / 30.0  # rad/s
+RATED_TORQUE = 67.0  # N.m, HFUS-25-2SH
+EFFICIENCY_TORQUE = 87.0  # N.m, where the catalogue states the efficiency
+
+# Whole gear: K1, K2, K3 [N.m/rad], T1, T2 [N.m].
+STIFFNESSES, BREAKPOINTS = (31e3, 50e3, 57e3), (14.0, 48.0)
+TORQUES = (14.0, 48.0, 67.0, 108.0, 150.0)
+EFFICIENCY = 0.77
+# Efficiency at part load over that at rated load, by load over rated load.
+PART_LOADS = {0.1: 0.30, 0.4: 0.72, 0.7: 0.90}
+NO_LOAD, STARTING, BACK_DRIVING = 0.195, 0.069, 7.26  # N.m; the last at the output
+AT_20_DEGREES = ("--set", "input.temperature=20.0")
+
+# Worst errors of zhulu248/harmonic-drive-twin over its four sizes, with its three global dials.
+OTHER_TWIN = {"efficiency": "2.2 points", "no_load": "25 %", "starting": "19 %", "back_driving": "19 %",
+              "stiffness": "37 … 93 %"}
+
+
+def catalogue_angle(torque):
+    """Torsion of the whole gear [rad]."""
+    angle, start = 0.0, 0.0
+    for stiffness, end in zip(STIFFNESSES, (*BREAKPOINTS, math.inf)):
+        if torque > start:
+            angle += (min(torque, end) - start) / stiffness
+        start = end
+    return angle
+
+
+def build(page):
+    stiffness(page)
+    hysteresis(page)
+    friction(page)
+    efficiency(page)
+    temperature(page)
+    dials(page)
+
+
+def stiffness(page):
+    page.heading("Torsion of the whole gear")
+    page.text("""
+Wave generator locked, load on the circular spline. The catalogue's three slopes are those of the whole gear. Rim and teeth take their
+share of the twist, so the cup's own law is stiffer by as much: its three slopes are fitted, the assembly's angles judged.
+""")
+    rows = page.tool("stiffness", "--torques", ",".join(map(str, TORQUES)))["rows"]
+    for row in rows:
+        torque = row["torque"]
+        page.check(f"catalogue.torsion.{torque:g}", f"torsion at {torque:g} N·m", "catalogue: 31/50/57e3 N·m/rad, 14/48 N·m",
+                   Within(catalogue_angle(torque) / ARCMIN, relative=0.02), -row["output_angle"] / ARCMIN, "arcmin",
+                   "asked of the twin; three straight lines stand for a curve")
+    if page.fast:
+        return
+    sweep = np.linspace(-150.0, 150.0, 61)
+    curve = page.tool("stiffness", "--torques", ",".join(f"{torque:g}" for torque in sweep))["rows"]
+    bare = page.tool("stiffness", "--torques", ",".join(f"{torque:g}" for torque in sweep), "--set",
+                     "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]")["rows"]
+
+    def draw(figure):
+        left, right = figure.subplots(1, 2)
+        left.set_title("Torsion [arcmin] against load [N·m]")
+        expected = [math.copysign(catalogue_angle(abs(torque)), torque) / ARCMIN for torque in sweep]
+        left.plot(sweep, expected, color=ORANGE, lw=4, alpha=0.5, label="catalogue")
+        left.plot(sweep, [-row["output_angle"] / ARCMIN for row in curve], color=BLUE, label="twin")
+        left.legend()
+        right.set_title("Twist beyond the catalogue's [%]")
+        loads = [torque for torque in sweep if torque > 1.0]
+        for rows_drawn, colour, label in ((bare, GREY, "cup as stiff as the whole gear"), (curve, BLUE, "cup fitted")):
+            right.plot(loads, [100.0 * (-row["output_angle"] / catalogue_angle(row["torque"]) - 1.0)
+                               for row in rows_drawn if row["torque"] > 1.0], color=colour, label=label)
+        right.axhspan(-2.0, 2.0, color=GREEN, alpha=0.12, label="tolerance")
+        right.set_xlabel("load [N·m]")
+        left.set_xlabel("load [N·m]")
+        right.legend()
+
+    most = max(-row["output_angle"] / catalogue_angle(row["torque"]) - 1.0 for row in bare if row["torque"] > 1.0)
+    page.figure("catalogue_torsion", f"Torsion of the locked gear. Without the fit, rim and teeth add up to {100.0 * most:.0f} % to "
+                "the catalogue's twist; with it, the rounding of the curve between the catalogue's straight lines is left.", draw)
+
+
+def hysteresis(page):
+    page.heading("Hysteresis and lost motion")
+    sweep = ("hysteresis", "--amplitude", RATED_TORQUE, "--lost-motion-torque", 0.04 * RATED_TORQUE)
+    loop = page.tool(*sweep)
+    flanks = page.tool(*sweep, "--set", "cup.friction_torque=0.0")
+    page.text(f"""
+Wave generator locked, load swept slowly to and fro over the rated torque. The width comes from dry friction: of the tooth flanks
+({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and beside the cup's spring (the rest). The latter is set by a real drive, see *Real drives*; the catalogue
+gives a limit.
+""")
+    page.check("catalogue.hysteresis", "hysteresis", "catalogue", AtMost(1.0), loop["hysteresis"] / ARCMIN, "arcmin",
+               "the maker's promise for every drive")
+    page.check("catalogue.lost_motion", "lost motion at ± 4 % of the rated torque", "catalogue", AtMost(1.0),
+               loop["lost_motion"] / ARCMIN, "arcmin", "the maker's promise for every drive")
+
+    def draw(figure):
+        whole, near = figure.subplots(1, 2)
+        torque = [point["torque"] for point in loop["points"]]
+        angle = [point["output_angle"] / ARCMIN for point in loop["points"]]
+        for axes, title in ((whole, "Torsion loop [arcmin]"), (near, "The same near no load")):
+            axes.plot(torque, angle, color=BLUE)
+            axes.set_title(title)
+            axes.set_xlabel("load [N·m]")
+        near.set_xlim(-5.0, 5.0)
+        near.set_ylim(-0.8, 0.8)
+        lost = 0.04 * RATED_TORQUE
+        near.axvline(-lost, color=GREY, lw=0.8, ls="--")
+        near.axvline(lost, color=GREY, lw=0.8, ls="--", label="± 4 % of rated")
+        near.legend(loc="upper left")
+
+    page.figure("catalogue_hysteresis", "Torsion loop of the locked gear over ± 67 N·m.", draw)
+
+
+def losses(page, speeds, loads, *arguments):
+    return page.tool("losses", "--speeds", ",".join(f"{speed:.6g}" for speed in speeds), "--loads",
+                     ",".join(f"{load:.6g}" for load in loads), *(arguments or AT_20_DEGREES))["rows"]
+
+
+def friction(page):
+    page.heading("Friction")
+    page.text("""
+The gear alone, without the motor's friction. Running: mean over a tooth pitch; starting: the largest over a tooth pitch, at rest;
+back-driving: the load at the output whose own pull overcomes the friction at the wave generator.
+""")
+    running = losses(page, [RPM_2000], [0.0])[0]
+    starts = page.tool("breakaway", *AT_20_DEGREES)
+    page.check("catalogue.no_load", "no-load running torque, 2000 rpm, 20 °C", "catalogue (RT1-H-CS-25)",
+               Within(NO_LOAD, relative=0.10), running["gear_loss"], "N·m", "asked of the twin; drives scatter more")
+    page.check("catalogue.starting", "starting torque, 20 °C", "same", Within(STARTING, relative=0.10),
+               starts["starting_torque"], "N·m", "asked of the twin")
+    page.check("catalogue.back_driving", "back-driving torque, 20 °C", "same", Within(BACK_DRIVING, relative=0.15),
+               starts["back_driving_torque"], "N·m", "asked of the twin; nothing is fitted to it")
+    # What slips between race and rim, from the shape alone: the tilt of a ring bent to w0 cos 2 psi turns at
+    # (3 w0 / r0) |cos 2 psi| per motor turn, under a contact force that is nearly the same all around.
+    insertion = page.tool("insert")
+    contact, gear = (page.tool("parameters")[section] for section in ("contact", "gear"))
+    slip = contact["slip_lever"] * 3.0 * gear["wave_amplitude"] / gear["flexspline_inner_radius"]
+    page.check("catalogue.interface_slip", "torque of the race slipping in the rim, no mesh load", "μ = 0.07 (thesis, Table 3.2) "
+               "× ΣF × lever × 3 w0/r0 × 2/π", Within(0.07 * insertion["wave_generator_force_sum"] * slip * 2.0 / math.pi,
+                                                      relative=0.30), running["interface"], "N·m",
+               "the closed form leaves out that teeth at the lobes press the rim on, where it tilts fastest")
+
+
+def efficiency(page):
+    page.heading("Efficiency")
+    page.text("""
+At 2000 rpm and 20 °C. No friction is fitted to it: the load raises the contact forces, and with them the bearing's and the flanks' friction.
+""")
+    rated = losses(page, [RPM_2000], [EFFICIENCY_TORQUE])[0]
+    page.check("catalogue.efficiency", f"efficiency at {EFFICIENCY_TORQUE:g} N·m", "catalogue: 77 ± 3 %; thesis 75 %",
+               Within(EFFICIENCY, absolute=0.022), rated["gear_efficiency"], "",
+               "the worst error of the best public twin; the catalogue's own is ± 3 points")
+    part = losses(page, [RPM_2000], [share * RATED_TORQUE for share in PART_LOADS])
+    for (share, factor), row in zip(PART_LOADS.items(), part):
+        page.check(f"catalogue.efficiency.{share:g}", f"efficiency at {share:g} of the rated torque",
+                   f"catalogue: {factor:g} of the one at rated torque", Within(factor * EFFICIENCY, absolute=0.05),
+                   row["gear_efficiency"], "", "asked of the twin; the factors are read from a diagram")
+    loss_at_tenth = 0.1 * EFFICIENCY_TORQUE / RATIO * (1.0 / (PART_LOADS[0.1] * EFFICIENCY) - 1.0)
+    loss_at_rated = EFFICIENCY_TORQUE / RATIO * (1.0 / EFFICIENCY - 1.0)
+    page.text(f"""
+The part loads are taken of the gear's rated torque, {RATED_TORQUE:g} N·m. Taken of {EFFICIENCY_TORQUE:g} N·m instead, the catalogue's factors would contradict
+its own friction: a tenth of the load would lose {number(1000.0 * loss_at_tenth)} mN·m at the motor, more than the {number(1000.0 * loss_at_rated)} mN·m of the whole load
+and than the {number(1000.0 * NO_LOAD)} mN·m of none.
+""")
+    if page.fast:
+        return
+    loads = np.linspace(2.0, 150.0, 38)
+    rows = losses(page, [RPM_2000], loads)
+    slow = losses(page, [RPM_2000 / 4.0], loads)
+
+    def draw(figure):
+        left, right = figure.subplots(1, 2)
+        left.set_title("Efficiency [%]")
+        left.plot(loads, [100.0 * row["gear_efficiency"] for row in rows], color=BLUE, label="twin, 2000 rpm")
+        left.plot(loads, [100.0 * row["gear_efficiency"] for row in slow], color=GREEN, label="twin, 500 rpm")
+        left.errorbar([EFFICIENCY_TORQUE], [77.0], yerr=3.0, fmt="o", color=ORANGE, label="catalogue, 2000 rpm")
+        left.plot([share * RATED_TORQUE for share in PART_LOADS], [77.0 * factor for factor in PART_LOADS.values()], "s",
+                  color=RED, label="catalogue, part load")
+        left.legend()
+        right.set_title("Friction at the motor, 2000 rpm [mN·m]")
+        shares = [[1000.0 * row[key] for row in rows] for key in ("bearing", "interface", "mesh")]
+        right.stackplot(loads, shares, labels=["bearing and grease", "race in the rim", "tooth flanks"],
+                        colors=[BLUE, ORANGE, GREEN], alpha=0.7)
+        right.legend(loc="upper left")
+        for axes in (left, right):
+            axes.set_xlabel("load [N·m]")
+
+    page.figure("catalogue_efficiency", "Efficiency against load, and the friction behind it.", draw)
+
+
+def walther(parameters, temperature):
+    """Kinematic viscosity [mm^2/s] after DIN 51563."""
+    known = math.log10(1e6 * parameters["viscosity"] + 0.7)
+    ratio = (temperature + 273.15) / (parameters["viscosity_temperature"] + 273.15)
+    return 10.0 ** (known * ratio ** -parameters["viscosity_slope"]) - 0.7
+
+
+def temperature(page):
+    page.heading("Friction against temperature")
+    page.text("""
+The grease thins as oils do (Ubbelohde-Walther), and the bearing's speed part goes with the viscosity to the power of 2/3 (Palmgren). The range is
+that of the grease SK-1A, 0 to 80 °C. At 80 °C what is left is the part that does not know speed.
+""")
+    bearing = page.tool("parameters")["bearing"]
+    degrees = (0.0, 20.0, 40.0, 80.0)
+    running = {degree: losses(page, [0.0, RPM_2000], [0.0], "--set", f"input.temperature={degree:.1f}") for degree in degrees}
+    floor = 160.0 * bearing["lubricant_factor"] * (1e3 * bearing["pitch_diameter"]) ** 3 * 1e-10  # below 2000 mm^2/s rpm
+    speed_part = {degree: rows[1]["bearing"] - rows[0]["bearing"] + floor for degree, rows in running.items()}
+    for degree in (0.0, 40.0, 80.0):
+        expected = (walther(bearing, degree) / walther(bearing, 20.0)) ** (2.0 / 3.0)
+        page.check(f"catalogue.temperature.{degree:g}", f"speed part of the friction at {degree:g} °C over that at 20 °C",
+                   "law of the viscosity", Within(expected, relative=1e-3), speed_part[degree] / speed_part[20.0], "",
+                   "the same law evaluated on the page")
+    page.check("catalogue.oil", "viscosity at 40 °C over that at 100 °C", "mineral oils of viscosity index 95 to 105",
+               Between(5.5, 9.5), walther(bearing, 40.0) / walther(bearing, 100.0), "",
+               "ISO VG 32 to 100: 5.9 to 8.9 by data sheets")
+    if page.fast:
+        return
+    sweep = np.linspace(0.0, 80.0, 17)
+    speeds = [RPM_2000 * rpm / 2000.0 for rpm in (100.0, 500.0, 1000.0, 2000.0, 3500.0)]
+    rows = [losses(page, speeds, [0.0], "--set", f"input.temperature={degree:.1f}") for degree in sweep]
+
+    def draw(figure):
+        axes = figure.subplots()
+        axes.set_title("No-load running torque of the gear [mN·m] against temperature [°C]")
+        for k, colour in zip(range(len(speeds)), (GREY, GREEN, BLUE, ORANGE, RED)):
+            axes.plot(sweep, [1000.0 * row[k]["gear_loss"] for row in rows], color=colour,
+                      label=f"{speeds[k] * 30.0 / math.pi:.0f} rpm")
+        axes.plot([20.0], [195.0], "o", color="black", label="catalogue, 2000 rpm")
+        axes.legend(ncol=2)
+
+    page.figure("catalogue_temperature", "No-load running torque over the grease's range of temperature.", draw, (6.4, 3.0))
+
+
+def dials(page):
+    page.heading("What was fitted, and how it compares")
+    bearing, cup = (page.tool("parameters")[section] for section in ("bearing", "cup"))
+    page.text("""
+Two dials for five figures of friction, one for the torsion loop, and the cup's law, which takes as many numbers as the catalogue's curve gives.
+""")
+    page.table(["dial", "value", "set by", "order of size without it"],
+               [["`bearing.viscosity`", f"{number(1e6 * bearing['viscosity'])} mm²/s at 25 °C", "no-load running torque",
+                 "base oil of the grease alone: 80 mm²/s (thesis, Table 3.2)"],
+                ["`bearing.race_preload`", f"{number(bearing['race_preload'])} N", "starting torque",
+                 "500 to 600 N from the section of the race with a fit of zero"],
+                ["`cup.friction_torque`", f"{number(cup['friction_torque'])} N·m", "direction gap of a real 101:1 drive",
+                 "at most 4.5 N·m by the catalogue's 1 arcmin"],
+                ["`cup.torsion_stiffness`", ", ".join(f"{number(value / 1e3)}" for value in cup["torsion_stiffness"]) +
+                 " ·10³ N·m/rad", "torsion at 14, 48 and 150 N·m", "31, 50, 57 ·10³: the whole gear's"]])
+    by_name = {row.name: row for row in page.rows}
+
+    def error(name):
+        row = by_name["catalogue." + name]
+        return row.value - row.bound.target, row.bound.target
+
+    points = 100.0 * abs(error("efficiency")[0])
+    percent = {key: 100.0 * error(key)[0] / error(key)[1] for key in ("no_load", "starting", "back_driving")}
+    torsion = max(abs(100.0 * error(f"torsion.{torque:g}")[0] / error(f"torsion.{torque:g}")[1]) for torque in TORQUES)
+    page.text("""
+Beside it, the worst errors over four sizes that [zhulu248/harmonic-drive-twin](https://github.com/zhulu248/harmonic-drive-twin), the best public static twin
+found, reaches with three dials. It does more sizes; size 14 of this twin is judged below.
+""")
+    page.table(["quantity", "this twin, size 25", "zhulu248/harmonic-drive-twin, worst of four sizes"],
+               [["efficiency at rated load", f"{points:.1f} points", OTHER_TWIN["efficiency"]],
+                *[[title, f"{percent[key]:+.1f} %", sign + OTHER_TWIN[key]] for key, title, sign in
+                  (("no_load", "no-load running torque", "+"), ("starting", "starting torque", "−"),
+                   ("back_driving", "back-driving torque", "+"))],
+                ["torsional stiffness", f"{torsion:.1f} %", OTHER_TWIN["stiffness"] + " above the catalogue"]])
