@@ -27,12 +27,12 @@ OTHER_TWIN = {"efficiency": "2.2 points", "no_load": "25 %", "starting": "19 %",
               "stiffness": "37 … 93 %"}
 
 
-def catalogue_angle(torque):
-    """Torsion of the whole gear [rad]."""
+def catalogue_angle(torque, stiffnesses=STIFFNESSES, breakpoints=BREAKPOINTS):
+    """Torsion of a whole gear [rad] under a load >= 0 [N.m]."""
     angle, start = 0.0, 0.0
-    for stiffness, end in zip(STIFFNESSES, (*BREAKPOINTS, math.inf)):
+    for slope, end in zip(stiffnesses, (*breakpoints, math.inf)):
         if torque > start:
-            angle += (min(torque, end) - start) / stiffness
+            angle += (min(torque, end) - start) / slope
         start = end
     return angle
 
@@ -121,6 +121,7 @@ gives a limit.
 
 
 def losses(page, speeds, loads, *arguments):
+    """Rows of `joint_twin losses`, at 20 degC unless other arguments are given."""
     return page.tool("losses", "--speeds", ",".join(f"{speed:.6g}" for speed in speeds), "--loads",
                      ",".join(f"{load:.6g}" for load in loads), *(arguments or AT_20_DEGREES))["rows"]
 
