@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Friction of the whole gear: what the analyses say, against closed forms and against the running joint.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/elements/bearing_friction.hpp"
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/loss_analysis.hpp"
+#include "harmonic_joint_twin/twin/torsion_loop.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double RPM = TWO_PI / 60.0;  // rad/s
+
+TEST(BearingFriction, IsPalmgrensByHand)
+{
+  BearingParameters parameters;
+  parameters.lubricant_factor = 1.5;
+  parameters.load_factor = 5e-4;
+  parameters.race_preload = 400.0;
+  parameters.pitch_diameter = 50e-3;
+  parameters.viscosity = 80e-6;
+  parameters.viscosity_temperature = 25.0;
+  parameters.viscosity_slope = 3.7;
+  const BearingFriction bearing(parameters);
+  // 1.5 (80 x 1000)^(2/3) 50^3 1e-7 N.mm and 5e-4 (600 + 400) 50 N.mm.
+  EXPECT_NEAR(bearing.torque(1000.0 * RPM, 600.0, 25.0), 1e-3 * (34.8119 + 25.0), 1e-7);
+  // Below 2000 mm^2/s rpm, here 25 rpm, the speed part is constant: 1.5 160 50^3 1e-7 N.mm.
+  EXPECT_NEAR(bearing.torque(-10.0 * RPM, 600.0, 25.0), 1e-3 * (3.0 + 25.0), 1e-12);
+  EXPECT_EQ(bearing.torque(0.0, 600.0, 25.0), bearing.torque(10.0 * RPM, 600.0, 25.0));
+}
+
+TEST(BearingFriction, OilThinsAsInTheChart)
+{
+  BearingParameters parameters;
+  // An oil of 46 mm^2/s at 40 degC and 6.8 mm^2/s at 100 degC (ISO VG 46, viscosity index 100): slope from these two.
+  parameters.viscosity = 46e-6;
+  parameters.viscosity_temperature = 40.0;
+  parameters.viscosity_slope =
+      std::log10(std::log10(46.7) / std::log10(7.5)) / std::log10((100.0 + 273.15) / (40.0 + 273.15));
+  const BearingFriction bearing(parameters);
+  EXPECT_NEAR(bearing.viscosity(40.0), 46e-6, 1e-12);
+  EXPECT_NEAR(bearing.viscosity(100.0), 6.8e-6, 1e-11);
+  EXPECT_GT(bearing.viscosity(0.0), 8.0 * bearing.viscosity(40.0));
+}
+
+class RunningJoint : public testing::TestWithParam<double>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Loads, RunningJoint, testing::Values(0.0, 20.0, 60.0));
+
+TEST_P(RunningJoint, RunsWhereMotorTorqueIsLoadAndLosses)
+{
+  // The motor is held at a speed by a stiff speed control; the torque it takes is what the analysis says.
+  constexpr double SPEED = 60.0;  // [rad/s]
+  const double load = GetParam();
+  const Parameters parameters = shippedParameters({ "output.load_inertia=0.1" });
+  const JointModel model(parameters);
+  JointStepper stepper(parameters, model);
+  JointInputs inputs;
+  inputs.temperature = parameters.input.temperature;
+  inputs.load_torque = load;
+  double work = 0.0;
+  double travel = 0.0;
+  for (int i = 0; i < 10000; ++i)
+  {
+    inputs.motor_torque = 0.3 * (SPEED - stepper.speeds()[0]);
+    const double before = stepper.motorAngle();
+    ASSERT_TRUE(stepper.step(inputs));
+    if (i >= 5000)
+    {
+      travel += stepper.motorAngle() - before;
+      work += inputs.motor_torque * (stepper.motorAngle() - before);
+    }
+  }
+  const double speed = travel / 0.5;
+  const LossRow row = analyseLosses(parameters, { speed }, { load }, 32, nullptr).front();
+  ASSERT_TRUE(row.converged);
+  EXPECT_NEAR(row.load_reduced, load / nominalRatio(parameters.gear), 2e-3 * load / nominalRatio(parameters.gear));
+  const double expected = row.load_reduced + row.loss.gear() + row.loss.motor;
+  EXPECT_NEAR(work / travel, expected, 0.005 * expected);
+}
+
+TEST(Breakaway, IsWhereTheJointBeginsToMove)
+{
+  const Parameters parameters = shippedParameters({ "motor.coulomb_torque=0.0", "input.temperature=20.0" });
+  const Breakaway breakaway = analyseBreakaway(parameters, 16);
+  ASSERT_TRUE(breakaway.converged);
+  const auto travel = [&](double motor_torque, double load_torque)
+  {
+    const JointModel model(parameters);
+    JointStepper stepper(parameters, model);
+    JointInputs inputs;
+    inputs.temperature = parameters.input.temperature;
+    inputs.motor_torque = motor_torque;
+    inputs.load_torque = load_torque;
+    // The first half second is for the load, put on at once, to stop swinging.
+    double start = 0.0;
+    for (int i = 0; i < 10000; ++i)
+    {
+      start = i == 5000 ? stepper.motorAngle() : start;
+      EXPECT_TRUE(stepper.step(inputs));
+    }
+    return std::abs(stepper.motorAngle() - start);
+  };
+  constexpr double CREEP = 1e-3;  // rad: friction of a stuck gear is regularised
+  EXPECT_LT(travel(0.95 * breakaway.starting, 0.0), CREEP);
+  EXPECT_GT(travel(1.05 * breakaway.starting, 0.0), 1.0);
+  EXPECT_LT(travel(0.0, 0.95 * breakaway.back_driving), CREEP);
+  EXPECT_GT(travel(0.0, 1.05 * breakaway.back_driving), 1.0);
+}
+
+TEST(TorsionLoop, IsAsWideAsTheFrictionOverTheStiffness)
+{
+  const Parameters parameters = shippedParameters({ "cup.friction_torque=2.0" });
+  const TorsionLoop loop = analyseTorsionLoop(parameters, 60.0, 2.68, 100);
+  ASSERT_TRUE(loop.converged);
+  ASSERT_EQ(loop.points.size(), 202U);
+  EXPECT_NEAR(loop.hysteresis, 2.0 * 2.0 / parameters.cup.torsion_stiffness[0], 0.02 * loop.hysteresis);
+  // Odd: the same both ways.
+  EXPECT_NEAR(loop.points.front().output_angle, -loop.points[100].output_angle, 1e-9);
+  // Without any friction it closes.
+  const TorsionLoop closed = analyseTorsionLoop(
+      shippedParameters({ "cup.friction_torque=0.0", "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" }), 60.0,
+      2.68, 100);
+  EXPECT_EQ(closed.hysteresis, 0.0);
+  EXPECT_NEAR(closed.lost_motion, 2.0 * 2.68 / 31e3, 0.03 * closed.lost_motion);
+}
+}  // namespace
+}  // namespace hjt
