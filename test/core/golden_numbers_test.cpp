@@ -56,7 +56,8 @@ TEST(GoldenInsertion, ThesisSetToothByTooth)
     SCOPED_TRACE("tooth " + std::to_string(row.tooth));
     expectGolden(1e3 * result.teeth.radius[row.tooth], row.radius, 1e-4, "radius, mm");
     // Zero by symmetry, up to the rounding of an equilibrium found to 5e-7 N.
-    expectGolden(1e3 * result.teeth.angle_deviation[row.tooth], row.deviation, row.deviation == 0.0 ? 1e-9 : 1e-3, "mrad");
+    expectGolden(1e3 * result.teeth.angle_deviation[row.tooth], row.deviation, row.deviation == 0.0 ? 1e-9 : 1e-3,
+                 "mrad");
     expectGolden(result.teeth.wave_generator_force[row.tooth], row.force, row.force == 0.0 ? 0.0 : 0.01, "force, N");
     expectGolden(result.teeth.rim_tension[row.tooth], row.tension, 0.1, "tension, N");
   }
@@ -95,8 +96,8 @@ TEST(ThesisChapter6, IsMetByTheStaticEquilibrium)
   for (int i = 0; i < n; ++i)
   {
     const double psi = TWO_PI * i / n;
-    gap = std::max(
-        { gap, std::abs(result.teeth.tooth_x[i] - a * std::cos(psi)), std::abs(result.teeth.tooth_y[i] - b * std::sin(psi)) });
+    gap = std::max({ gap, std::abs(result.teeth.tooth_x[i] - a * std::cos(psi)),
+                     std::abs(result.teeth.tooth_y[i] - b * std::sin(psi)) });
   }
   expectGolden(gap, 0.145e-3, 1e-6, "to the polar estimate, eq. 6.1");
   // Read from the thesis' text and figures: 538.8 N at the major axis, none at the minor; rim force about 2300 N at the
