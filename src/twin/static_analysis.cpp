@@ -13,22 +13,31 @@ namespace hjt
 {
 namespace
 {
-void fillTeeth(const RingEquilibrium& ring, InsertionResult& result)
+ToothTable tabulateTeeth(const RingEquilibrium& ring)
 {
+  ToothTable table;
   const RingModel& model = ring.model();
   const RingShape& shape = ring.shape();
   for (int i = 0; i < shape.teeth(); ++i)
   {
     const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
     const Eigen::Vector2d rest = model.rest.radial().segment<2>(2 * i);
-    result.tooth_x.push_back(point.x());
-    result.tooth_y.push_back(point.y());
-    result.radius.push_back(point.norm());
-    result.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
-    result.wave_generator_force.push_back(ring.forces().contact_force[i]);
-    result.rim_tension.push_back(model.tension.tension(shape, i));
-    result.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
+    table.tooth_x.push_back(point.x());
+    table.tooth_y.push_back(point.y());
+    table.radius.push_back(point.norm());
+    table.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
+    table.wave_generator_force.push_back(ring.forces().contact_force[i]);
+    table.rim_tension.push_back(model.tension.tension(shape, i));
+    table.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
+    table.mesh_force.push_back(ring.forces().flank_force[i]);
   }
+  return table;
+}
+
+/// Of the housing on the flexspline [N.m].
+double housingTorque(const RingEquilibrium& ring)
+{
+  return -ring.model().cup.torque(ring.forces().cup_rotation);
 }
 
 double sum(const std::vector<double>& values)
@@ -54,19 +63,20 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   result.converged = status.ok();
   result.iterations = status.iterations;
   result.residual = status.residual;
-  fillTeeth(ring, result);
-  const auto force = std::minmax_element(result.wave_generator_force.begin(), result.wave_generator_force.end());
-  const auto tension = std::minmax_element(result.rim_tension.begin(), result.rim_tension.end());
+  result.teeth = tabulateTeeth(ring);
+  const ToothTable& teeth = result.teeth;
+  const auto force = std::minmax_element(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end());
+  const auto tension = std::minmax_element(teeth.rim_tension.begin(), teeth.rim_tension.end());
   result.wave_generator_force_min = *force.first;
   result.wave_generator_force_max = *force.second;
-  result.wave_generator_force_sum = sum(result.wave_generator_force);
+  result.wave_generator_force_sum = sum(teeth.wave_generator_force);
   result.teeth_in_contact = static_cast<int>(std::count_if(
-      result.wave_generator_force.begin(), result.wave_generator_force.end(), [](double f) { return f > 0.0; }));
+      teeth.wave_generator_force.begin(), teeth.wave_generator_force.end(), [](double f) { return f > 0.0; }));
   result.tension_min = *tension.first;
   result.tension_max = *tension.second;
-  result.radius_major_axis = result.radius.front();
-  result.radius_minor_axis = result.radius[result.radius.size() / 4];
-  for (const double force_of_tooth : result.bending_force)
+  result.radius_major_axis = teeth.radius.front();
+  result.radius_minor_axis = teeth.radius[teeth.radius.size() / 4];
+  for (const double force_of_tooth : teeth.bending_force)
   {
     result.bending_force_max = std::max(result.bending_force_max, std::abs(force_of_tooth));
   }
@@ -96,7 +106,10 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
     row.torque = torque;
     row.output_angle = ring.position().output_angle - unloaded;
     row.wave_generator_torque = ring.forces().wave_generator_torque;
+    row.housing_torque = housingTorque(ring);
+    row.cup_rotation = ring.forces().cup_rotation;
     row.residual = status.residual;
+    row.teeth = tabulateTeeth(ring);
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
       const double mesh = std::abs(ring.forces().flank_force[i]);
@@ -123,8 +136,8 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
     {
       status = balanceOutput(ring, angle, load_torque);
     }
-    rows.push_back(
-        { status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque, status.residual });
+    rows.push_back({ status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque,
+                     housingTorque(ring), status.residual });
     if (progress)
     {
       progress(i);

@@ -54,11 +54,12 @@ TEST(GoldenInsertion, ThesisSetToothByTooth)
                           Row{ 50, 30.4130, 0.0, 0.0, 8044.4 } })
   {
     SCOPED_TRACE("tooth " + std::to_string(row.tooth));
-    expectGolden(1e3 * result.radius[row.tooth], row.radius, 1e-4, "radius, mm");
+    expectGolden(1e3 * result.teeth.radius[row.tooth], row.radius, 1e-4, "radius, mm");
     // Zero by symmetry, up to the rounding of an equilibrium found to 5e-7 N.
-    expectGolden(1e3 * result.angle_deviation[row.tooth], row.deviation, row.deviation == 0.0 ? 1e-9 : 1e-3, "mrad");
-    expectGolden(result.wave_generator_force[row.tooth], row.force, row.force == 0.0 ? 0.0 : 0.01, "force, N");
-    expectGolden(result.rim_tension[row.tooth], row.tension, 0.1, "tension, N");
+    expectGolden(1e3 * result.teeth.angle_deviation[row.tooth], row.deviation, row.deviation == 0.0 ? 1e-9 : 1e-3,
+                 "mrad");
+    expectGolden(result.teeth.wave_generator_force[row.tooth], row.force, row.force == 0.0 ? 0.0 : 0.01, "force, N");
+    expectGolden(result.teeth.rim_tension[row.tooth], row.tension, 0.1, "tension, N");
   }
 }
 
@@ -95,17 +96,17 @@ TEST(ThesisChapter6, IsMetByTheStaticEquilibrium)
   for (int i = 0; i < n; ++i)
   {
     const double psi = TWO_PI * i / n;
-    gap = std::max(
-        { gap, std::abs(result.tooth_x[i] - a * std::cos(psi)), std::abs(result.tooth_y[i] - b * std::sin(psi)) });
+    gap = std::max({ gap, std::abs(result.teeth.tooth_x[i] - a * std::cos(psi)),
+                     std::abs(result.teeth.tooth_y[i] - b * std::sin(psi)) });
   }
   expectGolden(gap, 0.145e-3, 1e-6, "to the polar estimate, eq. 6.1");
   // Read from the thesis' text and figures: 538.8 N at the major axis, none at the minor; rim force about 2300 N at the
   // major, 8000 N at the minor axis; perimeter by eq. 6.3 from axes given as 31 and 30.4 mm.
-  EXPECT_NEAR(result.wave_generator_force[0], 538.8, 0.05);
-  EXPECT_NEAR(result.wave_generator_force[n / 2], 538.8, 0.05);
-  EXPECT_EQ(result.wave_generator_force[n / 4], 0.0);
-  EXPECT_NEAR(result.rim_tension[0], 2300.0, 50.0);
-  EXPECT_NEAR(result.rim_tension[n / 4], 8000.0, 50.0);
+  EXPECT_NEAR(result.teeth.wave_generator_force[0], 538.8, 0.05);
+  EXPECT_NEAR(result.teeth.wave_generator_force[n / 2], 538.8, 0.05);
+  EXPECT_EQ(result.teeth.wave_generator_force[n / 4], 0.0);
+  EXPECT_NEAR(result.teeth.rim_tension[0], 2300.0, 50.0);
+  EXPECT_NEAR(result.teeth.rim_tension[n / 4], 8000.0, 50.0);
   const double perimeter = TWO_PI * std::hypot(result.radius_major_axis, result.radius_minor_axis) / std::sqrt(2.0);
   EXPECT_NEAR(perimeter, 192.90e-3, 0.05e-3);
 }

@@ -117,8 +117,29 @@ class Stiffness(tool.ToolTest):
         self.assertEqual([row["torque"] for row in rows], [5.0, 14.0, 48.0])
         for row, angle in zip(rows, [-0.169142e-3, -0.472083e-3, -1.233447e-3]):
             self.assertAlmostEqual(row["output_angle"] / angle, 1.0, delta=1e-4)
-        self.assertEqual(set(rows[0]), {"torque", "output_angle", "wave_generator_torque", "teeth_loaded",
-                                        "mesh_force_max", "wave_generator_force_sum", "residual"})
+        self.assertEqual(set(rows[0]), {"torque", "output_angle", "wave_generator_torque", "housing_torque",
+                                        "cup_rotation", "teeth_loaded", "mesh_force_max", "wave_generator_force_sum",
+                                        "residual"})
+
+    def test_the_torques_on_the_gear_add_up_to_none(self):
+        for row in self.succeed_json("stiffness", "--torques", "5,-48")["rows"]:
+            self.assertAlmostEqual(row["housing_torque"] - row["wave_generator_torque"], row["torque"], delta=1e-6)
+            self.assertLess(row["cup_rotation"] * row["torque"], 0.0)
+
+    def test_csv_holds_every_tooth_at_every_torque(self):
+        rows = self.succeed_json("stiffness", "--torques", "14,48", "--csv", "teeth.csv")["rows"]
+        with open(self.path("teeth.csv")) as file:
+            teeth = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        self.assertEqual([(tooth["torque"], tooth["tooth"]) for tooth in teeth],
+                         [(torque, i) for torque in (14.0, 48.0) for i in range(200)])
+        for row in rows:
+            own = [tooth for tooth in teeth if tooth["torque"] == row["torque"]]
+            self.assertEqual(max(abs(tooth["mesh_force"]) for tooth in own), row["mesh_force_max"])
+            self.assertEqual(sum(tooth["mesh_force"] != 0.0 for tooth in own), row["teeth_loaded"])
+            mean = sum(tooth["angle_deviation"] for tooth in own) / len(own)
+            self.assertAlmostEqual(mean / row["cup_rotation"], 1.0, delta=1e-9)
+        self.fail_with(1, ["teeth.csv exists; --force overwrites it"], "stiffness", "--torques", "14", "--csv",
+                       "teeth.csv")
 
     def test_torque_may_be_negative(self):
         forth = self.succeed_json("stiffness", "--torques", "14")["rows"][0]
@@ -130,7 +151,8 @@ class Turn(tool.ToolTest):
     def test_output_follows_by_the_ratio_over_a_tooth_pitch(self):
         angle = 2 * math.pi / 200
         rows = self.succeed_json("turn", "--load", 20, "--angle-range", repr(angle), "--steps", 4)["rows"]
-        self.assertEqual(set(rows[0]), {"wave_generator_angle", "output_angle", "wave_generator_torque"})
+        self.assertEqual(set(rows[0]), {"wave_generator_angle", "output_angle", "wave_generator_torque",
+                                        "housing_torque"})
         turned = rows[-1]["output_angle"] - rows[0]["output_angle"]
         self.assertAlmostEqual(turned, angle / 101, delta=1e-11)
 

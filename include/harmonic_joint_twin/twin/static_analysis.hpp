@@ -8,29 +8,36 @@
 
 namespace hjt
 {
+/// Every tooth of one equilibrium, index = tooth.
+struct ToothTable
+{
+  std::vector<double> tooth_x;               ///< of the tooth point [m]
+  std::vector<double> tooth_y;               ///< of the tooth point [m]
+  std::vector<double> radius;                ///< of the tooth point [m]
+  std::vector<double> angle_deviation;       ///< psi - psi0 [rad]
+  std::vector<double> wave_generator_force;  ///< [N]
+  std::vector<double> rim_tension;           ///< to the next tooth [N]
+  std::vector<double> bending_force;         ///< of the segment to the next tooth [N]
+  std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
+};
+
 /// Static equilibrium after the insertion, circular spline left out (thesis ch. 5-6).
 struct InsertionResult
 {
   bool converged{};
-  double wave_generator_force_max{};         ///< [N]
-  double wave_generator_force_min{};         ///< [N]
-  double wave_generator_force_sum{};         ///< [N]
-  int teeth_in_contact{};                    ///< with the wave generator
-  double tension_min{};                      ///< [N]
-  double tension_max{};                      ///< [N]
-  double radius_major_axis{};                ///< of tooth 0 [m]
-  double radius_minor_axis{};                ///< of tooth N/4 [m]
-  double bending_force_max{};                ///< [N]
-  double residual{};                         ///< [N]
-  int iterations{};                          ///< Newton iterations in all
-  double solve_time{};                       ///< [s]
-  std::vector<double> tooth_x;               ///< per tooth [m]
-  std::vector<double> tooth_y;               ///< per tooth [m]
-  std::vector<double> radius;                ///< per tooth [m]
-  std::vector<double> angle_deviation;       ///< psi - psi0, per tooth [rad]
-  std::vector<double> wave_generator_force;  ///< per tooth [N]
-  std::vector<double> rim_tension;           ///< per tooth, to the next [N]
-  std::vector<double> bending_force;         ///< per tooth, of the segment to the next [N]
+  double wave_generator_force_max{};  ///< [N]
+  double wave_generator_force_min{};  ///< [N]
+  double wave_generator_force_sum{};  ///< [N]
+  int teeth_in_contact{};             ///< with the wave generator
+  double tension_min{};               ///< [N]
+  double tension_max{};               ///< [N]
+  double radius_major_axis{};         ///< of tooth 0 [m]
+  double radius_minor_axis{};         ///< of tooth N/4 [m]
+  double bending_force_max{};         ///< [N]
+  double residual{};                  ///< [N]
+  int iterations{};                   ///< Newton iterations in all
+  double solve_time{};                ///< [s]
+  ToothTable teeth;
 };
 InsertionResult analyseInsertion(const Parameters& parameters);
 
@@ -41,10 +48,13 @@ struct StiffnessRow
   double torque{};                 ///< load [N.m]
   double output_angle{};           ///< relative to zero load [rad]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator, -torque/101 [N.m]
+  double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
+  double cup_rotation{};           ///< mean rotation of the teeth from rest [rad]
   int teeth_loaded{};
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_sum{};  ///< [N]
   double residual{};                  ///< [N]
+  ToothTable teeth;
 };
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
@@ -56,6 +66,7 @@ struct TurnRow
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
+  double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
   double residual{};               ///< [N]
 };
 /// `progress` is called with each step done.

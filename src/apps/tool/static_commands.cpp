@@ -22,6 +22,20 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
+/// What every tooth is written with, in the order of `toothValues`.
+std::vector<std::string> toothColumns()
+{
+  return { "tooth",       "tooth_x",       "tooth_y",   "radius", "angle_deviation", "wave_generator_force",
+           "rim_tension", "bending_force", "mesh_force" };
+}
+
+std::vector<double> toothValues(const ToothTable& teeth, std::size_t i)
+{
+  return { static_cast<double>(i), teeth.tooth_x[i],         teeth.tooth_y[i],
+           teeth.radius[i],        teeth.angle_deviation[i], teeth.wave_generator_force[i],
+           teeth.rim_tension[i],   teeth.bending_force[i],   teeth.mesh_force[i] };
+}
+
 struct InsertOptions : CommonOptions
 {
   std::string csv;
@@ -29,13 +43,10 @@ struct InsertOptions : CommonOptions
 
 void writeTeeth(const std::string& path, const InsertionResult& result)
 {
-  CsvWriter csv(path, { "tooth", "tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
-                        "rim_tension", "bending_force" });
-  for (std::size_t i = 0; i < result.tooth_x.size(); ++i)
+  CsvWriter csv(path, toothColumns());
+  for (std::size_t i = 0; i < result.teeth.radius.size(); ++i)
   {
-    csv.writeRow({ static_cast<double>(i), result.tooth_x[i], result.tooth_y[i], result.radius[i],
-                   result.angle_deviation[i], result.wave_generator_force[i], result.rim_tension[i],
-                   result.bending_force[i] });
+    csv.writeRow(toothValues(result.teeth, i));
   }
   csv.close();
 }
@@ -92,11 +103,34 @@ struct StiffnessOptions : CommonOptions
 {
   std::vector<double> torques;
   double angle{};
+  std::string csv;
 };
+
+void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
+{
+  std::vector<std::string> columns = toothColumns();
+  columns.insert(columns.begin(), "torque");
+  CsvWriter csv(path, columns);
+  for (const StiffnessRow& row : rows)
+  {
+    for (std::size_t i = 0; i < row.teeth.radius.size(); ++i)
+    {
+      std::vector<double> values = toothValues(row.teeth, i);
+      values.insert(values.begin(), row.torque);
+      csv.writeRow(values);
+    }
+  }
+  csv.close();
+}
 
 int stiffness(const StiffnessOptions& options)
 {
-  const auto rows = analyseStiffness(loadParameters(options), options.angle, options.torques);
+  const Parameters parameters = loadParameters(options);
+  if (!options.csv.empty())
+  {
+    requireWritable(options.csv, options.force);
+  }
+  const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   Json json_rows = Json::array();
   std::vector<std::vector<double>> table;
   for (const StiffnessRow& row : rows)
@@ -108,12 +142,18 @@ int stiffness(const StiffnessOptions& options)
     json_rows.push_back({ { "torque", row.torque },
                           { "output_angle", row.output_angle },
                           { "wave_generator_torque", row.wave_generator_torque },
+                          { "housing_torque", row.housing_torque },
+                          { "cup_rotation", row.cup_rotation },
                           { "teeth_loaded", row.teeth_loaded },
                           { "mesh_force_max", row.mesh_force_max },
                           { "wave_generator_force_sum", row.wave_generator_force_sum },
                           { "residual", row.residual } });
     table.push_back({ row.torque, row.output_angle, row.wave_generator_torque, static_cast<double>(row.teeth_loaded),
                       row.mesh_force_max, row.wave_generator_force_sum, row.residual });
+  }
+  if (!options.csv.empty())
+  {
+    writeTeeth(options.csv, rows);
   }
   if (options.json)
   {
@@ -153,7 +193,8 @@ int turn(const TurnOptions& options)
     }
     json_rows.push_back({ { "wave_generator_angle", row.wave_generator_angle },
                           { "output_angle", row.output_angle },
-                          { "wave_generator_torque", row.wave_generator_torque } });
+                          { "wave_generator_torque", row.wave_generator_torque },
+                          { "housing_torque", row.housing_torque } });
     table.push_back({ row.wave_generator_angle, row.output_angle, row.wave_generator_torque });
   }
   if (options.json)
@@ -186,6 +227,8 @@ void addStiffnessCommand(CLI::App& app, int& exit_code)
       ->delimiter(',')
       ->check(FINITE);
   command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
+  command->add_option("--csv", options->csv, "write positions and forces of every tooth at every torque")
+      ->type_name("FILE");
   addCommonOptions(*command, *options);
   command->callback([options, &exit_code] { exit_code = stiffness(*options); });
 }
