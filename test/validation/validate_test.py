@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`scripts/validate`: every fast row holds as shipped, and a wrong parameter makes the rows fail that it should."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+RECORDINGS = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(CHECKOUT, "..", "shared", "telemetry"))
+
+
+def validate(*arguments):
+    """Exit code, failing rows, and everything printed."""
+    command = [sys.executable, os.path.join(CHECKOUT, "scripts", "validation", "validate.py"), "--tool", Validate.tool,
+               "--docs", os.path.join(CHECKOUT, "docs"), "--telemetry", RECORDINGS, "--fast", *arguments]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+    failing = {line.split()[1].rstrip(":") for line in done.stdout.splitlines() if line.startswith("FAILS")}
+    return done.returncode, failing, done.stdout
+
+
+class Validate(unittest.TestCase):
+    tool = None
+
+    def fails(self, assignments, rows, sections):
+        chosen = [word for section in sections for word in ("--section", section)]
+        wrong = [word for assignment in assignments for word in ("--set", assignment)]
+        code, failing, said = validate(*wrong, *chosen)
+        self.assertEqual(code, 1, said)
+        self.assertLessEqual(set(rows), failing, said)
+
+    def test_every_fast_row_holds(self):
+        code, failing, said = validate()
+        self.assertEqual((code, failing), (0, set()), said)
+        self.assertRegex(said, r"\d+ rows, \d+ hold, 0 fail")
+
+    def test_stiffer_contact_fails_the_insertion(self):
+        self.fails(["contact.stiffness=1.1e+8"], ["thesis.force_max", "thesis.operation_force_max"], ["thesis"])
+
+    def test_doubled_friction_fails_the_slips(self):
+        self.fails(["contact.friction_coefficient=0.14"], ["catalogue.interface_slip"], ["catalogue"])
+        self.fails(["mesh.friction_static=0.2", "mesh.friction_kinetic=0.12"], ["catalogue.flank_slip"], ["catalogue"])
+
+    def test_other_grease_fails_the_friction(self):
+        self.fails(["bearing.viscosity=300.0e-6"],
+                   ["catalogue.no_load", "catalogue.efficiency", "drives.ur5e.base.1.5", "size14.no_load"],
+                   ["catalogue", "drives", "size14"])
+
+    def test_cup_as_stiff_as_the_whole_gear_fails_the_torsion(self):
+        self.fails(["cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]"],
+                   ["catalogue.torsion.14", "catalogue.torsion.150"], ["catalogue"])
+
+    def test_page_and_exit_codes(self):
+        with tempfile.TemporaryDirectory() as out:
+            code, _, said = validate("--section", "catalogue", "--out", out)
+            self.assertEqual(code, 0, said)
+            with open(os.path.join(out, "validation.md"), encoding="utf-8") as page:
+                self.assertIn("`catalogue.torsion.48`", page.read())
+        self.assertEqual(validate("--section", "nonsense")[0], 2)
+        self.assertEqual(validate("--config", "/no/such/file.yaml")[0], 2)
+        code, _, said = validate("--section", "catalogue", "--set", "gear.wings=2")
+        self.assertEqual(code, 1, said)
+        self.assertIn("gear.wings", said)
+
+
+if __name__ == "__main__":
+    Validate.tool = sys.argv.pop(1)
+    unittest.main(verbosity=2)
