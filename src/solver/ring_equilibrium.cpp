@@ -58,9 +58,21 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 
 SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
 {
-  now_.position = target;
-  now_.position.wave_amplitude = 0.0;
-  now_.shape.points = model_.rest.points();
+  begin(model_.rest.points(), { target.wave_generator_angle, target.output_angle, 0.0 });
+  return moveTo(target);
+}
+
+SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
+{
+  begin(points, position);
+  return moveTo(position);
+}
+
+/// The ring at these points, in equilibrium or not.
+void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
+{
+  now_.position = position;
+  now_.shape.points = points;
   now_.shape.updateGeometry();
   model_.mesh.pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
@@ -68,7 +80,6 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   now_.stiffness.setZero();
   model_.forces(now_.shape, now_.position, forces_);
   now_.residual = largest(forces_.teeth);
-  return moveTo(target);
 }
 
 SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept

@@ -41,7 +41,10 @@ public:
   /// Cold start: from the round ring the wave amplitude grows to its full value.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
-  /// The same in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
+  /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
+  SolveStatus relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
+
+  /// As `insert`, in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
   /// From the present equilibrium to another position.
@@ -76,6 +79,7 @@ private:
     double residual{};  // [N]
   };
 
+  void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
   SolveStatus approach(const DrivePosition& target) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
   void turnSpaces(int pitches) noexcept;

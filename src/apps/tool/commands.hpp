@@ -21,6 +21,7 @@ void addTurnCommand(CLI::App& app, int& exit_code);
 void addLossesCommand(CLI::App& app, int& exit_code);
 void addBreakawayCommand(CLI::App& app, int& exit_code);
 void addHysteresisCommand(CLI::App& app, int& exit_code);
+void addInvariantsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
