@@ -84,6 +84,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   state.load = load;
   state.wave_generator_angle = position.wave_generator_angle;
   state.output_angle = position.output_angle;
+  state.energy = ring.forces().energy;
   state.residual =
       std::max(ring.forces().teeth.lpNorm<Eigen::Infinity>(), shifted.forces().teeth.lpNorm<Eigen::Infinity>());
   state.softest_stiffness = softestStiffness(ring);

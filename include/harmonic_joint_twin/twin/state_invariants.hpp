@@ -22,6 +22,7 @@ struct StateInvariants
   double load{};                   ///< on the circular spline [N.m]
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
+  double energy{};                 ///< stored [J]
   double residual{};               ///< largest out-of-balance force on a tooth, of all states compared [N]
   double softest_stiffness{};      ///< smallest eigenvalue of the ring's tangent [N/m]
   double contact_force_max{};      ///< [N]

@@ -29,32 +29,6 @@ int notConverged(const std::string& what)
   return EXIT_FAILED;
 }
 
-/// Rows of objects of numbers: JSON, or a table under their keys.
-void printRows(const Json& document, const std::string& rows, bool json)
-{
-  if (json)
-  {
-    std::cout << document.dump(2) << '\n';
-    return;
-  }
-  std::vector<std::string> headings;
-  std::vector<std::vector<double>> table;
-  for (const Json& row : document[rows])
-  {
-    headings.clear();
-    table.emplace_back();
-    for (const auto& [key, value] : row.items())
-    {
-      if (value.is_number())
-      {
-        headings.push_back(key);
-        table.back().push_back(value.get<double>());
-      }
-    }
-  }
-  printTable(headings, table);
-}
-
 struct StateOptions : CommonOptions
 {
   std::vector<double> loads;
@@ -68,6 +42,7 @@ Json rowOf(const StateInvariants& state)
   return { { "load", state.load },
            { "wave_generator_angle", state.wave_generator_angle },
            { "output_angle", state.output_angle },
+           { "energy", state.energy },
            { "residual", state.residual },
            { "softest_stiffness", state.softest_stiffness },
            { "contact_force_max", state.contact_force_max },
@@ -103,6 +78,8 @@ int state(const StateOptions& options)
   const Parameters parameters = loadParameters(options);
   Json states = Json::array();
   Json potential = Json::array();
+  std::vector<std::vector<double>> table;
+  std::vector<std::vector<double>> potential_table;
   for (const double load : options.loads)
   {
     const StateInvariants invariants = analyseState(parameters, options.angle, load, options.pitches);
@@ -111,6 +88,10 @@ int state(const StateOptions& options)
       return notConverged("a load of " + shortNumber(load) + " N.m");
     }
     states.push_back(rowOf(invariants));
+    table.push_back({ load, invariants.half_turn.position, invariants.half_turn.flank_force,
+                      invariants.pitch_shift.position, invariants.pitch_shift.flank_force,
+                      invariants.wave_generator_torque + invariants.output_torque + invariants.cup_torque,
+                      invariants.residual });
     for (const PotentialRow& row : analysePotential(parameters, options.angle, load, options.steps))
     {
       if (!row.converged)
@@ -118,13 +99,25 @@ int state(const StateOptions& options)
         return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad");
       }
       potential.push_back(rowOf(load, row));
+      potential_table.push_back({ load, row.wave_generator_step, row.wave_generator_difference, row.output_difference,
+                                  row.wave_generator_by_output, row.output_by_wave_generator });
     }
   }
-  const Json document{ { "pitches", options.pitches }, { "states", states }, { "potential", potential } };
-  printRows(document, "states", options.json);
-  if (!options.json && !potential.empty())
+  if (options.json)
   {
-    printRows(document, "potential", false);
+    const Json document{ { "pitches", options.pitches }, { "states", states }, { "potential", potential } };
+    std::cout << document.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printTable({ "load [N.m]", "half turn [m]", "half turn [N]", "pitch shift [m]", "pitch shift [N]", "torque sum [N.m]",
+               "residual [N]" },
+             table);
+  if (!potential_table.empty())
+  {
+    std::cout << '\n';
+    printTable({ "load [N.m]", "WG step [rad]", "T + dU/d(WG) [N.m]", "T + dU/d(output) [N.m]",
+                 "dT(WG)/d(output) [N.m/rad]", "dT(output)/d(WG) [N.m/rad]" },
+               potential_table);
   }
   return EXIT_DONE;
 }
@@ -145,6 +138,7 @@ int frame(const FrameOptions& options)
     return notConverged("a load of " + shortNumber(options.load) + " N.m");
   }
   Json elements = Json::array();
+  std::vector<NamedValue> changes;
   for (const TurnedElement& element : result.elements)
   {
     elements.push_back({ { "name", element.name },
@@ -153,8 +147,10 @@ int frame(const FrameOptions& options)
                          { "energy", element.energy },
                          { "energy_difference", element.energy_difference },
                          { "torque_difference", element.torque_difference } });
+    changes.push_back({ element.name + ", largest change of a force", shortNumber(element.force_difference), "N" });
   }
   Json bending = Json::array();
+  std::vector<std::vector<double>> table;
   for (const TurnedBending& row : result.bending)
   {
     bending.push_back({ { "angle", row.angle },
@@ -162,8 +158,16 @@ int frame(const FrameOptions& options)
                         { "absolute_force", row.absolute_force },
                         { "curvature_energy", row.curvature_energy },
                         { "absolute_energy", row.absolute_energy } });
+    table.push_back({ row.angle, row.curvature_force, row.absolute_force });
   }
-  printRows({ { "load", options.load }, { "elements", elements }, { "bending", bending } }, "bending", options.json);
+  if (options.json)
+  {
+    std::cout << Json{ { "load", options.load }, { "elements", elements }, { "bending", bending } }.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printValues(changes);
+  std::cout << '\n';
+  printTable({ "turn [rad]", "bending, law curvature [N]", "bending, law absolute [N]" }, table);
   return EXIT_DONE;
 }
 
@@ -182,6 +186,7 @@ Json jsonOf(const ShapeError& error)
 int smallWave(const SmallWaveOptions& options)
 {
   Json rows = Json::array();
+  std::vector<std::vector<double>> table;
   const WaveBending bending = options.hold ? WaveBending::PROPORTIONAL : WaveBending::KEPT;
   for (const SmallWaveRow& row : analyseSmallWave(loadParameters(options), bending, options.smallest, options.count))
   {
@@ -197,8 +202,18 @@ int smallWave(const SmallWaveOptions& options)
                      { "thin_ring", jsonOf(row.thin_ring) },
                      { "linear", jsonOf(row.linear) },
                      { "second_order", jsonOf(row.second_order) } });
+    table.push_back({ row.wave_amplitude, static_cast<double>(row.teeth_in_contact), row.thin_ring.radial,
+                      row.thin_ring.tangential, row.thin_ring.tilt, row.second_order.radial,
+                      row.second_order.tangential, row.second_order.tilt });
   }
-  printRows({ { "rows", rows } }, "rows", options.json);
+  if (options.json)
+  {
+    std::cout << Json{ { "rows", rows } }.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printTable({ "wave amplitude [m]", "teeth in contact [-]", "radial [-]", "tangential [-]", "tilt [-]",
+               "radial, 2nd order [-]", "tangential, 2nd order [-]", "tilt, 2nd order [-]" },
+             table);
   return EXIT_DONE;
 }
 
@@ -216,6 +231,7 @@ int energy(const EnergyOptions& options)
   const std::vector<double> rates =
       options.rates.empty() ? std::vector<double>{ parameters.solver.rate } : options.rates;
   Json rows = Json::array();
+  std::vector<std::vector<double>> table;
   for (const double rate : rates)
   {
     parameters.solver.rate = rate;
@@ -233,8 +249,15 @@ int energy(const EnergyOptions& options)
                      { "travel", result.travel },
                      { "top_speed", result.top_speed },
                      { "reversals", result.reversals } });
+    table.push_back(
+        { rate, result.throughput, result.residual, result.residual / result.throughput, result.top_speed });
   }
-  printRows({ { "seed", options.seed }, { "duration", options.duration }, { "rows", rows } }, "rows", options.json);
+  if (options.json)
+  {
+    std::cout << Json{ { "seed", options.seed }, { "duration", options.duration }, { "rows", rows } }.dump(2) << '\n';
+    return EXIT_DONE;
+  }
+  printTable({ "rate [Hz]", "through [J]", "left over [J]", "left over / through [-]", "top speed [rad/s]" }, table);
   return EXIT_DONE;
 }
 
