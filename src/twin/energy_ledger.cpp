@@ -57,6 +57,7 @@ LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& 
       progress(static_cast<double>(i + 1) / static_cast<double>(steps));
     }
   }
+  result.force_residual = stepper.status().residual;
   result.throughput = stepper.energyThroughput();
   return result;
 }

@@ -78,8 +78,16 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   const double pitch = model.rest.pitchAngle();
   const double output_shift = pitches * (pitch - TWO_PI / model.gear.teeth_circular_spline);
   RingEquilibrium shifted(model, staticSolver(parameters.solver));
-  const SolveStatus shifted_status = shifted.insert({ position.wave_generator_angle + pitches * pitch,
-                                                      position.output_angle + output_shift, position.wave_amplitude });
+  DrivePosition there = position;
+  there.wave_generator_angle += pitches * pitch;
+  there.output_angle += output_shift;
+  // A way of its own: inserted without load, then the output alone turned.
+  SolveStatus shifted_status = shifted.insert(
+      { there.wave_generator_angle, there.wave_generator_angle / nominalRatio(model.gear), there.wave_amplitude });
+  if (shifted_status.ok())
+  {
+    shifted_status = shifted.moveTo(there);
+  }
   state.converged = status.ok() && shifted_status.ok();
   state.load = load;
   state.wave_generator_angle = position.wave_generator_angle;
@@ -141,6 +149,7 @@ std::vector<PotentialRow> analysePotential(const Parameters& parameters, double 
     row.wave_generator_by_output = (output_ahead.torque[0] - output_behind.torque[0]) / (2.0 * row.output_step);
     row.output_by_wave_generator = (ahead.torque[1] - behind.torque[1]) / (2.0 * step);
     row.converged = status.ok();
+    row.residual = status.residual;
     rows.push_back(row);
   }
   return rows;

@@ -41,11 +41,12 @@ private:
 struct LedgerResult
 {
   bool converged{ true };
-  double throughput{};  ///< sum of |work| of motor, load and friction [J]
-  double residual{};    ///< largest energy in - stored - dissipated on the way [J]
-  double travel{};      ///< of the motor, both ways added [rad]
-  double top_speed{};   ///< of the motor [rad/s]
-  int reversals{};      ///< of the motor
+  double force_residual{};  ///< of the ring in the last step [N]
+  double throughput{};      ///< sum of |work| of motor, load and friction [J]
+  double residual{};        ///< largest energy in - stored - dissipated on the way [J]
+  double travel{};          ///< of the motor, both ways added [rad]
+  double top_speed{};       ///< of the motor [rad/s]
+  int reversals{};          ///< of the motor
 };
 
 /// `duration` [s] from rest. `progress` is told the part done.

@@ -43,6 +43,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
 struct PotentialRow
 {
   bool converged{};
+  double residual{};                   ///< [N]
   double wave_generator_step{};        ///< to either side [rad]
   double output_step{};                ///< the same, the joint's share of it [rad]
   double wave_generator_torque{};      ///< [N.m]

@@ -33,6 +33,7 @@ struct TurnedBending
 struct TurnedMachine
 {
   bool converged{};
+  double residual{};  ///< [N]
   std::vector<TurnedElement> elements;
   std::vector<TurnedBending> bending;
 };

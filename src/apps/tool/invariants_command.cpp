@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "configuration.hpp"
+#include "not_converged.hpp"
 #include "progress.hpp"
 #include "text_table.hpp"
 #include "validators.hpp"
@@ -22,12 +23,6 @@ namespace hjt
 namespace
 {
 using Json = nlohmann::ordered_json;
-
-int notConverged(const std::string& what)
-{
-  std::cerr << "joint_twin: no equilibrium found for " << what << "; see solver.max_iterations\n";
-  return EXIT_FAILED;
-}
 
 struct StateOptions : CommonOptions
 {
@@ -85,7 +80,7 @@ int state(const StateOptions& options)
     const StateInvariants invariants = analyseState(parameters, options.angle, load, options.pitches);
     if (!invariants.converged)
     {
-      return notConverged("a load of " + shortNumber(load) + " N.m");
+      return notConverged("a load of " + shortNumber(load) + " N.m", invariants.residual);
     }
     states.push_back(rowOf(invariants));
     table.push_back({ load, invariants.half_turn.position, invariants.half_turn.flank_force,
@@ -96,7 +91,7 @@ int state(const StateOptions& options)
     {
       if (!row.converged)
       {
-        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad");
+        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.residual);
       }
       potential.push_back(rowOf(load, row));
       potential_table.push_back({ load, row.wave_generator_step, row.wave_generator_difference, row.output_difference,
@@ -135,7 +130,7 @@ int frame(const FrameOptions& options)
       analyseTurnedMachine(loadParameters(options), options.load, options.seed, options.samples);
   if (!result.converged)
   {
-    return notConverged("a load of " + shortNumber(options.load) + " N.m");
+    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.residual);
   }
   Json elements = Json::array();
   std::vector<NamedValue> changes;
@@ -192,7 +187,7 @@ int smallWave(const SmallWaveOptions& options)
   {
     if (!row.converged)
     {
-      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m");
+      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.residual);
     }
     rows.push_back({ { "wave_amplitude", row.wave_amplitude },
                      { "teeth_in_contact", row.teeth_in_contact },
@@ -240,7 +235,7 @@ int energy(const EnergyOptions& options)
                                           [&](double done) { progress.update(done); });
     if (!result.converged)
     {
-      return notConverged("a step at " + shortNumber(rate) + " Hz");
+      return notConverged("a step at " + shortNumber(rate) + " Hz", result.force_residual);
     }
     rows.push_back({ { "rate", rate },
                      { "throughput", result.throughput },
