@@ -14,8 +14,10 @@ struct ToothMesh::Engagement
   Eigen::Vector2d radial;  // axis of the space
   Eigen::Vector2d across;  // counter-clockwise of it
   Chord chord;
-  double xi;
+  double xi;  // from where the space would be in the perfect gear
   double zeta;
+  double tooth_ahead;  // by errors of manufacture: the tooth's less the space's, across [m]
+  double space_out;    // by errors of manufacture: the space's, along its axis [m]
 };
 
 /// Derivatives of the tooth's energy by xi and zeta.
@@ -30,38 +32,38 @@ struct ToothMesh::Law
   bool contact{};
 };
 
-ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gear)
+ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors)
   : spaces_(gear.teeth_circular_spline)
   , mid_height_(gear.toothMidHeight())
   , tip_offset_(0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline)
-  , reach_(-tip_offset_ - mid_height_)
+  , reach_(-tip_offset_ - mid_height_ + errors.space_along.minCoeff())
   , depth_(parameters.engagement_depth)
   , smoothing_(parameters.smoothing)
   , cos_flank_(std::cos(parameters.flank_angle))
   , half_space_(std::tan(PI / gear.teeth_circular_spline))
   , profile_(parameters, gear)
-  , axes_(2 * gear.teeth_circular_spline)
+  , tooth_across_(errors.tooth_across)
   , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
   , clearance_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
 {
   for (int k = 0; k < spaces_; ++k)
   {
-    axes_.segment<2>(2 * k) << std::cos(TWO_PI * k / spaces_), std::sin(TWO_PI * k / spaces_);
+    const double angle = TWO_PI * k / spaces_;
+    space_.push_back({ std::cos(angle), std::sin(angle), errors.space_across[k], errors.space_along[k] });
   }
 }
 
 ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output,
                                         int i) const noexcept
 {
-  const int k = shape.space[i];
-  const double ax = axes_[2 * k];
-  const double ay = axes_[2 * k + 1];
-  const double rx = cos_output * ax - sin_output * ay;
-  const double ry = sin_output * ax + cos_output * ay;
+  const Space& space = space_[shape.space[i]];
+  const double rx = cos_output * space.axis_x - sin_output * space.axis_y;
+  const double ry = sin_output * space.axis_x + cos_output * space.axis_y;
   const Chord chord = shape.chord(i);
   const double px = shape.points[2 * i] + mid_height_ * chord.normal.x();
   const double py = shape.points[2 * i + 1] + mid_height_ * chord.normal.y();
-  return { { rx, ry }, { -ry, rx }, chord, py * rx - px * ry, px * rx + py * ry };
+  return { { rx, ry }, { -ry, rx }, chord, py * rx - px * ry, px * rx + py * ry, tooth_across_[i] - space.across,
+           space.along };
 }
 
 /// A tooth whose tip does not reach the circular spline however it is tilted.
@@ -73,15 +75,17 @@ bool ToothMesh::outOfReach(const RingShape& shape, int i) const noexcept
 ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
 {
   Law law;
-  const double depth = tooth.zeta + tip_offset_;
-  const double clearance = profile_.halfClearance(tooth.zeta) + clearance_[i];
-  if (depth <= 0.0 || std::abs(tooth.xi) <= clearance)
+  const double xi = tooth.xi + tooth.tooth_ahead;
+  const double zeta = tooth.zeta - tooth.space_out;
+  const double depth = zeta + tip_offset_;
+  const double clearance = profile_.halfClearance(zeta) + clearance_[i];
+  if (depth <= 0.0 || std::abs(xi) <= clearance)
   {
     return law;
   }
   law.contact = true;
-  const ContactRamp leading(tooth.xi - clearance, smoothing_);
-  const ContactRamp trailing(-tooth.xi - clearance, smoothing_);
+  const ContactRamp leading(xi - clearance, smoothing_);
+  const ContactRamp trailing(-xi - clearance, smoothing_);
   const double energy = leading.energy + trailing.energy;
   const double force = leading.force + trailing.force;
   const double difference = leading.force - trailing.force;

@@ -26,12 +26,23 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
 }
 }  // namespace
 
-WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear)
+WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear,
+                                           const ManufactureParameters& manufacture)
   : law_(parameters.law)
   , smoothing_(parameters.smoothing)
   , mean_radius_(gear.flexspline_inner_radius)
+  , ellipticity_(manufacture.wave_generator_ellipticity)
+  , centre_x_(manufacture.wave_generator_eccentricity[0])
+  , centre_y_(manufacture.wave_generator_eccentricity[1])
   , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
 {
+}
+
+Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) const noexcept
+{
+  const double c = std::cos(position.wave_generator_angle);
+  const double s = std::sin(position.wave_generator_angle);
+  return { c * centre_x_ - s * centre_y_, s * centre_x_ + c * centre_y_ };
 }
 
 /// Feet of the normals from all tooth points, in the housing's axes.
@@ -40,8 +51,11 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
 {
   const double c = std::cos(position.wave_generator_angle);
   const double s = std::sin(position.wave_generator_angle);
-  const double a = mean_radius_ + position.wave_amplitude;
-  const double b = mean_radius_ - position.wave_amplitude;
+  const double amplitude = position.wave_amplitude + ellipticity_;
+  const double a = mean_radius_ + amplitude;
+  const double b = mean_radius_ - amplitude;
+  const double centre_x = centre_x_;
+  const double centre_y = centre_y_;
   const int n = shape.teeth();
   const double* point = shape.points.data();
   double* normal = forces.contact_normal.data();
@@ -56,8 +70,8 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
   };
   const auto own = [&](int i, double& x, double& y)
   {
-    x = c * point[2 * i] + s * point[2 * i + 1];
-    y = c * point[2 * i + 1] - s * point[2 * i];
+    x = c * point[2 * i] + s * point[2 * i + 1] - centre_x;
+    y = c * point[2 * i + 1] - s * point[2 * i] - centre_y;
   };
   double x = 0.0;
   double y = 0.0;

@@ -8,20 +8,21 @@ RingModel::RingModel(const Parameters& parameters)
   , rest(parameters.gear)
   , tension(parameters.ring, rest)
   , bending(parameters.ring, rest)
-  , contact(parameters.contact, parameters.gear)
+  , contact(parameters.contact, parameters.gear, parameters.manufacture)
   , cup(parameters.cup, rest)
-  , mesh(parameters.mesh, parameters.gear)
+  , mesh(parameters.mesh, parameters.gear, ManufactureErrors(parameters.manufacture, parameters.gear))
 {
 }
 
-void RingModel::forces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
+void RingModel::forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
+                       bool circular_spline_in) const noexcept
 {
   forces.setZero();
   tension.addForces(shape, forces);
   bending.addForces(shape, forces);
   contact.addForces(shape, position, forces);
   cup.addForces(shape, forces);
-  if (meshed)
+  if (meshed && circular_spline_in)
   {
     mesh.addForces(shape, position, forces);
   }

@@ -61,6 +61,19 @@ void checkGear(const Parameters& p, Contradictions& check)
           " [m]");
 }
 
+void checkPitch(const PitchParameters& pitch, const std::string& member, Contradictions& check)
+{
+  const std::string table_key = "manufacture." + member + "_pitch_table";
+  const std::string deviation_key = "manufacture." + member + "_pitch_deviation";
+  const bool from_table = pitch.table != NO_TABLE;
+  // A node does not know where its configuration lay, so there is no directory a path could be relative to.
+  check.require(!from_table || pitch.table.front() == '/', { table_key },
+                table_key + " = '" + pitch.table + "' must be an absolute path, or " + NO_TABLE);
+  check.require(!from_table || pitch.deviation == 0.0, { table_key, deviation_key },
+                deviation_key + " = " + numberText(pitch.deviation) + " [m] must be 0 where " + table_key +
+                    " gives the deviations");
+}
+
 void checkElements(const Parameters& p, Contradictions& check)
 {
   const auto& breakpoints = p.cup.torsion_breakpoints;
@@ -97,6 +110,8 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
 {
   Contradictions check(map);
   checkGear(parameters, check);
+  checkPitch(parameters.manufacture.flexspline_pitch, "flexspline", check);
+  checkPitch(parameters.manufacture.circular_spline_pitch, "circular_spline", check);
   checkElements(parameters, check);
   checkRates(parameters, check);
   return check.take();

@@ -58,14 +58,49 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 
 SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
 {
-  begin(model_.rest.points(), { target.wave_generator_angle, target.output_angle, 0.0 });
-  return moveTo(target);
+  beginRound(target);
+  const bool wedged = now_.residual > parameters_.force_tolerance;
+  SolveStatus status = moveTo(target);
+  if (status.ok() || !wedged)
+  {
+    return status;
+  }
+  // A round ring that wedges in an eccentric circular spline goes nearly the whole way without it.
+  constexpr double NEARLY = 0.99;
+  DrivePosition before = target;
+  before.wave_amplitude *= NEARLY;
+  circular_spline_in_ = false;
+  beginRound(target);
+  status = moveTo(before);
+  circular_spline_in_ = true;
+  if (status.ok())
+  {
+    updateForces();
+    now_.residual = largest(forces_.teeth);
+    status = moveTo(target);
+  }
+  if (!status.ok())
+  {
+    beginRound(target);
+  }
+  return status;
 }
 
 SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
 {
   begin(points, position);
   return moveTo(position);
+}
+
+/// The round ring about the wave generator's centre, before the insertion.
+void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
+{
+  const Eigen::Vector2d centre = model_.contact.centre(target);
+  for (int i = 0; i < now_.shape.teeth(); ++i)
+  {
+    scratch_.segment<2>(2 * i) = model_.rest.points().segment<2>(2 * i) + centre;
+  }
+  begin(scratch_, { target.wave_generator_angle, target.output_angle, 0.0 });
 }
 
 /// The ring at these points, in equilibrium or not.
@@ -78,8 +113,13 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
-  model_.forces(now_.shape, now_.position, forces_);
+  updateForces();
   now_.residual = largest(forces_.teeth);
+}
+
+void RingEquilibrium::updateForces() noexcept
+{
+  model_.forces(now_.shape, now_.position, forces_, circular_spline_in_);
 }
 
 SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
@@ -89,7 +129,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = kept_;
-    model_.forces(now_.shape, now_.position, forces_);
+    updateForces();
   }
   return status;
 }
@@ -107,7 +147,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = start_;
-    model_.forces(now_.shape, now_.position, forces_);
+    updateForces();
     status.residual = std::isfinite(status.residual) ? status.residual : now_.residual;
   }
   return status;
@@ -235,7 +275,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   {
     model_.mesh.pairNearest(now_.position, now_.shape);
   }
-  model_.forces(now_.shape, now_.position, forces_);
+  updateForces();
   status.residual = largest(forces_.teeth);
   if (status.residual <= parameters_.force_tolerance && !slopesChanged())
   {
@@ -317,7 +357,7 @@ bool RingEquilibrium::searchLine(double residual) noexcept
   {
     now_.shape.points = start_points_ + length * step_;
     now_.shape.updateGeometry();
-    model_.forces(now_.shape, now_.position, forces_);
+    updateForces();
     const double trial = largest(forces_.teeth);
     if (trial < (1.0 - 1e-4 * length) * residual || trial <= parameters_.force_tolerance)
     {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
 #include "harmonic_joint_twin/solver/output_balance.hpp"
 #include "harmonic_joint_twin/twin/static_solver.hpp"
 
@@ -136,8 +137,9 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
     {
       status = balanceOutput(ring, angle, load_torque);
     }
-    rows.push_back({ status.ok(), angle, ring.position().output_angle, ring.forces().wave_generator_torque,
-                     housingTorque(ring), status.residual });
+    const double output_angle = ring.position().output_angle;
+    rows.push_back({ status.ok(), angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
+                     ring.forces().wave_generator_torque, housingTorque(ring), status.residual });
     if (progress)
     {
       progress(i);

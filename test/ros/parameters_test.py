@@ -64,13 +64,21 @@ class Parameters(unittest.TestCase):
         self.check_start(configuration_files("elbow", ["recorded_load.yaml"]))
         self.check_clean_exit(signal.SIGTERM)
 
+    def test_the_gear_as_built_starts(self):
+        self.check_start(configuration_files("elbow", ["as_built.yaml"]))
+        self.check_clean_exit(signal.SIGINT)
+
+    def test_a_bad_table_of_pitch_errors_is_named(self):
+        self.check_refusal({"manufacture/flexspline_pitch_table": "/nowhere.csv"}, "flexspline_pitch_table",
+                           "/nowhere.csv", "cannot be read")
+
     def test_the_laws_of_the_thesis_are_for_the_offline_analysis_only(self):
         self.check_refusal({}, "contact.law", "polar", "normal",
                            files=configuration_files("elbow", ["thesis_insertion.yaml"]))
 
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
-        tested += [package_path("config", name) for name in ("recorded_load.yaml", "thesis_insertion.yaml")]
+        tested += [package_path("config", name) for name in ("as_built.yaml", "recorded_load.yaml", "thesis_insertion.yaml")]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 
     def test_stages_left_out_are_refused(self):

@@ -50,6 +50,11 @@ class Validate(unittest.TestCase):
         self.fails(["cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]"],
                    ["catalogue.torsion.14", "catalogue.torsion.150"], ["catalogue"])
 
+    def test_coarser_teeth_fail_the_kinematic_error(self):
+        self.fails(["manufacture.circular_spline_pitch_deviation=30.0e-6"],
+                   ["manufacture.perfect", "manufacture.flexspline_not_the_other", "manufacture.as_built_order_2",
+                    "manufacture.as_built_range"], ["manufacture"])
+
     def test_page_and_exit_codes(self):
         with tempfile.TemporaryDirectory() as out:
             code, _, said = validate("--section", "catalogue", "--out", out)

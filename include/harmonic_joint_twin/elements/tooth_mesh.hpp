@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "harmonic_joint_twin/gear/manufacture_errors.hpp"
 #include "harmonic_joint_twin/gear/ring_shape.hpp"
 #include "harmonic_joint_twin/gear/tooth_profile.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
@@ -14,8 +17,9 @@ namespace hjt
 ///
 /// Energy:  U = sum_i k_i cos^2(beta) [r(xi_i - c_i) + r(-xi_i - c_i)] s(d_i), r the contact ramp
 /// where    P_i     tooth at mid-height, X_i + z_t n_i, n_i outward normal of the chord X_{i+1} - X_{i-1}   [m]
-///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0          [m]
-///          zeta_i  P_i along that axis                                                                     [m]
+///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0,
+///                  plus the error of the tooth, minus that of the space                                    [m]
+///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
 ///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
 ///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - r_a             [m]
 ///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
@@ -23,7 +27,7 @@ namespace hjt
 class ToothMesh
 {
 public:
-  ToothMesh(const MeshParameters& parameters, const GearParameters& gear);
+  ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
 
   void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
   /// `forces`: of the same shape and position.
@@ -46,6 +50,13 @@ public:
 private:
   struct Engagement;
   struct Law;
+  struct Space
+  {
+    double axis_x;  // unit vector at output angle 0
+    double axis_y;
+    double across;  // errors of manufacture, see ManufactureErrors [m]
+    double along;
+  };
   Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
   Law law(const Engagement& tooth, int i) const noexcept;
   bool outOfReach(const RingShape& shape, int i) const noexcept;
@@ -61,7 +72,8 @@ private:
   double cos_flank_;
   double half_space_;  // tangent of half a space
   StraightFlank profile_;
-  Eigen::VectorXd axes_;  // 2 per space, unit vectors at output angle 0
+  std::vector<Space> space_;
+  Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd clearance_;
 };

@@ -11,6 +11,7 @@
 namespace hjt
 {
 /// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by theta.
+/// Errors of manufacture add to w (ellipticity) and move the ellipse's centre off the axis it turns about (eccentricity).
 ///
 /// Energy (normal):  U = sum_i k_i r(depth_i), r the contact ramp, depth_i inside the ellipse along its true normal
 /// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
@@ -20,11 +21,15 @@ namespace hjt
 class WaveGeneratorContact
 {
 public:
-  WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear);
+  WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear,
+                       const ManufactureParameters& manufacture);
 
   void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
   /// `forces`: of the same shape and position.
   void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+
+  /// Of the ellipse, in the housing's axes [m].
+  Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 
@@ -34,6 +39,9 @@ private:
   ContactLaw law_;
   double smoothing_;
   double mean_radius_;
+  double ellipticity_;  // [m]
+  double centre_x_;     // of the ellipse, in the axes of the wave generator [m]
+  double centre_y_;
   Eigen::VectorXd stiffness_;
 };
 }  // namespace hjt

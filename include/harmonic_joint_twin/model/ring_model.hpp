@@ -16,10 +16,13 @@ namespace hjt
 /// All conservative elements on the ring. Constant after construction; faults are edits of its per-tooth arrays.
 struct RingModel
 {
+  /// @throws ParameterError on a bad table of pitch errors.
   explicit RingModel(const Parameters& parameters);
 
-  /// Forces and stored energy. The shape's geometry must be up to date.
-  void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+  /// Forces and stored energy; of the teeth too unless the circular spline is not in yet. The shape's geometry must be up
+  /// to date.
+  void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
+              bool circular_spline_in = true) const noexcept;
 
   /// Hessian of the stored energy; `forces` of the same shape and position.
   void tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,

@@ -40,6 +40,31 @@ void visitFields(P& p, Visitor&& visit)
   visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{ 1e-3, 1.0 },
         "tip radius of the circular spline's teeth");
 
+  const Range pitch_deviation{ 0.0, 1e-4 };
+  const Range seed{ 0, 99999 };
+  const Range shift{ -1e-4, 1e-4 };
+  visit("manufacture.flexspline_pitch_deviation", "m", p.manufacture.flexspline_pitch.deviation, pitch_deviation,
+        "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height");
+  visit("manufacture.flexspline_pitch_seed", "-", p.manufacture.flexspline_pitch.seed, seed,
+        "which of the gears with that deviation");
+  visit("manufacture.flexspline_pitch_table", p.manufacture.flexspline_pitch.table,
+        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+  visit("manufacture.circular_spline_pitch_deviation", "m", p.manufacture.circular_spline_pitch.deviation,
+        pitch_deviation, "total cumulative pitch deviation Fp of the circular spline's spaces");
+  visit("manufacture.circular_spline_pitch_seed", "-", p.manufacture.circular_spline_pitch.seed, seed,
+        "which of the gears with that deviation");
+  visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
+        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+  visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, shift,
+        "centre of the spaces from the output's axis, turning with the output: x, y at output angle 0");
+  visit(
+      "manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, shift,
+      "out-of-round: the radius grows by first cos 2a + second sin 2a, a the angle from space 0; bent, not stretched");
+  visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, shift,
+        "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
+  visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
+        "what the wave generator's amplitude exceeds gear.wave_amplitude by, which the teeth were cut for");
+
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
   visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");

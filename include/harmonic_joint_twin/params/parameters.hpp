@@ -68,6 +68,27 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
+/// Where a table could be named: there is none.
+constexpr const char* NO_TABLE = "none";
+
+/// Pitch errors of one toothed member: seeded, or from a table.
+struct PitchParameters
+{
+  double deviation{};
+  int seed{};
+  std::string table{};
+};
+
+struct ManufactureParameters
+{
+  PitchParameters flexspline_pitch;
+  PitchParameters circular_spline_pitch;
+  std::array<double, 2> circular_spline_eccentricity{};
+  std::array<double, 2> circular_spline_ellipticity{};
+  std::array<double, 2> wave_generator_eccentricity{};
+  double wave_generator_ellipticity{};
+};
+
 struct CupParameters
 {
   std::array<double, 3> torsion_stiffness{};
@@ -169,6 +190,7 @@ struct Parameters
 {
   JointParameters joint;
   GearParameters gear;
+  ManufactureParameters manufacture;
   RingParameters ring;
   ContactParameters contact;
   MeshParameters mesh;

@@ -38,7 +38,8 @@ class RingEquilibrium
 public:
   RingEquilibrium(const RingModel& model, const SolverParameters& parameters);
 
-  /// Cold start: from the round ring the wave amplitude grows to its full value.
+  /// Cold start: from the round ring the wave amplitude grows to its full value, in the circular spline if it goes, else
+  /// before the circular spline is put on.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
   /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
@@ -79,7 +80,9 @@ private:
     double residual{};  // [N]
   };
 
+  void beginRound(const DrivePosition& target) noexcept;
   void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
+  void updateForces() noexcept;
   SolveStatus approach(const DrivePosition& target) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
   void turnSpaces(int pitches) noexcept;
@@ -101,6 +104,7 @@ private:
   Equilibrium start_;    // of the present move
   Equilibrium halfway_;  // the farthest point of the present move
   Equilibrium kept_;     // before inserting anew
+  bool circular_spline_in_{ true };
   // Scratch, sized once.
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;

@@ -65,6 +65,7 @@ struct TurnRow
   bool converged{};
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
+  double kinematic_error{};        ///< of the output against the wave generator's angle over the nominal ratio [rad]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
   double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
   double residual{};               ///< [N]

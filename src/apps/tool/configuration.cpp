@@ -14,8 +14,8 @@ namespace
 namespace fs = std::filesystem;
 
 /// The default configuration, one file per stage.
-constexpr std::array<const char*, 7> STAGES{ "gear.yaml",    "elements.yaml", "joint.yaml", "solver.yaml",
-                                             "sensors.yaml", "health.yaml",   "node.yaml" };
+constexpr std::array<const char*, 8> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
+                                             "solver.yaml", "sensors.yaml",     "health.yaml",   "node.yaml" };
 
 fs::path installedConfigDirectory()
 {

@@ -13,7 +13,6 @@
 #include "commands.hpp"
 #include "configuration.hpp"
 #include "interrupt.hpp"
-#include "number_table.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "run_summary.hpp"
@@ -23,6 +22,7 @@
 #include <sensor_msgs/JointState.h>
 
 #include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/params/number_table.hpp"
 #include "harmonic_joint_twin/ros_io/bag_writer.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 

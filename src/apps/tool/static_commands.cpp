@@ -193,16 +193,17 @@ int turn(const TurnOptions& options)
     }
     json_rows.push_back({ { "wave_generator_angle", row.wave_generator_angle },
                           { "output_angle", row.output_angle },
+                          { "kinematic_error", row.kinematic_error },
                           { "wave_generator_torque", row.wave_generator_torque },
                           { "housing_torque", row.housing_torque } });
-    table.push_back({ row.wave_generator_angle, row.output_angle, row.wave_generator_torque });
+    table.push_back({ row.wave_generator_angle, row.output_angle, row.kinematic_error, row.wave_generator_torque });
   }
   if (options.json)
   {
     std::cout << Json{ { "load", options.load }, { "rows", json_rows } }.dump(2) << '\n';
     return EXIT_DONE;
   }
-  printTable({ "WG angle [rad]", "output angle [rad]", "WG torque [N.m]" }, table);
+  printTable({ "WG angle [rad]", "output angle [rad]", "kinematic error [rad]", "WG torque [N.m]" }, table);
   return EXIT_DONE;
 }
 }  // namespace

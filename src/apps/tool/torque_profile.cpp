@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "number_table.hpp"
+#include "harmonic_joint_twin/params/number_table.hpp"
 
 namespace hjt
 {

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <Eigen/Geometry>
+
+#include "element_under_test.hpp"
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/manufacture_errors.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "random_ring.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// A table of pitch deviations, removed at the end of the test.
+class TableFile
+{
+public:
+  explicit TableFile(const std::string& text)
+    : path_(fs::temp_directory_path() / ("hjt_manufacture_test_" + std::to_string(::getpid()) + ".csv"))
+  {
+    std::ofstream(path_) << text;
+  }
+  ~TableFile() { fs::remove(path_); }
+
+  PitchParameters pitch() const { return { 0.0, 1, path_.string() }; }
+
+  /// What is said about it as the table of a member with three teeth.
+  std::string complaint() const
+  {
+    try
+    {
+      pitchDeviations(pitch(), 3, "some.table");
+    }
+    catch (const ParameterError& error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+
+private:
+  fs::path path_;
+};
+
+/// sum_i values_i exp(-2 pi j k i / Z) * 2 / Z: for a cosine of order k, its amplitude and phase.
+std::complex<double> harmonic(const Eigen::VectorXd& values, int k)
+{
+  std::complex<double> sum;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+  {
+    sum += values[i] * std::polar(1.0, -TWO_PI * static_cast<double>(k * i) / static_cast<double>(values.size()));
+  }
+  return sum * 2.0 / static_cast<double>(values.size());
+}
+
+TEST(PitchErrors, PerfectGearHasNone)
+{
+  const Parameters parameters = shippedParameters();
+  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+  EXPECT_EQ(errors.tooth_across, Eigen::VectorXd::Zero(200));
+  EXPECT_EQ(errors.space_across, Eigen::VectorXd::Zero(202));
+  EXPECT_EQ(errors.space_along, Eigen::VectorXd::Zero(202));
+}
+
+TEST(PitchErrors, HaveTheirTotalDeviationAndAmplitudesThatFallWithTheOrder)
+{
+  for (const int teeth : { 200, 202 })
+  {
+    for (const int seed : { 0, 1, 99999 })
+    {
+      const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, seed, NO_TABLE }, teeth, "");
+      EXPECT_NEAR(pitch.maxCoeff() - pitch.minCoeff(), 8e-6, 1e-18);
+      EXPECT_NEAR(pitch.sum(), 0.0, 1e-17);
+      const double first = std::abs(harmonic(pitch, 1));
+      for (const int k : { 2, 3, 7, 50, 99 })
+      {
+        EXPECT_NEAR(std::abs(harmonic(pitch, k)), first / k, 1e-17) << k;
+      }
+    }
+  }
+}
+
+TEST(PitchErrors, AreTheSameOnEveryPlatform)
+{
+  // The first two numbers of mt19937 with seed 1, as published with the generator (mt19937ar).
+  const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, 1, NO_TABLE }, 200, "");
+  EXPECT_NEAR(std::remainder(std::arg(harmonic(pitch, 1)) - TWO_PI * 1791095845.0 / 4294967296.0, TWO_PI), 0.0, 1e-12);
+  EXPECT_NEAR(std::remainder(std::arg(harmonic(pitch, 2)) - TWO_PI * 4282876139.0 / 4294967296.0, TWO_PI), 0.0, 1e-12);
+  EXPECT_EQ(pitch, pitchDeviations({ 8e-6, 1, NO_TABLE }, 200, ""));
+  EXPECT_GT((pitch - pitchDeviations({ 8e-6, 2, NO_TABLE }, 200, "")).lpNorm<Eigen::Infinity>(), 1e-6);
+}
+
+TEST(PitchTable, IsTakenAsItIs)
+{
+  const TableFile file("deviation,tooth\n1.0e-6,0\n-2e-6,1\n1.25e-07,2\n");
+  EXPECT_EQ(pitchDeviations(file.pitch(), 3, ""), Eigen::Vector3d(1e-6, -2e-6, 1.25e-7));
+}
+
+TEST(PitchTable, WhatIsWrongIsNamedWithItsLine)
+{
+  EXPECT_THAT(TableFile("tooth,deviation\n0,0.0\n1,0.0\n").complaint(), HasSubstr("csv:3: 2 teeth, not 3"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0,0.0\n2,0.0\n1,0.0\n").complaint(),
+              HasSubstr("csv:3: column 'tooth' must count from 0 to 2"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0,0\n1,0\n2,0\n3,0\n").complaint(), HasSubstr("csv:5: column 'tooth'"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0,1e-3\n").complaint(),
+              HasSubstr("csv:2: column 'deviation' = 0.001 [m] is out of range, allowed: -0.0001 ... 0.0001 [m]"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0,wide\n").complaint(), HasSubstr("'wide' is not a finite number"));
+  EXPECT_THAT(TableFile("tooth,error\n0,0.0\n").complaint(), HasSubstr("csv:1: column 'deviation' is missing"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0\n").complaint(), HasSubstr("some.table: "));
+  PitchParameters missing;
+  missing.table = "/nowhere.csv";
+  EXPECT_THROW(pitchDeviations(missing, 3, ""), ParameterError);
+}
+
+TEST(CircularSpline, EccentricityMovesAllSpacesByOneVector)
+{
+  const Parameters parameters = shippedParameters({ "manufacture.circular_spline_eccentricity=[3.0e-6, -2.0e-6]" });
+  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+  for (int k = 0; k < 202; ++k)
+  {
+    const double a = TWO_PI * k / 202;
+    const Eigen::Vector2d moved = errors.space_along[k] * Eigen::Vector2d(std::cos(a), std::sin(a)) +
+                                  errors.space_across[k] * Eigen::Vector2d(-std::sin(a), std::cos(a));
+    EXPECT_NEAR((moved - Eigen::Vector2d(3e-6, -2e-6)).norm(), 0.0, 1e-20);
+  }
+}
+
+TEST(CircularSpline, EllipticityBendsWithoutStretch)
+{
+  const Parameters parameters = shippedParameters({ "manufacture.circular_spline_ellipticity=[3.0e-6, -2.0e-6]" });
+  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+  const double step = TWO_PI / 202;
+  // The farthest space stands half a space from the longest radius at most.
+  EXPECT_NEAR(errors.space_along.maxCoeff(), std::hypot(3e-6, 2e-6), 0.5 * step * step * 3.7e-6);
+  for (int k = 0; k < 202; ++k)
+  {
+    // A ring keeps its length where the slope of the displacement along it makes up for that outwards. The difference of
+    // neighbours is off by (2 step)^2 / 6.
+    const double slope = (errors.space_across[(k + 1) % 202] - errors.space_across[(k + 201) % 202]) / (2.0 * step);
+    EXPECT_NEAR(slope + errors.space_along[k], 0.0, 1e-3 * 3.7e-6);
+  }
+}
+
+/// Every kind of error at once, several times what a good gear has.
+std::vector<std::string> allErrors()
+{
+  return { "manufacture.flexspline_pitch_deviation=20.0e-6", "manufacture.circular_spline_pitch_deviation=30.0e-6",
+           "manufacture.circular_spline_eccentricity=[10.0e-6, 5.0e-6]",
+           "manufacture.circular_spline_ellipticity=[-4.0e-6, 6.0e-6]",
+           "manufacture.wave_generator_eccentricity=[20.0e-6, -10.0e-6]",
+           "manufacture.wave_generator_ellipticity=5.0e-6",
+           // C1 ramps, so that no difference straddles a kink.
+           "mesh.smoothing=20.0e-6", "contact.smoothing=20.0e-6" };
+}
+
+class FaultyGear : public testing::Test
+{
+protected:
+  Parameters parameters_ = shippedParameters(allErrors());
+  RingModel model_{ parameters_ };
+  RingShape shape_{ model_.rest.teeth() };
+  DrivePosition position_;
+};
+
+TEST_F(FaultyGear, ContactsAreTheGradientsOfTheirEnergies)
+{
+  RandomRing ring(30);
+  int meshed = 0;
+  for (int k = 0; k < 8; ++k)
+  {
+    SCOPED_TRACE("shape " + std::to_string(k));
+    ring.draw(model_, shape_, position_);
+    const RingForces forces = meshOf(model_).forces(shape_, position_);
+    meshed += static_cast<int>(std::count(forces.meshed.begin(), forces.meshed.end(), 1));
+    expectGradientAndTangent(meshOf(model_), shape_, position_);
+    expectGradientAndTangent(contactOf(model_), shape_, position_);
+  }
+  EXPECT_GT(meshed, 100);
+}
+
+TEST_F(FaultyGear, EccentricMemberIsTheCentredOneMoved)
+{
+  const auto with = [](const std::string& assignment) { return RingModel(shippedParameters({ assignment })); };
+  const RingModel perfect(shippedParameters());
+  const RingModel spline = with("manufacture.circular_spline_eccentricity=[10.0e-6, -6.0e-6]");
+  const RingModel generator = with("manufacture.wave_generator_eccentricity=[10.0e-6, -6.0e-6]");
+  const auto movedBack = [&](double angle)
+  {
+    RingShape moved = shape_;
+    for (int i = 0; i < shape_.teeth(); ++i)
+    {
+      moved.points.segment<2>(2 * i) -=
+          Eigen::Rotation2D<double>(angle).toRotationMatrix() * Eigen::Vector2d(10e-6, -6e-6);
+    }
+    moved.updateGeometry();
+    return moved;
+  };
+  RandomRing ring(31);
+  for (int k = 0; k < 20; ++k)
+  {
+    ring.draw(perfect, shape_, position_);
+    for (const auto& [faulty, centred, angle] :
+         { std::make_tuple(meshOf(spline), meshOf(perfect), position_.output_angle),
+           std::make_tuple(contactOf(generator), contactOf(perfect), position_.wave_generator_angle) })
+    {
+      const RingForces forces = faulty.forces(shape_, position_);
+      const RingForces expected = centred.forces(movedBack(angle), position_);
+      // Rounding of the coordinates, 4e-18 m, against depths of 1e-6 ... 1e-4 m.
+      EXPECT_NEAR(forces.energy, expected.energy, 1e-9 * expected.energy);
+      EXPECT_LT(relativeError(forces.teeth, expected.teeth), 1e-9);
+    }
+  }
+}
+
+TEST_F(FaultyGear, EllipticityOfTheWaveGeneratorAddsToItsAmplitude)
+{
+  const RingModel perfect(shippedParameters());
+  const RingModel faulty(shippedParameters({ "manufacture.wave_generator_ellipticity=-5.0e-6" }));
+  RandomRing ring(32);
+  ring.draw(perfect, shape_, position_);
+  const RingForces forces = contactOf(faulty).forces(shape_, position_);
+  position_.wave_amplitude -= 5e-6;
+  EXPECT_NEAR(forces.energy, contactOf(perfect).forces(shape_, position_).energy, 1e-12 * forces.energy);
+}
+
+/// Output angle at which the flexspline carries `load`, for each wave generator angle [rad].
+std::vector<double> outputAngles(const Parameters& parameters, double load, const std::vector<double>& angles)
+{
+  const RingModel model(parameters);
+  SolverParameters solver = parameters.solver;
+  solver.force_tolerance = 1e-6;
+  RingEquilibrium ring(model, solver);
+  EXPECT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  std::vector<double> outputs;
+  for (const double angle : angles)
+  {
+    EXPECT_TRUE(balanceOutput(ring, angle, load).ok());
+    outputs.push_back(ring.position().output_angle);
+  }
+  return outputs;
+}
+
+TEST(WholeRing, AnErrorCommonToAllTeethTurnsTheOutput)
+{
+  std::string text = "tooth,deviation\n";
+  for (int i = 0; i < 200; ++i)
+  {
+    text += std::to_string(i) + ",3.0e-6\n";
+  }
+  const TableFile file(text);
+  const std::vector<double> angles{ 0.0, 0.01, 0.3, 1.0, 2.5 };
+  const std::vector<double> perfect = outputAngles(shippedParameters(), 20.0, angles);
+  const std::vector<double> moved =
+      outputAngles(shippedParameters({ "manufacture.flexspline_pitch_table=" + file.pitch().table }), 20.0, angles);
+  const double mid_height = 31.7e-3 + 0.35e-3;  // radius of the teeth's mid-height at the major axis [m]
+  for (std::size_t i = 0; i < angles.size(); ++i)
+  {
+    // The teeth in mesh lie between 31.7 and 32.05 mm from the axis.
+    EXPECT_NEAR(moved[i] - perfect[i], 3e-6 / mid_height, 0.01 * 3e-6 / mid_height);
+    EXPECT_NEAR(moved[i] - perfect[i], moved[0] - perfect[0], 2e-3 * 3e-6 / mid_height);
+  }
+}
+
+TEST(WholeRing, TorquesAreTheWorkOverAnyPath)
+{
+  const Parameters parameters = shippedParameters(allErrors());
+  const RingModel model(parameters);
+  SolverParameters solver = parameters.solver;
+  solver.force_tolerance = 1e-6;
+  RingEquilibrium ring(model, solver);
+  const double w = parameters.gear.wave_amplitude;
+  ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
+  // A loop of the two angles over some tooth pitches, under load on either flank.
+  constexpr int STEPS = 2000;
+  const auto place = [&](int step)
+  {
+    const double a = TWO_PI * step / STEPS;
+    const double motor = 0.2 * (1.0 - std::cos(a));
+    return DrivePosition{ motor, motor / 101.0 + 1e-3 * std::sin(a), w };
+  };
+  ASSERT_TRUE(ring.moveTo(place(0)).ok());
+  const double start = ring.forces().energy;
+  double work = 0.0;
+  double largest = 0.0;
+  double through = 0.0;
+  for (int i = 1; i <= STEPS; ++i)
+  {
+    const DrivePosition from = ring.position();
+    const double motor = ring.forces().wave_generator_torque;
+    const double output = ring.forces().output_torque;
+    ASSERT_TRUE(ring.moveTo(place(i)).ok());
+    const double step = 0.5 * (motor + ring.forces().wave_generator_torque) *
+                            (place(i).wave_generator_angle - from.wave_generator_angle) +
+                        0.5 * (output + ring.forces().output_torque) * (place(i).output_angle - from.output_angle);
+    work += step;
+    through += std::abs(step);
+    largest = std::max(largest, std::abs(start - work - ring.forces().energy));
+  }
+  // The trapezoidal rule over steps of a fiftieth of a tooth pitch.
+  EXPECT_LT(largest, 1e-4 * through);
+  EXPECT_NEAR(ring.forces().energy, start, 1e-9 * start);
+}
+
+TEST(WholeRing, GearAsBuiltConvergesInFewIterations)
+{
+  const Parameters parameters = shippedParameters({}, { "as_built" });
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, parameters.solver);
+  ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  // As at full speed: a tooth pitch a step, under load.
+  constexpr int STEPS = 400;
+  int iterations = 0;
+  int cuts = 0;
+  for (int i = 1; i <= STEPS; ++i)
+  {
+    const double angle = i * model.rest.pitchAngle();
+    const SolveStatus status = ring.moveTo({ angle, angle / 101.0 - 1e-3, parameters.gear.wave_amplitude });
+    ASSERT_TRUE(status.ok());
+    cuts += status.cuts;
+    iterations += status.iterations;
+  }
+  EXPECT_LT(iterations, 5 * STEPS);
+  EXPECT_LE(cuts, STEPS / 100);
+}
+}  // namespace
+}  // namespace hjt
