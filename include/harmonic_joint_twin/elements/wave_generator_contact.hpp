@@ -26,6 +26,10 @@ public:
   /// `forces`: of the same shape and position.
   void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
+  /// Derivative of the stored energy by the wave amplitude: force with which the ring presses it in [N]. `forces`: of the
+  /// same shape and position; law normal.
+  double amplitudeForce(const DrivePosition& position, const RingForces& forces) const noexcept;
+
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 
 private:

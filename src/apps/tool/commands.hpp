@@ -22,6 +22,8 @@ void addLossesCommand(CLI::App& app, int& exit_code);
 void addBreakawayCommand(CLI::App& app, int& exit_code);
 void addHysteresisCommand(CLI::App& app, int& exit_code);
 void addInvariantsCommand(CLI::App& app, int& exit_code);
+void addProfileCommand(CLI::App& app, int& exit_code);
+void addRatchetCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
