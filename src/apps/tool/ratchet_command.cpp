@@ -98,12 +98,15 @@ void addRatchetCommand(CLI::App& app, int& exit_code)
   command
       ->add_option("--lobe-stiffness", options->lobe_stiffness,
                    "radial stiffness of each lobe of the wave generator, default rigid [N/m]")
-      ->check(CLI::Range(1e3, std::numeric_limits<double>::infinity()));
+      ->check(FINITE)
+      ->check(CLI::Range(1e3, 1e15));
   command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
   command->add_option("--angle-step", options->angle_step, "step of the output angle [rad]")
+      ->check(FINITE)
       ->check(CLI::Range(1e-6, 1e-2))
       ->capture_default_str();
   command->add_option("--torque-limit", options->torque_limit, "ends the search if nothing has jumped [N.m]")
+      ->check(FINITE)
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   addCommonOptions(*command, *options);
