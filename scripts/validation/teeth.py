@@ -3,7 +3,7 @@
 import math
 
 from bounds import AtLeast, AtMost, Between, Within
-from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, ToolError
 
 PROFILES = {"trapezoid": ("trapezoid", GREY), "involute": ("involute", BLUE), "cycloid": ("cycloid", ORANGE),
             "double_arc": ("double arc", GREEN)}
@@ -328,7 +328,11 @@ def crossing(angles, values):
 
 
 def ratchet(page, *options, limit=2000):
-    return page.tool("ratchet", "--torque-limit", limit, *options)
+    try:
+        return page.tool("ratchet", "--torque-limit", limit, *options)
+    except ToolError:  # with a wrong parameter a soft gear may stand nowhere: that fails its row, not the page
+        nowhere = {"torque": math.nan, "output_angle": math.nan, "wave_amplitude": math.nan}
+        return {"end": "nowhere", "peak": nowhere, "rows": [nowhere]}
 
 
 def support(stiffness):
