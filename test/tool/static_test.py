@@ -150,15 +150,16 @@ class Stiffness(tool.ToolTest):
     def test_teeth_are_told_on_request(self):
         row = self.succeed_json("stiffness", "--torques", "48", "--teeth")["rows"][0]
         teeth = row["teeth"]
-        self.assertEqual(set(teeth), {"flank_force", "wave_generator_force", "across", "depth", "tilt", "gap"})
+        self.assertEqual(set(teeth), {"tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
+                                      "rim_tension", "bending_force", "mesh_force", "across", "depth", "tilt", "gap"})
         for name, values in teeth.items():
             self.assertEqual(len(values), 200, name)
-        self.assertEqual(sum(force != 0.0 for force in teeth["flank_force"]), row["teeth_loaded"])
-        self.assertEqual(max(map(abs, teeth["flank_force"])), row["mesh_force_max"])
-        for force, gap, depth in zip(teeth["flank_force"], teeth["gap"], teeth["depth"]):
+        self.assertEqual(sum(force != 0.0 for force in teeth["mesh_force"]), row["teeth_loaded"])
+        self.assertEqual(max(map(abs, teeth["mesh_force"])), row["mesh_force_max"])
+        for force, gap, depth in zip(teeth["mesh_force"], teeth["gap"], teeth["depth"]):
             self.assertEqual(force != 0.0, gap < 0.0 < depth)
         # The flanks carry the load: their forces across, at the mean radius of the teeth, which changes by 1 %.
-        across = sum(teeth["flank_force"]) * math.cos(math.radians(17.0))
+        across = sum(teeth["mesh_force"]) * math.cos(math.radians(17.0))
         self.assertAlmostEqual(across * 32.05e-3 / 48.0, 1.0, delta=0.01)
         self.fail_with(2, ["--teeth", "--json"], "stiffness", "--torques", "48", "--teeth")
 
