@@ -29,6 +29,7 @@ struct ToothMesh::Law
   double by_xi_xi{};
   double by_xi_zeta{};
   double by_zeta_zeta{};
+  double cosine{};  // of the flank's angle where the tooth touches
   bool contact{};
 };
 
@@ -78,7 +79,8 @@ ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
   const double depth = zeta + tip_offset_;
-  const double clearance = profile_.halfClearance(zeta) + clearance_[i];
+  const HalfClearance flank = profile_.at(zeta);
+  const double clearance = flank.value + clearance_[i];
   if (depth <= 0.0 || std::abs(xi) <= clearance)
   {
     return law;
@@ -102,13 +104,15 @@ ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
     s2 = 6.0 * (1.0 - 2.0 * u) / (depth_ * depth_);
   }
   const double k = stiffness_[i] * cos_flank_ * cos_flank_;
-  const double slope = profile_.slope();
+  const double slope = flank.slope;
+  law.cosine = flank.cosine;
   law.energy = k * s * energy;
   law.by_xi = k * s * difference;
   law.by_zeta = k * (slope * s * force + s1 * energy);
   law.by_xi_xi = k * s * tangent;
   law.by_xi_zeta = k * (slope * s * (leading.tangent - trailing.tangent) + s1 * difference);
-  law.by_zeta_zeta = k * (slope * slope * s * tangent + 2.0 * slope * s1 * force + s2 * energy);
+  law.by_zeta_zeta =
+      k * (slope * slope * s * tangent + 2.0 * slope * s1 * force + s2 * energy + flank.curvature * s * force);
   return law;
 }
 
@@ -136,7 +140,7 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     forces.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
     forces.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
     forces.meshed[i] = 1;
-    forces.flank_force[i] = at.by_xi / cos_flank_;
+    forces.flank_force[i] = at.by_xi / at.cosine;
     forces.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
     forces.energy += at.energy;
   }
@@ -242,6 +246,15 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
   }
 }
 
+ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& position, int i) const noexcept
+{
+  const Engagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
+  const double xi = tooth.xi + tooth.tooth_ahead;
+  const double zeta = tooth.zeta - tooth.space_out;
+  return { xi, zeta + tip_offset_, std::asin(tooth.across.dot(tooth.chord.normal)),
+           profile_.at(zeta).value + clearance_[i] - std::abs(xi) };
+}
+
 double ToothMesh::slidingSpeed(const RingShape& shape, const DrivePosition& position, int i,
                                const Eigen::VectorXd& speeds, double output_speed, bool leading) const noexcept
 {
@@ -252,7 +265,8 @@ double ToothMesh::slidingSpeed(const RingShape& shape, const DrivePosition& posi
   const Eigen::Vector2d speed = speeds.segment<2>(2 * i) - mid_height_ * tilt * Eigen::Vector2d(-n.y(), n.x());
   const double xi_speed = tooth.across.dot(speed) - output_speed * tooth.zeta;
   const double zeta_speed = tooth.radial.dot(speed) + output_speed * tooth.xi;
-  const double sin_flank = profile_.slope() * cos_flank_;
-  return cos_flank_ * zeta_speed + (leading ? -sin_flank : sin_flank) * xi_speed;
+  const HalfClearance flank = profile_.at(tooth.zeta - tooth.space_out);
+  const double sin_flank = flank.slope * flank.cosine;
+  return flank.cosine * zeta_speed + (leading ? -sin_flank : sin_flank) * xi_speed;
 }
 }  // namespace hjt

@@ -145,4 +145,25 @@ void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& 
     tangent.wave_generator_stiffness += stiffness * lever * lever + force * (1.0 - turn * reach) * reach;
   }
 }
+
+double WaveGeneratorContact::amplitudeForce(const DrivePosition& position, const RingForces& forces) const noexcept
+{
+  const double cos_angle = std::cos(position.wave_generator_angle);
+  const double sin_angle = std::sin(position.wave_generator_angle);
+  const double amplitude = position.wave_amplitude + ellipticity_;
+  const double a = mean_radius_ + amplitude;
+  const double b = mean_radius_ - amplitude;
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < forces.contact_force.size(); ++i)
+  {
+    const double nx = cos_angle * forces.contact_normal[2 * i] + sin_angle * forces.contact_normal[2 * i + 1];
+    const double ny = cos_angle * forces.contact_normal[2 * i + 1] - sin_angle * forces.contact_normal[2 * i];
+    // The foot (a c, b s) at the eccentric angle of this normal moves by (c, -s) per amplitude; the depth by its part
+    // along the normal.
+    const double c = a * nx;
+    const double s = b * ny;
+    sum += forces.contact_force[i] * (c * nx - s * ny) / std::sqrt(c * c + s * s);
+  }
+  return sum;
+}
 }  // namespace hjt

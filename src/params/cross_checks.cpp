@@ -80,6 +80,10 @@ void checkElements(const Parameters& p, Contradictions& check)
   check.require(breakpoints[0] < breakpoints[1], { "cup.torsion_breakpoints" },
                 "cup.torsion_breakpoints = [" + numberText(breakpoints[0]) + ", " + numberText(breakpoints[1]) +
                     "] [N.m] must ascend");
+  check.require(p.mesh.profile == ProfileKind::TRAPEZOID || p.gear.engagementDepth() > 0.0,
+                { "mesh.profile", "gear.tip_radius_circular_spline" },
+                "mesh.profile needs teeth that reach into the circular spline: they end " +
+                    numberText(-p.gear.engagementDepth()) + " [m] short of it");
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
                 "mesh.friction_kinetic = " + numberText(p.mesh.friction_kinetic) +
                     " [-] must not exceed mesh.friction_static = " + numberText(p.mesh.friction_static) + " [-]");

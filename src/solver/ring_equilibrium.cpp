@@ -153,6 +153,85 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   return status;
 }
 
+SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
+{
+  constexpr int MAX_STEPS = 2000;
+  constexpr double FIRST_DAMPING = 1e6;  // N/m, added to every tooth's stiffness
+  constexpr double LEAST_DAMPING = 1e-3;
+  constexpr double MOST_DAMPING = 1e16;
+  start_ = now_;
+  now_.position = target;
+  SolveStatus status;
+  double damping = FIRST_DAMPING;
+  while (status.iterations < MAX_STEPS && damping < MOST_DAMPING)
+  {
+    model_.forces(now_.shape, now_.position, forces_);
+    status.residual = largest(forces_.teeth);
+    if (status.residual > parameters_.force_tolerance)
+    {
+      ++status.iterations;
+      damping = descend(damping) ? std::max(LEAST_DAMPING, 0.2 * damping) : 5.0 * damping;
+      continue;
+    }
+    // In equilibrium as paired. Teeth that have been lifted out may be nearer to another space now.
+    old_space_ = now_.shape.space;
+    if (model_.meshed)
+    {
+      model_.mesh.pairNearest(now_.position, now_.shape);
+    }
+    if (old_space_ == now_.shape.space)
+    {
+      status.code = refactor() ? SolveCode::CONVERGED : SolveCode::SINGULAR;
+      break;
+    }
+    damping = FIRST_DAMPING;
+  }
+  if (status.iterations >= MAX_STEPS || damping >= MOST_DAMPING)
+  {
+    status.code = SolveCode::NOT_CONVERGED;
+  }
+  if (!status.ok())
+  {
+    now_ = start_;
+    model_.forces(now_.shape, now_.position, forces_);
+    return status;
+  }
+  updateSensitivities();
+  now_.residual = status.residual;
+  return status;
+}
+
+/// One damped Newton step, taken if it lowers the energy (or, at the level of rounding, the forces).
+bool RingEquilibrium::descend(double damping) noexcept
+{
+  constexpr double ROUNDING = 1e-12;  // of the energy
+  const double energy = forces_.energy;
+  const double residual = largest(forces_.teeth);
+  model_.tangent(now_.shape, now_.position, forces_, tangent_);
+  for (int i = 0; i < now_.shape.teeth(); ++i)
+  {
+    tangent_.addDiagonal(i, damping * Block2::Identity());
+  }
+  if (!solver_.factor(tangent_))
+  {
+    return false;
+  }
+  step_ = forces_.teeth;
+  solver_.solve<1>(step_);
+  start_points_ = now_.shape.points;
+  now_.shape.points += step_;
+  now_.shape.updateGeometry();
+  model_.forces(now_.shape, now_.position, forces_);
+  if (forces_.energy < energy * (1.0 - ROUNDING) ||
+      (forces_.energy < energy * (1.0 + ROUNDING) && largest(forces_.teeth) < residual))
+  {
+    return true;
+  }
+  now_.shape.points = start_points_;
+  now_.shape.updateGeometry();
+  return false;
+}
+
 /// Straight to the target; where that fails, by halved paths that grow again.
 SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 {

@@ -31,6 +31,11 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
     table.rim_tension.push_back(model.tension.tension(shape, i));
     table.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
     table.mesh_force.push_back(ring.forces().flank_force[i]);
+    const ToothPlace place = model.mesh.place(shape, ring.position(), i);
+    table.across.push_back(place.across);
+    table.depth.push_back(place.depth);
+    table.tilt.push_back(place.tilt);
+    table.gap.push_back(place.gap);
   }
   return table;
 }

@@ -140,6 +140,29 @@ TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergy)
   EXPECT_EQ(ramp > 100, parameters.contact.smoothing > 0.0);
 }
 
+TEST_P(WaveGeneratorContactNormal, AmplitudeForceIsTheDerivativeOfTheEnergyByTheAmplitude)
+{
+  const RingModel model(shippedParameters({ "contact.smoothing=" + GetParam() }));
+  const ElementUnderTest contact = contactOf(model);
+  RandomRing ring(26);
+  RingShape shape(model.rest.teeth());
+  DrivePosition position;
+  for (int k = 0; k < 12; ++k)
+  {
+    ring.draw(model, shape, position);
+    const double force = model.contact.amplitudeForce(position, contact.forces(shape, position));
+    constexpr double STEP = 1e-9;  // m
+    DrivePosition before = position;
+    DrivePosition after = position;
+    before.wave_amplitude -= STEP;
+    after.wave_amplitude += STEP;
+    const double difference = (contact.forces(shape, after).energy - contact.forces(shape, before).energy) /
+                              (after.wave_amplitude - before.wave_amplitude);
+    // Contacts that open within the step count by half its square: some 1e8 N/m * 1e-9 m for a few of 200 teeth.
+    EXPECT_NEAR(force, difference, 1e-6 * std::abs(force) + 0.1) << k;
+  }
+}
+
 TEST(WaveGeneratorContact, PolarLawIsThatOfTheThesis)
 {
   const Parameters parameters = thesisParameters();

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "element_under_test.hpp"
@@ -16,11 +19,13 @@ struct ToothByDefinition
   double xi;
   double zeta;
   double clearance;
+  double slope;  // of the flank: tangent of its angle
   double depth;
   double energy{};
   double normal_force{};
 
-  ToothByDefinition(const Parameters& parameters, const RingShape& shape, const DrivePosition& position, int i)
+  ToothByDefinition(const Parameters& parameters, const ToothProfile& profile, const RingShape& shape,
+                    const DrivePosition& position, int i)
   {
     const GearParameters& gear = parameters.gear;
     const MeshParameters& mesh = parameters.mesh;
@@ -35,6 +40,12 @@ struct ToothByDefinition
     zeta = x * std::cos(axis) + y * std::sin(axis);
     clearance = mesh.flank_clearance +
                 (gear.flexspline_inner_radius + mid_height + gear.wave_amplitude - zeta) * std::tan(mesh.flank_angle);
+    slope = std::tan(mesh.flank_angle);
+    if (mesh.profile != ProfileKind::TRAPEZOID)  // tooth_profile_test.cpp says what they have to be
+    {
+      clearance = profile.at(zeta).value;
+      slope = profile.at(zeta).slope;
+    }
     depth = zeta + 0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline;
     const double u = std::clamp(depth / mesh.engagement_depth, 0.0, 1.0);
     const double engaged = u * u * (3.0 - 2.0 * u);
@@ -47,7 +58,7 @@ struct ToothByDefinition
       const double force = ramp ? 0.5 * pen * pen / width : pen - 0.5 * width;
       const double work = ramp ? pen * pen * pen / (6.0 * width) : 0.5 * pen * (pen - width) + width * width / 6.0;
       energy += mesh.stiffness * cos_flank * cos_flank * engaged * work;
-      normal_force += side * mesh.stiffness * cos_flank * engaged * force;
+      normal_force += side * mesh.stiffness * cos_flank * cos_flank * std::hypot(1.0, slope) * engaged * force;
     }
   }
 
@@ -63,7 +74,8 @@ struct ToothByDefinition
   }
 };
 
-class Mesh : public testing::TestWithParam<std::string>
+/// Smoothing of the contact, profile of the flanks.
+class Mesh : public testing::TestWithParam<std::tuple<std::string, std::string>>
 {
 protected:
   /// A shape no tooth of which stands so near a kink of the law that a difference would straddle it.
@@ -81,14 +93,18 @@ protected:
     }
   }
 
-  ToothByDefinition tooth(int i) const { return { parameters_, shape_, position_, i }; }
+  ToothByDefinition tooth(int i) const { return { parameters_, profile_, shape_, position_, i }; }
 
-  Parameters parameters_ = shippedParameters({ "mesh.smoothing=" + GetParam() });
+  Parameters parameters_ =
+      shippedParameters({ "mesh.smoothing=" + std::get<0>(GetParam()), "mesh.profile=" + std::get<1>(GetParam()) });
+  ToothProfile profile_{ parameters_.mesh, parameters_.gear };
   RingModel model_{ parameters_ };
   RingShape shape_{ model_.rest.teeth() };
   DrivePosition position_;
 };
-INSTANTIATE_TEST_SUITE_P(Smoothing, Mesh, testing::Values("0.0", "20.0e-6"));
+INSTANTIATE_TEST_SUITE_P(SmoothingAndProfile, Mesh,
+                         testing::Combine(testing::Values("0.0", "20.0e-6"),
+                                          testing::Values("trapezoid", "involute", "cycloid", "double_arc")));
 
 TEST_P(Mesh, IsTheGradientOfItsEnergy)
 {
@@ -137,6 +153,23 @@ TEST_P(Mesh, HasTheEnergyAndTheForcesOfItsLaw)
       ASSERT_NEAR(forces.flank_force[i], at.normal_force, 1e-8 + 1e-11 * std::abs(at.normal_force)) << i;
     }
     EXPECT_NEAR(forces.energy, energy, 1e-11 * energy);
+  }
+}
+
+TEST_P(Mesh, SaysWhereAToothStands)
+{
+  RandomRing ring(25);
+  ring.draw(model_, shape_, position_);
+  for (int i = 0; i < shape_.teeth(); ++i)
+  {
+    const ToothByDefinition at = tooth(i);
+    const ToothPlace place = model_.mesh.place(shape_, position_, i);
+    ASSERT_NEAR(place.across, at.xi, 1e-15) << i;
+    ASSERT_NEAR(place.depth, at.depth, 1e-15) << i;
+    ASSERT_NEAR(place.gap, at.clearance - std::abs(at.xi), 1e-15) << i;
+    const double axis = position_.output_angle + TWO_PI * shape_.space[i] / parameters_.gear.teeth_circular_spline;
+    const Eigen::Vector2d normal = shape_.chord(i).normal;
+    ASSERT_NEAR(place.tilt, std::remainder(std::atan2(normal.y(), normal.x()) - axis, TWO_PI), 1e-12) << i;
   }
 }
 
@@ -208,7 +241,6 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
     speeds[k] = ring.uniform(-1.0, 1.0);
   }
   const double output_speed = 7.0;
-  const double beta = parameters_.mesh.flank_angle;
   const auto placeAfter = [&](double time, int i)
   {
     RingShape moved = shape_;
@@ -216,7 +248,7 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
     moved.updateGeometry();
     DrivePosition position = position_;
     position.output_angle += time * output_speed;
-    const ToothByDefinition at(parameters_, moved, position, i);
+    const ToothByDefinition at(parameters_, profile_, moved, position, i);
     return Eigen::Vector2d(at.xi, at.zeta);
   };
   constexpr double TIME = 1e-8;  // s
@@ -226,6 +258,7 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
     for (const bool leading : { true, false })
     {
       // The leading flank's normal leans inwards: along it zeta grows as xi falls by tan(beta).
+      const double beta = std::atan(tooth(i).slope);
       const double along = std::cos(beta) * speed.y() + (leading ? -1.0 : 1.0) * std::sin(beta) * speed.x();
       // Rounding of the place, 4e-18 m, over 2e-8 s; speeds are of order 1 m/s.
       EXPECT_NEAR(model_.mesh.slidingSpeed(shape_, position_, i, speeds, output_speed, leading), along, 1e-7);
@@ -243,8 +276,9 @@ TEST(MeshGeometry, IsConjugateAtTheMajorAxis)
   const DrivePosition position{ 0.0, 0.0, w0 };
   RingShape shape = model.restShape(position);
   pressOnWaveGenerator(model.rest, position, 0.0, shape);
-  const ToothByDefinition first(parameters, shape, position, 1);
-  const ToothByDefinition second(parameters, shape, position, 2);
+  const ToothProfile profile(parameters.mesh, parameters.gear);
+  const ToothByDefinition first(parameters, profile, shape, position, 1);
+  const ToothByDefinition second(parameters, profile, shape, position, 2);
   // Teeth move over their spaces by xi a tooth: nearly nothing beside a tooth, where the undeformed ring would have
   // 2 pi (1/200 - 1/202) r_m = 9.9 um.
   EXPECT_LT(std::abs(second.xi - first.xi), 1.0e-6);

@@ -147,6 +147,75 @@ class Stiffness(tool.ToolTest):
         self.assertAlmostEqual(back["output_angle"], -forth["output_angle"], delta=1e-9)
 
 
+    def test_teeth_are_told_on_request(self):
+        row = self.succeed_json("stiffness", "--torques", "48", "--teeth")["rows"][0]
+        teeth = row["teeth"]
+        self.assertEqual(set(teeth), {"tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
+                                      "rim_tension", "bending_force", "mesh_force", "across", "depth", "tilt", "gap"})
+        for name, values in teeth.items():
+            self.assertEqual(len(values), 200, name)
+        self.assertEqual(sum(force != 0.0 for force in teeth["mesh_force"]), row["teeth_loaded"])
+        self.assertEqual(max(map(abs, teeth["mesh_force"])), row["mesh_force_max"])
+        for force, gap, depth in zip(teeth["mesh_force"], teeth["gap"], teeth["depth"]):
+            self.assertEqual(force != 0.0, gap < 0.0 < depth)
+        # The flanks carry the load: their forces across, at the mean radius of the teeth, which changes by 1 %.
+        across = sum(teeth["mesh_force"]) * math.cos(math.radians(17.0))
+        self.assertAlmostEqual(across * 32.05e-3 / 48.0, 1.0, delta=0.01)
+        self.fail_with(2, ["--teeth", "--json"], "stiffness", "--torques", "48", "--teeth")
+
+
+class Profile(tool.ToolTest):
+    def test_profiles_differ_but_share_full_engagement(self):
+        seen = set()
+        for profile in ["trapezoid", "involute", "cycloid", "double_arc"]:
+            result = self.succeed_json("profile", "--set", f"mesh.profile={profile}")
+            self.assertEqual(set(result), {"clearance", "tooth", "space"})
+            clearance = result["clearance"]
+            self.assertEqual((len(clearance["drop"]), clearance["drop"][0]), (101, 0.0))
+            self.assertAlmostEqual(clearance["half_clearance"][0], -1.0e-6, delta=1e-15)
+            self.assertEqual(len(result["tooth"]["below_tip"]), len(result["tooth"]["half_thickness"]))
+            self.assertEqual(len(result["space"]["above_tip"]), len(result["space"]["half_width"]))
+            seen.add(tuple(clearance["half_clearance"]))
+        self.assertEqual(len(seen), 4)
+
+    def test_unknown_profile_and_teeth_that_do_not_engage_are_named(self):
+        self.fail_with(1, ["mesh.profile", "'round'", "trapezoid or involute or cycloid or double_arc"],
+                       "profile", "--set", "mesh.profile=round")
+        self.fail_with(1, ["mesh.profile needs teeth that reach into the circular spline"],
+                       "profile", "--set", "mesh.profile=cycloid", "--set", "gear.tip_radius_circular_spline=33.0e-3")
+        self.fail_with(1, ["do not reach into the circular spline"],
+                       "profile", "--set", "gear.tip_radius_circular_spline=33.0e-3")
+
+    def test_table_names_units(self):
+        self.assertIn("half clearance [m]", self.succeed("profile").stdout)
+
+
+class Ratchet(tool.ToolTest):
+    KEYS = {"output_angle", "torque", "wave_amplitude", "lobe_force", "depth_max", "mesh_force_max",
+            "wave_generator_force_max", "teeth_loaded", "snaps", "teeth_jumped"}
+
+    def test_teeth_jump_from_a_soft_wave_generator_and_not_from_a_stiff_one(self):
+        soft = self.succeed_json("ratchet", "--set", "contact.stiffness=3.0e+5")
+        self.assertEqual(soft["end"], "teeth jumped")
+        self.assertEqual(set(soft["peak"]), self.KEYS)
+        self.assertEqual(soft["peak"]["torque"], max(row["torque"] for row in soft["rows"]))
+        stiff = self.succeed_json("ratchet", "--torque-limit", 600)
+        self.assertEqual(stiff["end"], "limit reached")
+        self.assertGreater(stiff["peak"]["torque"], 600)
+        self.assertEqual(stiff["peak"]["wave_amplitude"], 0.35e-3)
+
+    def test_lobes_give_way(self):
+        result = self.succeed_json("ratchet", "--torque-limit", 300, "--lobe-stiffness", 1e7)
+        self.assertLess(result["peak"]["wave_amplitude"], 0.35e-3)
+        self.assertRegex(self.succeed("ratchet", "--torque-limit", 100).stdout, r"largest torque +\d+\.\d+ N\.m")
+
+    def test_wrong_usage(self):
+        for arguments in [["--lobe-stiffness", "0"], ["--lobe-stiffness", "nan"], ["--angle-step", "0"],
+                          ["--torque-limit", "-5"], ["--angle", "inf"]]:
+            with self.subTest(arguments):
+                self.fail_with(2, [], "ratchet", *arguments)
+
+
 class Turn(tool.ToolTest):
     def test_output_follows_by_the_ratio_over_a_tooth_pitch(self):
         angle = 2 * math.pi / 200

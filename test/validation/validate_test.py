@@ -55,6 +55,11 @@ class Validate(unittest.TestCase):
                    ["manufacture.perfect", "manufacture.flexspline_not_the_other", "manufacture.as_built_order_2",
                     "manufacture.as_built_range"], ["manufacture"])
 
+    def test_other_flanks_fail_the_teeth(self):
+        self.fails(["mesh.stiffness=1.0e+8"], ["teeth.involute_in_mesh", "teeth.double_arc_in_mesh_150"], ["teeth"])
+        self.fails(["mesh.flank_angle=0.2"], ["teeth.no_interference_trapezoid", "teeth.interference_free"], ["teeth"])
+        self.fails(["gear.wave_amplitude=0.33e-3"], ["teeth.no_interference_double_arc"], ["teeth"])
+
     def test_page_and_exit_codes(self):
         with tempfile.TemporaryDirectory() as out:
             code, _, said = validate("--section", "catalogue", "--out", out)

@@ -13,6 +13,15 @@
 
 namespace hjt
 {
+/// Where a tooth stands in its space.
+struct ToothPlace
+{
+  double across;  ///< of the axis of the space, counter-clockwise > 0 [m]
+  double depth;   ///< of the tip below the circular spline's tip circle; < 0 outside [m]
+  double tilt;    ///< of the tooth against the axis, counter-clockwise > 0 [rad]
+  double gap;     ///< to the nearer flank, across; < 0 pressed [m]
+};
+
 /// Contact of the flexspline's teeth with the flanks of the circular spline (completes thesis ch. 7.4-7.5).
 ///
 /// Energy:  U = sum_i k_i cos^2(beta) [r(xi_i - c_i) + r(-xi_i - c_i)] s(d_i), r the contact ramp
@@ -21,6 +30,7 @@ namespace hjt
 ///                  plus the error of the tooth, minus that of the space                                    [m]
 ///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
 ///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
+///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
 ///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - r_a             [m]
 ///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
 ///          k_i     stiffness of the tooth pair along the flank normal, >= 0                                [N/m]
@@ -39,6 +49,8 @@ public:
 
   /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
   void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
+
+  ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
 
   /// Sliding of tooth i along the loaded flank [m/s] for speeds of the ring's points and of the output.
   double slidingSpeed(const RingShape& shape, const DrivePosition& position, int i, const Eigen::VectorXd& speeds,
@@ -71,7 +83,7 @@ private:
   double smoothing_;
   double cos_flank_;
   double half_space_;  // tangent of half a space
-  StraightFlank profile_;
+  ToothProfile profile_;
   std::vector<Space> space_;
   Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
   Eigen::VectorXd stiffness_;

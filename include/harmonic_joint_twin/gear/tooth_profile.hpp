@@ -1,36 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
-/// Half clearance between a flexspline tooth and its space, over the tooth's distance along the axis of the space.
-/// The straight flank of the trapezoid profile (thesis §3.2.1):
+/// Half clearance between a flexspline tooth and its space, with its derivatives.
+struct HalfClearance
+{
+  double value;      ///< < 0: interference [m]
+  double slope;      ///< minus the derivative along the axis of the space: tangent of the flank's angle there [-]
+  double curvature;  ///< derivative of the slope [1/m]
+  double cosine;     ///< of the flank's angle there [-]
+};
+
+/// Half clearance over zeta, the tooth's distance along the axis of its space, for each profile of thesis §3.2.
 ///
-///   c(zeta) = c0 + (r0 + z_t + w0 - zeta) tan(beta)
+/// trapezoid:  c(zeta) = c0 + (r0 + z_t + w0 - zeta) tan(beta), in closed form
+/// others:     c(zeta) = c0 + min over y of [s(zeta + y) - t(y)], less the same at full engagement
+/// where       c0      half clearance at full engagement, zeta = r0 + z_t + w0       [m]
+///             beta    flank angle                                                   [rad]
+///             t, s    half thickness of the tooth at the height y, half width of its space (gear/flank_shapes.hpp), the
+///                     minimum taken where the two lie beside each other             [m]
 ///
-/// c0 at full engagement, beta the flank angle. [m]
-class StraightFlank
+/// The minimum is tabled over the engagement and a little beyond, and joined by a C2 spline that goes on straight.
+class ToothProfile
 {
 public:
-  StraightFlank(const MeshParameters& mesh, const GearParameters& gear)
-    : clearance_(mesh.flank_clearance)
-    , full_engagement_(gear.flexspline_inner_radius + gear.toothMidHeight() + gear.wave_amplitude)
-    , slope_(std::tan(mesh.flank_angle))
+  ToothProfile(const MeshParameters& mesh, const GearParameters& gear);
+
+  HalfClearance at(double zeta) const noexcept
   {
+    if (cubics_.empty())
+    {
+      return { clearance_ + (full_engagement_ - zeta) * slope_, slope_, 0.0, cosine_ };
+    }
+    return tabled(zeta);
   }
 
-  double halfClearance(double zeta) const noexcept { return clearance_ + (full_engagement_ - zeta) * slope_; }
-
-  /// Minus the derivative of the half clearance by zeta: tan(beta) [-].
-  double slope() const noexcept { return slope_; }
-
 private:
+  HalfClearance tabled(double zeta) const noexcept;
+
   double clearance_;
   double full_engagement_;
   double slope_;
+  double cosine_;
+  double start_{};                             // of the table [m]
+  double interval_{};                          // [m]
+  std::vector<std::array<double, 4>> cubics_;  // of the half clearance, over the distance from each interval's start
 };
 }  // namespace hjt

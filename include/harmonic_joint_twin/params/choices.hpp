@@ -22,6 +22,14 @@ constexpr ChoiceNames<ContactLaw, 2> choiceNames(ContactLaw)
   return { { { "polar", ContactLaw::POLAR }, { "normal", ContactLaw::NORMAL } } };
 }
 
+constexpr ChoiceNames<ProfileKind, 4> choiceNames(ProfileKind)
+{
+  return { { { "trapezoid", ProfileKind::TRAPEZOID },
+             { "involute", ProfileKind::INVOLUTE },
+             { "cycloid", ProfileKind::CYCLOID },
+             { "double_arc", ProfileKind::DOUBLE_ARC } } };
+}
+
 constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
 {
   return { { { "leapfrog", StepperKind::LEAPFROG }, { "runge_kutta4", StepperKind::RUNGE_KUTTA4 } } };

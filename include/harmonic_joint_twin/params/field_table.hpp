@@ -83,9 +83,14 @@ void visitFields(P& p, Visitor&& visit)
   visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
         "distance between the neutral fibres of rim and outer race: lever of the slip between them");
 
+  visit("mesh.profile", p.mesh.profile, "shape of the tooth flanks (thesis section 3.2)");
   visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{ 0.0, 1e12 },
         "stiffness of a tooth pair along the flank normal");
   visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle of the flank from the tooth's axis");
+  visit("mesh.tangent_angle", "rad", p.mesh.tangent_angle, Range{ 0.0, 1.4 },
+        "double arc: angle of the common tangent of both arcs from the tooth's axis");
+  visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
+        "double arc: height of the common tangent, at mid-height of the tooth");
   visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
         "half clearance at full engagement; negative = interference");
   visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },

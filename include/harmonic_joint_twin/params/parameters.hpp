@@ -21,6 +21,13 @@ struct GearParameters
 
   /// Distance from the inner rim to mid-height of a tooth [m].
   double toothMidHeight() const { return rim_thickness + 0.5 * tooth_height_flexspline; }
+
+  /// How far a tooth's tip reaches into the circular spline at the major axis [m].
+  double engagementDepth() const
+  {
+    return flexspline_inner_radius + wave_amplitude + rim_thickness + tooth_height_flexspline -
+           tip_radius_circular_spline;
+  }
 };
 
 /// Which rotation the rim resists: of each segment from rest (thesis 5.47-5.53), or between neighbouring segments.
@@ -56,10 +63,22 @@ struct ContactParameters
   double slip_lever{};
 };
 
+/// Shape of the teeth's flanks, thesis section 3.2.
+enum class ProfileKind
+{
+  TRAPEZOID,
+  INVOLUTE,
+  CYCLOID,
+  DOUBLE_ARC
+};
+
 struct MeshParameters
 {
+  ProfileKind profile{};
   double stiffness{};
   double flank_angle{};
+  double tangent_angle{};
+  double tangent_length{};
   double flank_clearance{};
   double engagement_depth{};
   double smoothing{};

@@ -51,6 +51,10 @@ public:
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
+  /// Where `moveTo` found no way because the ring snaps: downhill in energy to the next equilibrium, teeth that are lifted
+  /// out of their spaces pairing anew on the way. Slow; `iterations` counts its steps. On failure the last state stays.
+  SolveStatus settle(const DrivePosition& target) noexcept;
+
   const RingModel& model() const noexcept { return model_; }
   const RingShape& shape() const noexcept { return now_.shape; }
   const DrivePosition& position() const noexcept { return now_.position; }
@@ -84,6 +88,7 @@ private:
   void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
   void updateForces() noexcept;
   SolveStatus approach(const DrivePosition& target) noexcept;
+  bool descend(double damping) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
   void turnSpaces(int pitches) noexcept;
   void shift(int pitches) noexcept;

@@ -19,6 +19,11 @@ struct ToothTable
   std::vector<double> rim_tension;           ///< to the next tooth [N]
   std::vector<double> bending_force;         ///< of the segment to the next tooth [N]
   std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
+  // Where it stands in its space of the circular spline, see ToothPlace.
+  std::vector<double> across;  ///< [m]
+  std::vector<double> depth;   ///< [m]
+  std::vector<double> tilt;    ///< [rad]
+  std::vector<double> gap;     ///< [m]
 };
 
 /// Static equilibrium after the insertion, circular spline left out (thesis ch. 5-6).

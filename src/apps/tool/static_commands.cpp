@@ -22,34 +22,63 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
-/// What every tooth is written with, in the order of `toothValues`.
-std::vector<std::string> toothColumns()
+/// One quantity of every tooth: its name in files and documents, its place in the table.
+struct ToothColumn
 {
-  return { "tooth",       "tooth_x",       "tooth_y",   "radius", "angle_deviation", "wave_generator_force",
-           "rim_tension", "bending_force", "mesh_force" };
+  const char* name;
+  std::vector<double> ToothTable::*values;
+};
+const std::vector<ToothColumn> RING_COLUMNS{ { "tooth_x", &ToothTable::tooth_x },
+                                             { "tooth_y", &ToothTable::tooth_y },
+                                             { "radius", &ToothTable::radius },
+                                             { "angle_deviation", &ToothTable::angle_deviation },
+                                             { "wave_generator_force", &ToothTable::wave_generator_force },
+                                             { "rim_tension", &ToothTable::rim_tension },
+                                             { "bending_force", &ToothTable::bending_force },
+                                             { "mesh_force", &ToothTable::mesh_force } };
+/// Only where there is a circular spline.
+const std::vector<ToothColumn> SPACE_COLUMNS{ { "across", &ToothTable::across },
+                                              { "depth", &ToothTable::depth },
+                                              { "tilt", &ToothTable::tilt },
+                                              { "gap", &ToothTable::gap } };
+
+std::vector<ToothColumn> meshColumns()
+{
+  std::vector<ToothColumn> columns = RING_COLUMNS;
+  columns.insert(columns.end(), SPACE_COLUMNS.begin(), SPACE_COLUMNS.end());
+  return columns;
 }
 
-std::vector<double> toothValues(const ToothTable& teeth, std::size_t i)
+std::vector<std::string> headings(std::vector<std::string> leading, const std::vector<ToothColumn>& columns)
 {
-  return { static_cast<double>(i), teeth.tooth_x[i],         teeth.tooth_y[i],
-           teeth.radius[i],        teeth.angle_deviation[i], teeth.wave_generator_force[i],
-           teeth.rim_tension[i],   teeth.bending_force[i],   teeth.mesh_force[i] };
+  leading.emplace_back("tooth");
+  for (const ToothColumn& column : columns)
+  {
+    leading.emplace_back(column.name);
+  }
+  return leading;
+}
+
+/// One line a tooth, each begun with `leading`.
+void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothTable& teeth,
+                const std::vector<ToothColumn>& columns)
+{
+  for (std::size_t i = 0; i < teeth.radius.size(); ++i)
+  {
+    std::vector<double> values = leading;
+    values.push_back(static_cast<double>(i));
+    for (const ToothColumn& column : columns)
+    {
+      values.push_back((teeth.*column.values)[i]);
+    }
+    csv.writeRow(values);
+  }
 }
 
 struct InsertOptions : CommonOptions
 {
   std::string csv;
 };
-
-void writeTeeth(const std::string& path, const InsertionResult& result)
-{
-  CsvWriter csv(path, toothColumns());
-  for (std::size_t i = 0; i < result.teeth.radius.size(); ++i)
-  {
-    csv.writeRow(toothValues(result.teeth, i));
-  }
-  csv.close();
-}
 
 int insert(const InsertOptions& options)
 {
@@ -65,7 +94,9 @@ int insert(const InsertOptions& options)
   }
   if (!options.csv.empty())
   {
-    writeTeeth(options.csv, result);
+    CsvWriter csv(options.csv, headings({}, RING_COLUMNS));
+    writeTeeth(csv, {}, result.teeth, RING_COLUMNS);
+    csv.close();
   }
   if (options.json)
   {
@@ -104,21 +135,25 @@ struct StiffnessOptions : CommonOptions
   std::vector<double> torques;
   double angle{};
   std::string csv;
+  bool teeth{};
 };
+
+Json teethJson(const ToothTable& teeth)
+{
+  Json json;
+  for (const ToothColumn& column : meshColumns())
+  {
+    json[column.name] = teeth.*column.values;
+  }
+  return json;
+}
 
 void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
 {
-  std::vector<std::string> columns = toothColumns();
-  columns.insert(columns.begin(), "torque");
-  CsvWriter csv(path, columns);
+  CsvWriter csv(path, headings({ "torque" }, meshColumns()));
   for (const StiffnessRow& row : rows)
   {
-    for (std::size_t i = 0; i < row.teeth.radius.size(); ++i)
-    {
-      std::vector<double> values = toothValues(row.teeth, i);
-      values.insert(values.begin(), row.torque);
-      csv.writeRow(values);
-    }
+    writeTeeth(csv, { row.torque }, row.teeth, meshColumns());
   }
   csv.close();
 }
@@ -148,6 +183,10 @@ int stiffness(const StiffnessOptions& options)
                           { "mesh_force_max", row.mesh_force_max },
                           { "wave_generator_force_sum", row.wave_generator_force_sum },
                           { "residual", row.residual } });
+    if (options.teeth)
+    {
+      json_rows.back()["teeth"] = teethJson(row.teeth);
+    }
     table.push_back({ row.torque, row.output_angle, row.wave_generator_torque, static_cast<double>(row.teeth_loaded),
                       row.mesh_force_max, row.wave_generator_force_sum, row.residual });
   }
@@ -231,6 +270,11 @@ void addStiffnessCommand(CLI::App& app, int& exit_code)
   command->add_option("--csv", options->csv, "write positions and forces of every tooth at every torque")
       ->type_name("FILE");
   addCommonOptions(*command, *options);
+  command
+      ->add_flag(
+          "--teeth", options->teeth,
+          "every tooth's forces [N], place in its space [m], tilt [rad] and gap to the nearer flank [m]; with --json")
+      ->needs("--json");
   command->callback([options, &exit_code] { exit_code = stiffness(*options); });
 }
 
