@@ -10,6 +10,7 @@ from page import BLUE, GREEN, GREY, ORANGE, RED
 
 ARCSEC = math.pi / 180.0 / 3600.0  # [rad]
 JOINT_TURN = 101  # motor turns
+# The tooth pass, 200 a motor turn, folds to multiples of 10 orders; with fewer samples its sidebands would reach order 4.
 STEPS_PER_MOTOR_TURN = 90
 # Lines a joint turn of what is met twice a turn of the motor against the housing, and against the output.
 FLEXSPLINE, CIRCULAR_SPLINE = 202, 200
