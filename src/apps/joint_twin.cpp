@@ -20,6 +20,8 @@ int main(int argc, char** argv)
   hjt::addHysteresisCommand(app, exit_code);
   hjt::addInvariantsCommand(app, exit_code);
   hjt::addManufactureCommand(app, exit_code);
+  hjt::addTransientCommand(app, exit_code);
+  hjt::addDynamicsCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);

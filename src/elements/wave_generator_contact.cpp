@@ -145,4 +145,26 @@ void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& 
     tangent.wave_generator_stiffness += stiffness * lever * lever + force * (1.0 - turn * reach) * reach;
   }
 }
+
+void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
+                                              Eigen::VectorXd& rates) const noexcept
+{
+  const double c = std::cos(position.wave_generator_angle);
+  const double s = std::sin(position.wave_generator_angle);
+  const double a = mean_radius_ + position.wave_amplitude + ellipticity_;
+  const double b = mean_radius_ - position.wave_amplitude - ellipticity_;
+  for (Eigen::Index i = 0; i < rates.size(); ++i)
+  {
+    rates[i] = 0.0;
+    if (forces.contact_force[i] > 0.0)
+    {
+      const double nx = c * forces.contact_normal[2 * i] + s * forces.contact_normal[2 * i + 1];
+      const double ny = c * forces.contact_normal[2 * i + 1] - s * forces.contact_normal[2 * i];
+      // The point on the surface is (a u, b v), (u, v) a unit vector; it moves by (u, -v).
+      const double u = law_ == ContactLaw::POLAR ? a * a * nx : a * nx;
+      const double v = law_ == ContactLaw::POLAR ? b * b * ny : b * ny;
+      rates[i] = (u * nx - v * ny) / std::sqrt(u * u + v * v);
+    }
+  }
+}
 }  // namespace hjt

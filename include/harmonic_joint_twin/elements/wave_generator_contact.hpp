@@ -30,6 +30,10 @@ public:
 
   /// Of the ellipse, in the housing's axes [m].
   Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
+  /// Advance of the wave generator's surface along the normal of each touching tooth by the wave amplitude, 0 for the
+  /// others; N [-]. `forces`: of the same position.
+  void surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
+                          Eigen::VectorXd& rates) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 

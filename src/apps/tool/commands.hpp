@@ -23,6 +23,8 @@ void addBreakawayCommand(CLI::App& app, int& exit_code);
 void addHysteresisCommand(CLI::App& app, int& exit_code);
 void addInvariantsCommand(CLI::App& app, int& exit_code);
 void addManufactureCommand(CLI::App& app, int& exit_code);
+void addTransientCommand(CLI::App& app, int& exit_code);
+void addDynamicsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
