@@ -53,35 +53,4 @@ double InterfaceFriction::torque(const RingShape& shape, const RingForces& force
   }
   return parameters_.friction_coefficient * parameters_.slip_lever * sum;
 }
-
-void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
-                      JointFriction& friction) const noexcept
-{
-  const double* m = rates.by_motor.data();
-  const double* o = rates.by_output.data();
-  double mm = tooth_ * rates.by_motor.squaredNorm();
-  double mo = tooth_ * rates.by_motor.dot(rates.by_output);
-  double oo = tooth_ * rates.by_output.squaredNorm();
-  for (int i = 0; i < shape.teeth(); ++i)
-  {
-    const int j = shape.next(i);
-    const double dx = shape.directions[2 * i];
-    const double dy = shape.directions[2 * i + 1];
-    const double stretch_m = dx * (m[2 * j] - m[2 * i]) + dy * (m[2 * j + 1] - m[2 * i + 1]);
-    const double stretch_o = dx * (o[2 * j] - o[2 * i]) + dy * (o[2 * j + 1] - o[2 * i + 1]);
-    const bool touching = forces.contact_force[i] > 0.0;
-    const double nx = forces.contact_normal[2 * i];
-    const double ny = forces.contact_normal[2 * i + 1];
-    const double surface = shape.points[2 * i] * ny - shape.points[2 * i + 1] * nx;
-    const double depth_m = touching ? surface - nx * m[2 * i] - ny * m[2 * i + 1] : 0.0;
-    const double depth_o = touching ? -nx * o[2 * i] - ny * o[2 * i + 1] : 0.0;
-    mm += tension_ * stretch_m * stretch_m + contact_ * depth_m * depth_m;
-    mo += tension_ * stretch_m * stretch_o + contact_ * depth_m * depth_o;
-    oo += tension_ * stretch_o * stretch_o + contact_ * depth_o * depth_o;
-  }
-  friction.viscous(0, 0) += mm;
-  friction.viscous(0, 1) += mo;
-  friction.viscous(1, 0) += mo;
-  friction.viscous(1, 1) += oo;
-}
 }  // namespace hjt

@@ -146,24 +146,25 @@ void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& 
   }
 }
 
-double WaveGeneratorContact::amplitudeForce(const DrivePosition& position, const RingForces& forces) const noexcept
+void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
+                                              Eigen::VectorXd& rates) const noexcept
 {
-  const double cos_angle = std::cos(position.wave_generator_angle);
-  const double sin_angle = std::sin(position.wave_generator_angle);
-  const double amplitude = position.wave_amplitude + ellipticity_;
-  const double a = mean_radius_ + amplitude;
-  const double b = mean_radius_ - amplitude;
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < forces.contact_force.size(); ++i)
+  const double c = std::cos(position.wave_generator_angle);
+  const double s = std::sin(position.wave_generator_angle);
+  const double a = mean_radius_ + position.wave_amplitude + ellipticity_;
+  const double b = mean_radius_ - position.wave_amplitude - ellipticity_;
+  for (Eigen::Index i = 0; i < rates.size(); ++i)
   {
-    const double nx = cos_angle * forces.contact_normal[2 * i] + sin_angle * forces.contact_normal[2 * i + 1];
-    const double ny = cos_angle * forces.contact_normal[2 * i + 1] - sin_angle * forces.contact_normal[2 * i];
-    // The foot (a c, b s) at the eccentric angle of this normal moves by (c, -s) per amplitude; the depth by its part
-    // along the normal.
-    const double c = a * nx;
-    const double s = b * ny;
-    sum += forces.contact_force[i] * (c * nx - s * ny) / std::sqrt(c * c + s * s);
+    rates[i] = 0.0;
+    if (forces.contact_force[i] > 0.0)
+    {
+      const double nx = c * forces.contact_normal[2 * i] + s * forces.contact_normal[2 * i + 1];
+      const double ny = c * forces.contact_normal[2 * i + 1] - s * forces.contact_normal[2 * i];
+      // The point on the surface is (a u, b v), (u, v) a unit vector; it moves by (u, -v).
+      const double u = law_ == ContactLaw::POLAR ? a * a * nx : a * nx;
+      const double v = law_ == ContactLaw::POLAR ? b * b * ny : b * ny;
+      rates[i] = (u * nx - v * ny) / std::sqrt(u * u + v * v);
+    }
   }
-  return sum;
 }
 }  // namespace hjt

@@ -15,7 +15,11 @@ class CompliantDrive
 {
 public:
   CompliantDrive(RingEquilibrium& ring, double lobe_stiffness)
-    : ring_(ring), stiffness_(lobe_stiffness), amplitude_(ring.position().wave_amplitude), unloaded_(amplitudeForce())
+    : ring_(ring)
+    , stiffness_(lobe_stiffness)
+    , amplitude_(ring.position().wave_amplitude)
+    , surface_(ring.shape().teeth())
+    , unloaded_(amplitudeForce())
   {
   }
 
@@ -31,13 +35,18 @@ public:
   int snaps() const { return snaps_; }
 
   /// Of the ring on each lobe, beyond no load [N].
-  double lobeForce() const { return 0.5 * (amplitudeForce() - unloaded_); }
+  double lobeForce() { return 0.5 * (amplitudeForce() - unloaded_); }
 
 private:
-  double amplitudeForce() const { return ring_.model().contact.amplitudeForce(ring_.position(), ring_.forces()); }
+  /// Derivative of the stored energy by the wave amplitude: force with which the ring presses it in [N].
+  double amplitudeForce()
+  {
+    ring_.model().contact.surfaceByAmplitude(ring_.position(), ring_.forces(), surface_);
+    return ring_.forces().contact_force.dot(surface_);
+  }
 
   /// Force on the amplitude that is not balanced [N]. The lobes' springs alone give it a slope of 2 k over the amplitude.
-  double excess() const
+  double excess()
   {
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);
   }
@@ -109,11 +118,12 @@ private:
   RingEquilibrium& ring_;
   double stiffness_;
   double amplitude_;
+  Eigen::VectorXd surface_;  // scratch
   double unloaded_;
   int snaps_{};
 };
 
-RatchetRow rowOf(const RingEquilibrium& ring, const CompliantDrive& drive, double unloaded_angle,
+RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unloaded_angle,
                  const std::vector<int>& unloaded_space)
 {
   const RingForces& forces = ring.forces();

@@ -140,7 +140,7 @@ TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergy)
   EXPECT_EQ(ramp > 100, parameters.contact.smoothing > 0.0);
 }
 
-TEST_P(WaveGeneratorContactNormal, AmplitudeForceIsTheDerivativeOfTheEnergyByTheAmplitude)
+TEST_P(WaveGeneratorContactNormal, SurfaceAdvancesByTheAmplitudeAsTheEnergyTells)
 {
   const RingModel model(shippedParameters({ "contact.smoothing=" + GetParam() }));
   const ElementUnderTest contact = contactOf(model);
@@ -150,7 +150,10 @@ TEST_P(WaveGeneratorContactNormal, AmplitudeForceIsTheDerivativeOfTheEnergyByThe
   for (int k = 0; k < 12; ++k)
   {
     ring.draw(model, shape, position);
-    const double force = model.contact.amplitudeForce(position, contact.forces(shape, position));
+    const RingForces forces = contact.forces(shape, position);
+    Eigen::VectorXd surface(shape.teeth());
+    model.contact.surfaceByAmplitude(position, forces, surface);
+    const double force = forces.contact_force.dot(surface);
     constexpr double STEP = 1e-9;  // m
     DrivePosition before = position;
     DrivePosition after = position;

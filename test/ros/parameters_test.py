@@ -68,6 +68,12 @@ class Parameters(unittest.TestCase):
         self.check_start(configuration_files("elbow", ["as_built.yaml"]))
         self.check_clean_exit(signal.SIGINT)
 
+    def test_the_other_size_and_the_friction_of_a_ur5e_start(self):
+        for overlays in (["size_14.yaml"], ["joints/ur5e_elbow.yaml"]):
+            with self.subTest(overlays=overlays):
+                self.check_start(configuration_files("elbow", overlays))
+                self.check_clean_exit(signal.SIGINT)
+
     def test_a_bad_table_of_pitch_errors_is_named(self):
         self.check_refusal({"manufacture/flexspline_pitch_table": "/nowhere.csv"}, "flexspline_pitch_table",
                            "/nowhere.csv", "cannot be read")
@@ -78,7 +84,9 @@ class Parameters(unittest.TestCase):
 
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
-        tested += [package_path("config", name) for name in ("as_built.yaml", "recorded_load.yaml", "thesis_insertion.yaml")]
+        overlays = ["as_built", "recorded_load", "size_14", "thesis_insertion",
+                    *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
+        tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 
     def test_stages_left_out_are_refused(self):

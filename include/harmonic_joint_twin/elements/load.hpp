@@ -27,6 +27,11 @@ public:
   {
     return -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
   }
+  /// Second derivative of its energy [N.m/rad].
+  double gravityStiffness(double angle) const noexcept
+  {
+    return parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);
+  }
 
 private:
   OutputParameters parameters_;

@@ -65,23 +65,4 @@ public:
 private:
   ContactParameters parameters_;
 };
-
-/// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33, signs mended), seen through the joint's two angles.
-class RingDamping
-{
-public:
-  RingDamping(const RingParameters& ring, const ContactParameters& contact)
-    : tension_(ring.tension_damping), tooth_(ring.tooth_damping), contact_(contact.damping)
-  {
-  }
-
-  /// Adds to the viscous matrix.
-  void add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
-           JointFriction& friction) const noexcept;
-
-private:
-  double tension_;  // [N.s/m]
-  double tooth_;    // [N.s/m]
-  double contact_;  // [N.s/m]
-};
 }  // namespace hjt

@@ -31,9 +31,10 @@ public:
   /// Of the ellipse, in the housing's axes [m].
   Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
 
-  /// Derivative of the stored energy by the wave amplitude: force with which the ring presses it in [N]. `forces`: of the
-  /// same shape and position; law normal.
-  double amplitudeForce(const DrivePosition& position, const RingForces& forces) const noexcept;
+  /// Advance of the wave generator's surface along the normal of each touching tooth by the wave amplitude, 0 for the
+  /// others; N [-]. `forces`: of the same position.
+  void surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
+                          Eigen::VectorXd& rates) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
 

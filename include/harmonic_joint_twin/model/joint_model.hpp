@@ -7,6 +7,7 @@
 #include "harmonic_joint_twin/elements/joint_friction.hpp"
 #include "harmonic_joint_twin/elements/load.hpp"
 #include "harmonic_joint_twin/elements/motor.hpp"
+#include "harmonic_joint_twin/elements/ring_damping.hpp"
 #include "harmonic_joint_twin/elements/ring_friction.hpp"
 #include "harmonic_joint_twin/model/ring_model.hpp"
 

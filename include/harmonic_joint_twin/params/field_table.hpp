@@ -65,6 +65,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
         "what the wave generator's amplitude exceeds gear.wave_amplitude by, which the teeth were cut for");
 
+  visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
+        "mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it");
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
   visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");

@@ -39,6 +39,7 @@ enum class BendingLaw
 
 struct RingParameters
 {
+  double mass{};
   double tension_stiffness{};
   double tension_damping{};
   double tooth_damping{};
