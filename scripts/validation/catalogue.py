@@ -49,8 +49,9 @@ def build(page):
 def stiffness(page):
     page.heading("Torsion of the whole gear")
     page.text("""
-Wave generator locked, load on the circular spline. The catalogue's three slopes are those of the whole gear. Rim and teeth take their
-share of the twist, so the cup's own law is stiffer by as much: its three slopes are fitted, the assembly's angles judged.
+Wave generator locked, load on the circular spline. The catalogue's three slopes are those of the whole gear. Rim and
+teeth take their share of the twist, so the cup's own law is stiffer by as much: its three slopes are fitted, the
+assembly's angles judged.
 """)
     rows = page.tool("stiffness", "--torques", ",".join(map(str, TORQUES)))["rows"]
     for row in rows:
@@ -93,9 +94,9 @@ def hysteresis(page):
     loop = page.tool(*sweep)
     flanks = page.tool(*sweep, "--set", "cup.friction_torque=0.0")
     page.text(f"""
-Wave generator locked, load swept slowly to and fro over the rated torque. The width comes from dry friction: of the tooth flanks
-({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and beside the cup's spring (the rest). The latter is set by a real drive, see *Real drives*; the catalogue
-gives a limit.
+Wave generator locked, load swept slowly to and fro over the rated torque. The width comes from dry friction: of the
+tooth flanks ({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and beside the cup's spring (the rest). The latter is set by
+a real drive, see *Real drives*; the catalogue gives a limit.
 """)
     page.check("catalogue.hysteresis", "hysteresis", "catalogue", AtMost(1.0), loop["hysteresis"] / ARCMIN, "arcmin",
                "the maker's promise for every drive")
@@ -129,8 +130,8 @@ def losses(page, speeds, loads, *arguments):
 def friction(page):
     page.heading("Friction")
     page.text("""
-The gear alone, without the motor's friction. Running: mean over a tooth pitch; starting: the largest over a tooth pitch, at rest;
-back-driving: the load at the output whose own pull overcomes the friction at the wave generator.
+The gear alone, without the motor's friction. Running: mean over a tooth pitch; starting: the largest over a tooth
+pitch, at rest; back-driving: the load at the output whose own pull overcomes the friction at the wave generator.
 """)
     running = losses(page, [RPM_2000], [0.0])[0]
     starts = page.tool("breakaway", *AT_20_DEGREES)
@@ -154,7 +155,8 @@ back-driving: the load at the output whose own pull overcomes the friction at th
 def efficiency(page):
     page.heading("Efficiency")
     page.text("""
-At 2000 rpm and 20 °C. No friction is fitted to it: the load raises the contact forces, and with them the bearing's and the flanks' friction.
+At 2000 rpm and 20 °C. No friction is fitted to it: the load raises the contact forces, and with them the bearing's
+and the flanks' friction.
 """)
     rated = losses(page, [RPM_2000], [EFFICIENCY_TORQUE])[0]
     page.check("catalogue.efficiency", f"efficiency at {EFFICIENCY_TORQUE:g} N·m", "catalogue: 77 ± 3 %; thesis 75 %",
@@ -179,9 +181,10 @@ At 2000 rpm and 20 °C. No friction is fitted to it: the load raises the contact
     loss_at_tenth = 0.1 * EFFICIENCY_TORQUE / RATIO * (1.0 / (PART_LOADS[0.1] * EFFICIENCY) - 1.0)
     loss_at_rated = EFFICIENCY_TORQUE / RATIO * (1.0 / EFFICIENCY - 1.0)
     page.text(f"""
-The part loads are taken of the gear's rated torque, {RATED_TORQUE:g} N·m. Taken of {EFFICIENCY_TORQUE:g} N·m instead, the catalogue's factors would contradict
-its own friction: a tenth of the load would lose {number(1000.0 * loss_at_tenth)} mN·m at the motor, more than the {number(1000.0 * loss_at_rated)} mN·m of the whole load
-and than the {number(1000.0 * NO_LOAD)} mN·m of none.
+The part loads are taken of the gear's rated torque, {RATED_TORQUE:g} N·m. Taken of {EFFICIENCY_TORQUE:g} N·m instead,
+the catalogue's factors would contradict its own friction: a tenth of the load would lose
+{number(1000.0 * loss_at_tenth)} mN·m at the motor, more than the {number(1000.0 * loss_at_rated)} mN·m of the whole
+load and than the {number(1000.0 * NO_LOAD)} mN·m of none.
 """)
     if page.fast:
         return
@@ -219,8 +222,9 @@ def walther(parameters, temperature):
 def temperature(page):
     page.heading("Friction against temperature")
     page.text("""
-The grease thins as oils do (Ubbelohde-Walther), and the bearing's speed part goes with the viscosity to the power of 2/3 (Palmgren). The range is
-that of the grease SK-1A, 0 to 80 °C. At 80 °C what is left is the part that does not know speed.
+The grease thins as oils do (Ubbelohde-Walther), and the bearing's speed part goes with the viscosity to the power of
+2/3 (Palmgren). The range is that of the grease SK-1A, 0 to 80 °C. At 80 °C what is left is the part that does not
+know speed.
 """)
     bearing = page.tool("parameters")["bearing"]
     degrees = (0.0, 20.0, 40.0, 80.0)
@@ -257,7 +261,8 @@ def dials(page):
     page.heading("What was fitted, and how it compares")
     bearing, cup = (page.tool("parameters")[section] for section in ("bearing", "cup"))
     page.text("""
-Two dials for five figures of friction, one for the torsion loop, and the cup's law, which takes as many numbers as the catalogue's curve gives.
+Two dials for five figures of friction, one for the torsion loop, and the cup's law, which takes as many numbers as
+the catalogue's curve gives.
 """)
     page.table(["dial", "value", "set by", "order of size without it"],
                [["`bearing.viscosity`", f"{number(1e6 * bearing['viscosity'])} mm²/s at 25 °C", "no-load running torque",
@@ -278,8 +283,9 @@ Two dials for five figures of friction, one for the torsion loop, and the cup's 
     percent = {key: 100.0 * error(key)[0] / error(key)[1] for key in ("no_load", "starting", "back_driving")}
     torsion = max(abs(100.0 * error(f"torsion.{torque:g}")[0] / error(f"torsion.{torque:g}")[1]) for torque in TORQUES)
     page.text("""
-Beside it, the worst errors over four sizes that [zhulu248/harmonic-drive-twin](https://github.com/zhulu248/harmonic-drive-twin), the best public static twin
-found, reaches with three dials. It does more sizes; size 14 of this twin is judged below.
+Beside it, the worst errors over four sizes that
+[zhulu248/harmonic-drive-twin](https://github.com/zhulu248/harmonic-drive-twin), the best public static twin found,
+reaches with three dials. It does more sizes; size 14 of this twin is judged below.
 """)
     page.table(["quantity", "this twin, size 25", "zhulu248/harmonic-drive-twin, worst of four sizes"],
                [["efficiency at rated load", f"{points:.1f} points", OTHER_TWIN["efficiency"]],

@@ -41,9 +41,10 @@ def joint_loss(page, speeds, loads, *arguments):
 def ur5e(page):
     page.heading("UR5e: factory test without load")
     page.text("""
-Universal Robots' own figures for two robots at about 45 °C. One viscosity of the grease serves three joints and four speeds; each joint has its own preload
-(`config/joints/ur5e_*.yaml`). That the speed part is the same in all three joints, and grows with the speed to the power of 2/3, is Palmgren's law at work;
-its size is more than the catalogue gear's: seals, output bearing and motor are in it.
+Universal Robots' own figures for two robots at about 45 °C. One viscosity of the grease serves three joints and four
+speeds; each joint has its own preload (`config/joints/ur5e_*.yaml`). That the speed part is the same in all three
+joints, and grows with the speed to the power of 2/3, is Palmgren's law at work; its size is more than the catalogue
+gear's: seals, output bearing and motor are in it.
 """)
     losses = {}
     for joint in JOINTS:
@@ -95,8 +96,9 @@ def friction_map(data, joint):
 def ur5(page):
     page.heading("UR5, CB series: friction while it moves")
     page.text(f"""
-82 s of a UR5 moving (K. Kufieta, NTNU 2014). Friction is {GAIN:g} N·m/A times the motor current, less the torque of the controller's rigid-body model, in bins of
-speed. Again one viscosity for three joints and a preload for each (`config/joints/*.yaml`).
+82 s of a UR5 moving (K. Kufieta, NTNU 2014). Friction is {GAIN:g} N·m/A times the motor current, less the torque of
+the controller's rigid-body model, in bins of speed. Again one viscosity for three joints and a preload for each
+(`config/joints/*.yaml`).
 """)
     path = recording(page, "ur5_cb", "ur5_cb_no6.csv")
     if not path:
@@ -111,8 +113,9 @@ speed. Again one viscosity for three joints and a preload for each (`config/join
         page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error, "N·m",
                    f"a seventh of the friction at the slowest; within a bin the recording scatters by {maps[name][:, 3].mean():.1f} N·m")
     page.text("""
-*What this recording cannot show:* the rigid-body torque is the controller's, so errors of its masses and of the payload look like friction (the shoulder has the
-largest weight and the largest residual); no temperature; no encoder at the motor, so no torsion and no kinematic error apart from ripples of the current.
+*What this recording cannot show:* the rigid-body torque is the controller's, so errors of its masses and of the
+payload look like friction (the shoulder has the largest weight and the largest residual); no temperature; no encoder
+at the motor, so no torsion and no kinematic error apart from ripples of the current.
 """)
 
     def draw(figure):
@@ -142,9 +145,10 @@ def unloaded_error(path, angle):
 def two_encoders(page):
     page.heading("A 101:1 drive with encoders on both sides")
     page.text("""
-Elbow of a NEURA LARA 8 (A. Lucious, 2024), swept under gravity and payload. Torsion is motor angle over 101 less output angle, less the same without load; torque is
-the motor's, at the joint. Nothing is fitted: the twin's curve is the catalogue gear's, moved by the friction that the twin itself has at this speed; the mean, which the
-arbitrary zero of the encoders leaves open, is taken out. Only the part at constant speed is used.
+Elbow of a NEURA LARA 8 (A. Lucious, 2024), swept under gravity and payload. Torsion is motor angle over 101 less
+output angle, less the same without load; torque is the motor's, at the joint. Nothing is fitted: the twin's curve is
+the catalogue gear's, moved by the friction that the twin itself has at this speed; the mean, which the arbitrary zero
+of the encoders leaves open, is taken out. Only the part at constant speed is used.
 """)
     loaded = recording(page, "lara8", "validate.csv")
     unloaded = recording(page, "lara8", "unloaded_transmission_error.csv")
@@ -178,8 +182,9 @@ arbitrary zero of the encoders leaves open, is taken out. Only the part at const
                Within(1e3 * DIRECTION_GAP, relative=0.2), 1e3 * loop["hysteresis"], "mrad",
                "fitted (`cup.friction_torque`); read from a published figure")
     page.text("""
-*What this recording cannot show:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s long; the torque is computed from current. It shows no soft
-beginning at small load; whether the drive has none or the sweep hides it among its transmission error (up to 1.4 mrad), one sweep does not tell.
+*What this recording cannot show:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s
+long; the torque is computed from current. It shows no soft beginning at small load; whether the drive has none or the
+sweep hides it among its transmission error (up to 1.4 mrad), one sweep does not tell.
 """)
 
     def draw(figure):

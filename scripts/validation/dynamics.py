@@ -264,14 +264,14 @@ def sweep(page):
 **Where the claim fails.** Teeth come into mesh 200 times a turn of the motor and strike the ring as they do. Where
 that frequency or a multiple of it meets a mode of the ring, the forces ring on top of their quasi-static values. The
 worst here is {worst['speed']:.0f} rad/s with {worst['load']:.0f} N·m: the flank force is off by
-{percent(worst, 'mesh_force')} % (rms; {percent(worst, 'mesh_force', 'max')} % at worst) and the momentary torque on the wave
-generator by {percent(worst, 'wave_generator_torque')} %; twice the tooth frequency is then {400 * worst['speed']:.3g}
-rad/s, where the rim swings round as a whole against teeth and cup. Speeds [rad/s] with more than 1 % on the flanks,
-{above}. This ripple is far beyond what motor, output or any sensor of the joint follows; positions, torsion and mean
-torque keep to the claim at every speed. Dashpots of rim and contact with 1 % of critical (those of Table 6.1 have
-less than 0.1 %) hardly change it ({percent(damped, 'mesh_force')} %): more than half of that mode's energy is in
-teeth and cup, which have no dashpot here. So at such speeds a single tooth's force is known to some per cent and no
-better; what the joint shows outside is not touched.
+{percent(worst, 'mesh_force')} % (rms; {percent(worst, 'mesh_force', 'max')} % at worst) and the momentary torque on
+the wave generator by {percent(worst, 'wave_generator_torque')} %; twice the tooth frequency is then
+{400 * worst['speed']:.3g} rad/s, where the rim swings round as a whole against teeth and cup. Speeds [rad/s] with
+more than 1 % on the flanks, {above}. This ripple is far beyond what motor, output or any sensor of the joint follows;
+positions, torsion and mean torque keep to the claim at every speed. Dashpots of rim and contact with 1 % of critical
+(those of Table 6.1 have less than 0.1 %) hardly change it ({percent(damped, 'mesh_force')} %): more than half of that
+mode's energy is in teeth and cup, which have no dashpot here. So at such speeds a single tooth's force is known to
+some per cent and no better; what the joint shows outside is not touched.
 """)
     page.figure("quasi_static_error", "Error of the quasi-static ring over the speed of the motor, real masses, rms. Left: 20 N·m. "
                 "Right: flank force with both loads.", lambda fig: draw_sweep(fig, runs), size=(8.0, 3.4))

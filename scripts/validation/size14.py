@@ -13,8 +13,9 @@ NO_LOAD, STARTING, EFFICIENCY = 0.035, 0.021, 0.67
 
 def build(page):
     page.text("""
-The gear of the UR5's wrists, `config/size_14.yaml`: lengths and stiffnesses of size 25 scaled by 14/25, the cup fitted to this size's torsion, the grease and the race's
-preload to its friction (the maker fills it with another grease). Efficiency, hysteresis and lost motion are not fitted.
+The gear of the UR5's wrists, `config/size_14.yaml`: lengths and stiffnesses of size 25 scaled by 14/25, the cup
+fitted to this size's torsion, the grease and the race's preload to its friction (the maker fills it with another
+grease). Efficiency, hysteresis and lost motion are not fitted.
 """)
     insertion = page.tool("insert", *SIZE_14)
     large = page.tool("insert")

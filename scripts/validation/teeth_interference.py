@@ -48,10 +48,10 @@ def interference(page, path):
     from_forces = crossing(angles, [1.0 - force for force in forces])
     from_gap = crossing(angles, gaps)
     page.text(f"""
-Below {from_forces:.1f}° the entering teeth press on their flanks without any load; tilted with the rim, their tips already
-overlap below {from_gap:.1f}°. By the closed form it is the chord of the path, {chord(path):.1f}°. The thesis' 16° and 17°
-are finite elements of whole gears, whose teeth also lean along their width (coning). The order is the same, and the shipped
-angle is free.
+Below {from_forces:.1f}° the entering teeth press on their flanks without any load; tilted with the rim, their tips
+already overlap below {from_gap:.1f}°. By the closed form it is the chord of the path, {chord(path):.1f}°. The thesis'
+16° and 17° are finite elements of whole gears, whose teeth also lean along their width (coning). The order is the
+same, and the shipped angle is free.
 """)
     page.check("teeth.interference_angle", "flank angle at which the tips of straight flanks cease to interfere", "thesis 3.2.2 [51], 4 [83]",
                Within(16.0, absolute=2.0), from_gap, "°", "the two sources differ by 1°; plane teeth against whole gears")

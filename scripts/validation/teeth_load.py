@@ -64,11 +64,11 @@ def load_share(page, rows):
     page.table(["profile", "load [N·m]", "teeth in mesh [%]", "largest force [N]", "largest share [%]", "leading / trailing flanks [%]"], table)
     share = {name: [f"{in_mesh(row_at(rows[name], load)):.0f}" for load in (RATED, LIMIT, MOMENTARY)] for name in PROFILES}
     page.text(f"""
-Both published figures are met, each by its profile: at {RATED}, {LIMIT} and {MOMENTARY} N·m (rated, the joint's limit, the
-catalogue's momentary peak) involute flanks carry on {" / ".join(share["involute"])} % of the teeth, double arcs (the teeth
-of the UR5's gear, thesis fig. 3.7) on {" / ".join(share["double_arc"])} %, with about half the force on the hardest pressed
-tooth. Cycloid flanks touch all along the mesh on both sides before any load; load only opens the trailing ones. Wear, pitch
-errors and the teeth's own bending shape are not in these figures.
+Both published figures are met, each by its profile: at {RATED}, {LIMIT} and {MOMENTARY} N·m (rated, the joint's
+limit, the catalogue's momentary peak) involute flanks carry on {" / ".join(share["involute"])} % of the teeth, double
+arcs (the teeth of the UR5's gear, thesis fig. 3.7) on {" / ".join(share["double_arc"])} %, with about half the force
+on the hardest pressed tooth. Cycloid flanks touch all along the mesh on both sides before any load; load only opens
+the trailing ones. Wear, pitch errors and the teeth's own bending shape are not in these figures.
 """)
     page.check("teeth.involute_in_mesh", f"involute: teeth in mesh at {LIMIT} N·m", "finite elements, thesis 3.2.2 [51]", Between(*FE_BAND),
                in_mesh(row_at(rows["involute"], LIMIT)), "%", "published for 27° and 16°; its load is not given, the joint's limit is taken")
@@ -105,9 +105,9 @@ def pressure_angle(page):
         low, high = loaded(page, "mesh.profile=involute", f"mesh.flank_angle={math.radians(angle):.9f}", loads=loads)
         found[angle] = ((loads[1] - loads[0]) / (low["output_angle"] - high["output_angle"]), in_mesh(high))
     page.text(f"""
-Pressure angle of the involute from 27° to 16°: teeth in mesh {found[27][1]:.0f} → {found[16][1]:.0f} % (finite elements: 12
-→ 14 %), torsional stiffness between {loads[0]} and {loads[1]} N·m {found[27][0] / 1e4:.2f}e4 → {found[16][0] / 1e4:.2f}e4
-N·m/rad (6.36e4 → 6.54e4, another gear).
+Pressure angle of the involute from 27° to 16°: teeth in mesh {found[27][1]:.0f} → {found[16][1]:.0f} % (finite
+elements: 12 → 14 %), torsional stiffness between {loads[0]} and {loads[1]} N·m {found[27][0] / 1e4:.2f}e4 →
+{found[16][0] / 1e4:.2f}e4 N·m/rad (6.36e4 → 6.54e4, another gear).
 """)
     page.check("teeth.pressure_angle_stiffness", "involute: gain in torsional stiffness from 27° to 16°", "finite elements, thesis 3.2.2 [51]",
                Within(2.83, absolute=1.0), 100.0 * (found[16][0] / found[27][0] - 1.0), "%",

@@ -14,9 +14,9 @@ def profiles(page):
     cycloid = shapes["cycloid"]["clearance"]
     path = {"drop": cycloid["drop"], "across": cycloid["path"], "angle": cycloid["flank_angle"]}
     page.text(f"""
-A flank enters the mesh as the half clearance c between tooth and space over the tooth's drop from full engagement. On an
-ideal ring (inextensible, w0 cos 2ψ) the tooth's own path through its space is a cycloid; a flank touches where its clearance
-meets the path. All have the same clearance at full engagement. Free dimensions:
+A flank enters the mesh as the half clearance c between tooth and space over the tooth's drop from full engagement. On
+an ideal ring (inextensible, w0 cos 2ψ) the tooth's own path through its space is a cycloid; a flank touches where its
+clearance meets the path. All have the same clearance at full engagement. Free dimensions:
 
 - **trapezoid**: straight, {math.degrees(mesh["flank_angle"]):.0f}° (thesis, 3.2.2: smallest angle free of interference); the
   shipped profile.
@@ -119,10 +119,10 @@ def clearance_at_rest(page, rows, path):
     steep_angle = 0.5 * math.degrees(math.acos(1.0 - steep / gear["wave_amplitude"]))
     page.text(f"""
 Flanks made for rigid gears, straight or involute, are hardly to be told apart at this size and stand off by up to
-{max(gaps["involute"]):.0f} µm on their way. The cycloid stays within {max(abs(gap) for gap in gaps["cycloid"]):.1f} µm all
-the way; what it lacks is the ring's own elasticity. The double arc touches near full engagement; from about
-{steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows the path at a gap of a few
-micrometres, which its own concave root has cut at full engagement.
+{max(gaps["involute"]):.0f} µm on their way. The cycloid stays within {max(abs(gap) for gap in gaps["cycloid"]):.1f}
+µm all the way; what it lacks is the ring's own elasticity. The double arc touches near full engagement; from about
+{steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows the path at a gap of a
+few micrometres, which its own concave root has cut at full engagement.
 """)
     page.check("teeth.cycloid_conjugate", "cycloid: largest less smallest gap along the mesh at no load", "conjugate on the ideal ring",
                AtMost(3.0), max(gaps["cycloid"]) - min(gaps["cycloid"]), "µm",

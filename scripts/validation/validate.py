@@ -31,7 +31,7 @@ drives. Every number and figure below comes from runs of `joint_twin`; one comma
     scripts/validate
 
 It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate --set
-contact.stiffness=1.1e8` shows what a wrong parameter does (the page is then written to the folder of `--out`, never over this one).
+contact.stiffness=1.1e+8` shows what a wrong parameter does (the page is then written to the folder of `--out`, never over this one).
 """
 
 
