@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
 
@@ -20,6 +22,25 @@ DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fra
 char contactsOf(const RingForces& forces, int i) noexcept
 {
   return static_cast<char>((forces.meshed[i] != 0 ? 1 : 0) + (forces.contact_depth[i] > 0.0 ? 2 : 0));
+}
+
+/// Largest entry on the tangent's diagonal [N/m].
+double stiffest(const RingTangent& tangent) noexcept
+{
+  double entry = 0.0;
+  for (const Block4& block : tangent.diagonal)
+  {
+    entry = std::max(entry, block.diagonal().maxCoeff());
+  }
+  return entry;
+}
+
+/// One attempt after another: the second's outcome, the effort of both.
+SolveStatus add(const SolveStatus& first, SolveStatus second) noexcept
+{
+  second.iterations += first.iterations;
+  second.cuts += first.cuts;
+  return second;
 }
 
 double largest(const Eigen::VectorXd& forces) noexcept
@@ -52,8 +73,19 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , old_space_(now_.shape.space)
   , factored_contacts_(static_cast<std::size_t>(model.rest.teeth()))
   , step_(now_.shape.points)
+  , start_forces_(now_.shape.points)
   , columns_(2 * model.rest.teeth(), 2)
 {
+  parameters_.force_tolerance = std::max(parameters_.force_tolerance, rounding());
+}
+
+/// What a coordinate's last digit is worth as a force [N]: no solve comes below it. It is less than the shipped
+/// tolerance by a factor of 1000, and counts for rims much stiffer or teeth much finer than the shipped gear's.
+double RingEquilibrium::rounding() noexcept
+{
+  model_.forces(now_.shape, now_.position, forces_);
+  model_.tangent(now_.shape, now_.position, forces_, tangent_);
+  return std::numeric_limits<double>::epsilon() * model_.gear.flexspline_inner_radius * stiffest(tangent_);
 }
 
 SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
@@ -61,29 +93,41 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   beginRound(target);
   const bool wedged = now_.residual > parameters_.force_tolerance;
   SolveStatus status = moveTo(target);
-  if (status.ok() || !wedged)
+  if (!status.ok() && wedged)
   {
-    return status;
+    status = add(status, insertWedged(target));
   }
-  // A round ring that wedges in an eccentric circular spline goes nearly the whole way without it.
+  if (!status.ok())
+  {
+    beginRound(target);
+    descending_ = true;
+    status = add(status, moveTo(target));
+    descending_ = false;
+  }
+  if (!status.ok() && wedged)
+  {
+    beginRound(target);
+  }
+  return status;
+}
+
+/// A round ring that wedges in an eccentric circular spline goes nearly the whole way without it.
+SolveStatus RingEquilibrium::insertWedged(const DrivePosition& target) noexcept
+{
   constexpr double NEARLY = 0.99;
   DrivePosition before = target;
   before.wave_amplitude *= NEARLY;
   circular_spline_in_ = false;
   beginRound(target);
-  status = moveTo(before);
+  const SolveStatus status = moveTo(before);
   circular_spline_in_ = true;
-  if (status.ok())
-  {
-    updateForces();
-    now_.residual = largest(forces_.teeth);
-    status = moveTo(target);
-  }
   if (!status.ok())
   {
-    beginRound(target);
+    return status;
   }
-  return status;
+  updateForces();
+  now_.residual = largest(forces_.teeth);
+  return add(status, moveTo(target));
 }
 
 SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
@@ -348,6 +392,8 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
   constexpr double GOOD_CONTRACTION = 0.1;  // better than this, the factors serve another iteration
+  constexpr int DESCENT_ITERATIONS = 100;
+  const int max_iterations = descending_ ? DESCENT_ITERATIONS : parameters_.max_iterations;
   SolveStatus status;
   predict(target);
   if (model_.meshed)
@@ -378,13 +424,13 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
     {
       break;
     }
-    if (++status.iterations > parameters_.max_iterations || !searchLine(status.residual))
+    if (++status.iterations > max_iterations || !(descending_ ? descend() : searchLine(status.residual)))
     {
       status.code = SolveCode::NOT_CONVERGED;
       return status;
     }
     const double residual = largest(forces_.teeth);
-    fresh = residual < GOOD_CONTRACTION * status.residual;
+    fresh = !descending_ && residual < GOOD_CONTRACTION * status.residual;
     status.residual = residual;
   } while (true);
   if (slopesChanged() && !refactor())
@@ -442,6 +488,74 @@ bool RingEquilibrium::searchLine(double residual) noexcept
     {
       return true;
     }
+  }
+  return false;
+}
+
+/// The Newton step as a way down the energy: where the tangent is not positive along it, the tangent is shifted until it
+/// is. Leaves the step in `step_`, its start in `start_points_`.
+bool RingEquilibrium::downhill() noexcept
+{
+  constexpr int MAX_SHIFTS = 30;
+  constexpr double FIRST_SHIFT = 1e-6;  // of the stiffest diagonal entry
+  double shift = 0.0;
+  for (int i = 0; i < MAX_SHIFTS; ++i)
+  {
+    step_ = start_forces_ = forces_.teeth;
+    solver_.solve<1>(step_);
+    const double slope = step_.dot(start_forces_);
+    if (std::isfinite(slope) && slope > 0.0)
+    {
+      start_points_ = now_.shape.points;
+      return true;
+    }
+    const double add = shift > 0.0 ? 3.0 * shift : FIRST_SHIFT * stiffest(tangent_);
+    for (Block4& block : tangent_.diagonal)
+    {
+      block.diagonal().array() += add;
+    }
+    shift += add;
+    if (!solver_.factor(tangent_))
+    {
+      return false;
+    }
+  }
+  return false;
+}
+
+/// Moves to `length` steps from the start. @returns how steeply the energy falls there along the step [J].
+double RingEquilibrium::slopeAt(double length) noexcept
+{
+  now_.shape.points = start_points_ + length * step_;
+  now_.shape.updateGeometry();
+  model_.forces(now_.shape, now_.position, forces_);
+  return forces_.teeth.dot(step_);
+}
+
+/// One step down the energy: all the way if that is still downhill or nearly level, else to where the energy is lowest.
+/// Looks at slopes only: energies near a minimum differ by less than their rounding.
+bool RingEquilibrium::descend() noexcept
+{
+  constexpr int MAX_TRIALS = 40;
+  constexpr double LEVEL = 0.3;  // of the first slope
+  if (!downhill())
+  {
+    return false;
+  }
+  const double first = step_.dot(start_forces_);
+  double low = 0.0;
+  double high = 1.0;
+  double length = 1.0;
+  for (int i = 0; i < MAX_TRIALS; ++i)
+  {
+    const double slope = slopeAt(length);
+    if (largest(forces_.teeth) <= parameters_.force_tolerance || (length == 1.0 && slope >= -LEVEL * first) ||
+        std::abs(slope) <= LEVEL * first)
+    {
+      return true;
+    }
+    (slope > 0.0 ? low : high) = length;
+    length = 0.5 * (low + high);
   }
   return false;
 }

@@ -33,6 +33,9 @@ struct [[nodiscard]] SolveStatus
 ///
 /// Newton with the analytic tangent, line search, and continuation: a target that is not reached directly is approached
 /// over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good state stays.
+///
+/// An insertion that fails so is done once more as a descent of the stored energy: exact line search on its slope, and a
+/// shifted tangent where that is not positive. Slower, but teeth that touch and let go by the dozen do not stop it.
 class RingEquilibrium
 {
 public:
@@ -84,6 +87,7 @@ private:
     double residual{};  // [N]
   };
 
+  SolveStatus insertWedged(const DrivePosition& target) noexcept;
   void beginRound(const DrivePosition& target) noexcept;
   void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
   void updateForces() noexcept;
@@ -97,11 +101,16 @@ private:
   bool refactor() noexcept;
   bool slopesChanged() const noexcept;
   bool searchLine(double residual) noexcept;
+  double rounding() noexcept;
+  bool descend() noexcept;
+  bool downhill() noexcept;
+  double slopeAt(double length) noexcept;
   void updateSensitivities() noexcept;
 
   const RingModel& model_;
   SolverParameters parameters_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
+  bool descending_{ false };   // down the energy, not by Newton's method alone
   CyclicSolver solver_;
   RingTangent tangent_;
   RingForces forces_;
@@ -116,6 +125,7 @@ private:
   std::vector<int> old_space_;
   std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
   Eigen::VectorXd step_;
+  Eigen::VectorXd start_forces_;
   Columns columns_;
 };
 }  // namespace hjt
