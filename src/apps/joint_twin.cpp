@@ -25,6 +25,7 @@ int main(int argc, char** argv)
   hjt::addTransientCommand(app, exit_code);
   hjt::addDynamicsCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);
+  hjt::addTrialCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);
   hjt::addParametersCommand(app, exit_code);

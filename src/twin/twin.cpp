@@ -17,9 +17,9 @@ namespace hjt
 {
 struct Twin::Impl
 {
-  explicit Impl(const Parameters& given)
+  Impl(const Parameters& given, const ToothFaults& faults)
     : parameters(given)
-    , model(given)
+    , model(makeFaultyJoint(given, faults))
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , motor_encoder(given.sensors)
@@ -166,6 +166,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
   outputs.residual = stepper.status().residual;
+  outputs.swing_phase = stepper.swingPhase();
 }
 
 /// What watches the joint step by step: encoder speeds and health.
@@ -185,7 +186,7 @@ SolverState Twin::Impl::solverState() noexcept
   return failed ? SolverState::FAILED : cut ? SolverState::DEGRADED : SolverState::OK;
 }
 
-Twin::Twin(const Parameters& parameters)
+Twin::Twin(const Parameters& parameters, const ToothFaults& faults)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
@@ -193,7 +194,7 @@ Twin::Twin(const Parameters& parameters)
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
-  impl_ = std::make_unique<Impl>(parameters);
+  impl_ = std::make_unique<Impl>(parameters, faults);
 }
 
 Twin::~Twin() = default;

@@ -28,6 +28,8 @@ public:
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
   double energyResidual() const noexcept;                           ///< energy in - stored - dissipated since reset [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
+  /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
+  double swingPhase() const noexcept;
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "harmonic_joint_twin/model/tooth_faults.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
 
@@ -30,6 +31,7 @@ struct JointOutputs
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
   double residual{};           ///< largest out-of-balance force [N]
+  double swing_phase{};        ///< of the joint's fastest swing, in one step [rad]
 };
 
 /// Readings of both encoders.
@@ -94,6 +96,7 @@ struct TwinCounters
   std::uint64_t steps{};
   std::uint64_t solver_failures{};  ///< steps that did not converge: last good state held
   std::uint64_t step_cuts{};        ///< steps that needed a shorter path
+  std::uint64_t coarse_steps{};     ///< steps too long for what the joint does in them
   InputCounters input;
   std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit
   std::uint64_t load_clamped{};      ///< steps on which the load exceeded output.load_torque_limit
@@ -110,7 +113,7 @@ class Twin
 {
 public:
   /// Inserts the wave generator (some milliseconds). @throws ParameterError if the parameters have no equilibrium.
-  explicit Twin(const Parameters& parameters);
+  explicit Twin(const Parameters& parameters, const ToothFaults& faults = {});
   ~Twin();
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;

@@ -28,6 +28,7 @@ void addRatchetCommand(CLI::App& app, int& exit_code);
 void addTransientCommand(CLI::App& app, int& exit_code);
 void addDynamicsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
+void addTrialCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
