@@ -14,8 +14,10 @@ Motor::Drive Motor::drive(double command, double speed) const noexcept
   drive.clamped = drive.torque != command;
   const double room = (1.0 - std::abs(speed) / parameters_.speed_limit) / FADE;
   drive.held = room < 1.0 && drive.torque * speed > 0.0;
+  drive.slope = 0.0;
   if (drive.held)
   {
+    drive.slope = std::abs(drive.torque) / (FADE * parameters_.speed_limit);
     drive.torque *= std::max(room, 0.0);
   }
   return drive;

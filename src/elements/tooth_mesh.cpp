@@ -223,8 +223,9 @@ void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) cons
   }
 }
 
-void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) const noexcept
+int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) const noexcept
 {
+  int jumps = 0;
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
   const double first = firstSpace(position.output_angle);
@@ -243,7 +244,9 @@ void ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) con
     }
     const int shift = static_cast<int>(std::lround(std::atan2(tooth.xi, tooth.zeta) * spaces_ / TWO_PI));
     shape.space[i] = ((shape.space[i] + shift) % spaces_ + spaces_) % spaces_;
+    jumps += tooth.zeta + tip_offset_ > 0.0 && stiffness_[i] > 0.0 ? 1 : 0;
   }
+  return jumps;
 }
 
 ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& position, int i) const noexcept

@@ -88,6 +88,8 @@ void Diagnostics::readSnapshot()
   const ros::WallTime now = ros::WallTime::now();
   solver_failures_.update(twin.solver_failures, now);
   step_cuts_.update(twin.step_cuts, now);
+  jumps_.update(twin.jumps, now);
+  coarse_steps_.update(twin.coarse_steps, now);
   speed_limits_.update(twin.speed_limited, now);
   clamps_.update(twin.torque_clamped + twin.load_clamped, now);
   late_inputs_.update(twin.input.late, now);
@@ -125,6 +127,14 @@ Verdict Diagnostics::judgeDrive() const
   if (step_cuts_.areRecent())
   {
     return { DiagnosticStatus::WARN, "Steps had to be cut to converge" };
+  }
+  if (jumps_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Teeth jumped to another space" };
+  }
+  if (coarse_steps_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Steps too long for how fast the joint swings: raise solver.rate" };
   }
   if (speed_limits_.areRecent())
   {
@@ -212,6 +222,8 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
   status.add("Solver iterations", outputs.iterations);
   status.add("Steps", counters.steps);
   status.add("Steps cut", counters.step_cuts);
+  status.add("Steps in which teeth jumped", counters.jumps);
+  status.add("Steps too long", counters.coarse_steps);
   status.add("Steps failed", counters.solver_failures);
   status.add("Steps at the speed limit", counters.speed_limited);
 }

@@ -46,7 +46,8 @@ double shaftStrength(const JointFriction& friction) noexcept
 /// following or held, whichever slips more.
 double DryFriction::width(const FrictionTerm& term, double follow) const noexcept
 {
-  return width_ * (std::abs(term.slip[0]) + std::abs(follow * term.slip[1])) + 1e-300;
+  constexpr double LEAST_WIDTH = 1e-100;  // of a term that nothing slips: its powers up to the third stay numbers
+  return width_ * (std::abs(term.slip[0]) + std::abs(follow * term.slip[1])) + LEAST_WIDTH;
 }
 
 Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,

@@ -47,9 +47,11 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
     result.residual = again.residual;
     result.iterations += again.iterations;
     result.cuts += again.cuts;
+    result.jumps = again.jumps;
   }
   status.iterations += result.iterations;
   status.cuts += result.cuts;
+  status.jumps += result.jumps;
   status.residual = result.residual;
   if (!result.ok())
   {

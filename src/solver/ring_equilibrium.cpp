@@ -104,10 +104,6 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
     status = add(status, moveTo(target));
     descending_ = false;
   }
-  if (!status.ok() && wedged)
-  {
-    beginRound(target);
-  }
   return status;
 }
 
@@ -292,6 +288,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
     if (status.ok())
     {
       done = next;
+      total.jumps += status.jumps;
       stride *= 2.0;
       if (done < 1.0)
       {
@@ -398,7 +395,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   predict(target);
   if (model_.meshed)
   {
-    model_.mesh.pairNearest(now_.position, now_.shape);
+    status.jumps = model_.mesh.pairNearest(now_.position, now_.shape);
   }
   updateForces();
   status.residual = largest(forces_.teeth);

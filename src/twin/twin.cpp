@@ -58,6 +58,7 @@ struct Twin::Impl
   void step() noexcept;
   void takeInputs() noexcept;
   double commandInForce() noexcept;
+  bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
   SolverState solverState() noexcept;
@@ -129,6 +130,12 @@ double Twin::Impl::commandInForce() noexcept
   return commanded ? command : 0.0;
 }
 
+/// Whether the drive, which sees the motor's speed once a step, holds the speed limit too stiffly for that.
+bool Twin::Impl::overshoots(const Motor::Drive& drive) const noexcept
+{
+  return drive.slope > model.motor.inertia() * parameters.solver.rate;
+}
+
 void Twin::Impl::step() noexcept
 {
   now += step_length;
@@ -142,6 +149,8 @@ void Twin::Impl::step() noexcept
   counters.load_clamped += load_clamped ? 1 : 0;
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += stepper.status().cuts > 0 ? 1 : 0;
+  counters.jumps += stepper.status().jumps > 0 ? 1 : 0;
+  counters.coarse_steps += stepper.isCoarse() || overshoots(drive) ? 1 : 0;
   fillOutputs(drive.torque, converged);
   observe();
 }
@@ -181,9 +190,11 @@ void Twin::Impl::observe() noexcept
 SolverState Twin::Impl::solverState() noexcept
 {
   const bool failed = counters.solver_failures > steps_at_report.solver_failures;
-  const bool cut = counters.step_cuts > steps_at_report.step_cuts;
+  const bool doubtful =
+      counters.step_cuts > steps_at_report.step_cuts || counters.coarse_steps > steps_at_report.coarse_steps ||
+      counters.jumps > steps_at_report.jumps;
   steps_at_report = counters;
-  return failed ? SolverState::FAILED : cut ? SolverState::DEGRADED : SolverState::OK;
+  return failed ? SolverState::FAILED : doubtful ? SolverState::DEGRADED : SolverState::OK;
 }
 
 Twin::Twin(const Parameters& parameters, const ToothFaults& faults)

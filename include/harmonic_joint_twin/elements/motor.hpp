@@ -19,6 +19,7 @@ public:
     double torque;  ///< at the shaft [N.m]
     bool clamped;   ///< the command exceeded the torque limit
     bool held;      ///< the speed limit held torque back
+    double slope;   ///< how fast the torque falls with speed there, else 0 [N.m.s/rad]
   };
   Drive drive(double command, double speed) const noexcept;
 

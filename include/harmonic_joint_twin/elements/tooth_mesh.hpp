@@ -48,7 +48,8 @@ public:
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
 
   /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
-  void pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
+  /// @returns teeth that changed their space below the circular spline's tip circle: that went through a tip.
+  int pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
 
   ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
 

@@ -63,6 +63,8 @@ private:
   std::array<Verdict, 3> verdicts_;  ///< drive, input, timing
   RecentEvents solver_failures_;
   RecentEvents step_cuts_;
+  RecentEvents jumps_;
+  RecentEvents coarse_steps_;
   RecentEvents speed_limits_;
   RecentEvents refusals_;
   RecentEvents clamps_;

@@ -13,6 +13,10 @@ namespace hjt
 class JointStepper
 {
 public:
+  /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
+  /// after four swings [rad].
+  static constexpr double MAX_SWING_PHASE = 0.1;
+
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
   JointStepper(const Parameters& parameters, const JointModel& model);
 
@@ -30,6 +34,8 @@ public:
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
   double swingPhase() const noexcept;
+  /// Whether the last step was too long for what the joint does: its fastest swing is more than MAX_SWING_PHASE of it.
+  bool isCoarse() const noexcept { return swingPhase() > MAX_SWING_PHASE; }
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -24,6 +24,7 @@ struct [[nodiscard]] SolveStatus
   SolveCode code{ SolveCode::CONVERGED };
   int iterations{};   ///< Newton iterations, all attempts
   int cuts{};         ///< halvings of the path
+  int jumps{};        ///< teeth that changed their space through a tip: ratcheting, or too long a move
   double residual{};  ///< largest out-of-balance force component on a tooth [N]
 
   bool ok() const noexcept { return code == SolveCode::CONVERGED; }

@@ -96,6 +96,7 @@ struct TwinCounters
   std::uint64_t steps{};
   std::uint64_t solver_failures{};  ///< steps that did not converge: last good state held
   std::uint64_t step_cuts{};        ///< steps that needed a shorter path
+  std::uint64_t jumps{};            ///< steps in which a tooth changed its space through a tip
   std::uint64_t coarse_steps{};     ///< steps too long for what the joint does in them
   InputCounters input;
   std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit

@@ -32,6 +32,8 @@ void warnOf(const TwinCounters& counters)
   warn(counters.speed_limited, "steps at motor.speed_limit; the drive held torque back");
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");
   warn(counters.step_cuts, "steps needed a shorter path to converge");
+  warn(counters.jumps, "steps made a tooth jump to another space, through a tip");
+  warn(counters.coarse_steps, "steps were too long for how fast the joint swings; raise solver.rate");
   warn(counters.solver_failures, "steps did not converge; the last good state was held");
 }
 }  // namespace
@@ -61,6 +63,8 @@ int RunSummary::report(const Twin& twin, bool json) const
                                           { "speed_limited", counters.speed_limited },
                                           { "command_timeouts", counters.command_timeouts },
                                           { "step_cuts", counters.step_cuts },
+                                          { "jumps", counters.jumps },
+                                          { "coarse_steps", counters.coarse_steps },
                                           { "solver_failures", counters.solver_failures } };
     std::cout << summary.dump(2) << '\n';
   }
