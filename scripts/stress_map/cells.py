@@ -35,8 +35,10 @@ INERTIAS = ["all inertia", "motor inertia", "load inertia"]
 
 
 def text(value):
-    """As the tool reads it."""
-    return "[" + ", ".join(map(repr, value)) + "]" if isinstance(value, tuple) else repr(value)
+    """As the tool reads it: a number that is not whole has a dot."""
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(text, value)) + "]"
+    return f"{value:.17e}" if isinstance(value, float) else str(value)
 
 
 def scaled(factor, by):

@@ -63,7 +63,7 @@ class Runner:
         line = [self.tool, "trial", "--profile", profile, "--duration", repr(DURATION), "--sample-period",
                 repr(max(step, SAMPLE_PERIOD)), "--advance", repr(advance), "--json"]
         for key, value in changes.items():
-            line += ["--set", f"{key}={value if isinstance(value, str) else text(value)}"]
+            line += ["--set", f"{key}={text(value)}"]
         for option, teeth in [("--missing-teeth", cell.missing), ("--cut-rim", cell.cut)]:
             line += [option, ",".join(map(str, teeth))] if teeth else []
         done = subprocess.run(line, capture_output=True, text=True, timeout=TIMEOUT, check=False)

@@ -51,9 +51,11 @@ class Settings:
     fast: bool = False  # only what takes a few seconds; no figures
     arguments: tuple = ()  # given to every run of the tool after its own, e.g. a deliberately wrong parameter
 
+    page: str = "validation"  # its name, and that of its folder of figures
+
     @property
     def images(self):
-        return os.path.join(self.out, "images", "validation")
+        return os.path.join(self.out, "images", self.page)
 
 
 @dataclass
@@ -123,7 +125,7 @@ class Page:
             draw(figure)
             figure.savefig(os.path.join(self.settings.images, name + ".png"), metadata={"Software": None})
             plt.close(figure)
-        self.lines += [f"![{caption}](images/validation/{name}.png)", "", f"*{caption}*", ""]
+        self.lines += [f"![{caption}](images/{self.settings.page}/{name}.png)", "", f"*{caption}*", ""]
 
     def finish(self):
         self._flush()

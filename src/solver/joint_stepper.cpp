@@ -121,8 +121,8 @@ double JointStepper::swingPhase() const noexcept
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const double motor = k(0, 0) / inertia[0];
   const double output = k(1, 1) / inertia[1];
-  const double fastest = 0.5 * (motor + output) +
-                         std::sqrt(0.25 * (motor - output) * (motor - output) + k(0, 1) * k(1, 0) / (inertia[0] * inertia[1]));
+  const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
+                                                            k(0, 1) * k(1, 0) / (inertia[0] * inertia[1]));
   return step_ * std::sqrt(std::max(fastest, 0.0));
 }
 

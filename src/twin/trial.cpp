@@ -10,10 +10,9 @@ namespace
 {
 bool allFinite(const JointOutputs& o) noexcept
 {
-  for (const double value :
-       { o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity, o.motor_torque, o.load_torque,
-         o.wave_generator_torque, o.joint_torque, o.friction_torque, o.torsional_stiffness, o.energy_residual,
-         o.residual })
+  for (const double value : { o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity, o.motor_torque,
+                              o.load_torque, o.wave_generator_torque, o.joint_torque, o.friction_torque,
+                              o.torsional_stiffness, o.energy_residual, o.residual })
   {
     if (!std::isfinite(value))
     {
@@ -41,8 +40,8 @@ TrialResult runTrial(Twin& twin, Stamp end, Stamp sample_period, const std::func
     result.swing_phase_max = std::max(result.swing_phase_max, now.swing_phase);
     const double turn = now.motor_angle - last.motor_angle;
     result.wave_generator_turn_max = std::max(result.wave_generator_turn_max, std::abs(turn));
-    result.throughput += std::abs(now.motor_torque * turn) +
-                         std::abs(now.load_torque * (now.output_angle - last.output_angle));
+    result.throughput +=
+        std::abs(now.motor_torque * turn) + std::abs(now.load_torque * (now.output_angle - last.output_angle));
     result.state = std::max(result.state, twin.health().solver_state);
     if ((now.stamp - begin) % sample_period == 0)
     {

@@ -190,9 +190,8 @@ void Twin::Impl::observe() noexcept
 SolverState Twin::Impl::solverState() noexcept
 {
   const bool failed = counters.solver_failures > steps_at_report.solver_failures;
-  const bool doubtful =
-      counters.step_cuts > steps_at_report.step_cuts || counters.coarse_steps > steps_at_report.coarse_steps ||
-      counters.jumps > steps_at_report.jumps;
+  const bool doubtful = counters.step_cuts > steps_at_report.step_cuts ||
+                        counters.coarse_steps > steps_at_report.coarse_steps || counters.jumps > steps_at_report.jumps;
   steps_at_report = counters;
   return failed ? SolverState::FAILED : doubtful ? SolverState::DEGRADED : SolverState::OK;
 }

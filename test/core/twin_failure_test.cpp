@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -21,9 +22,9 @@ const std::vector<std::string> SOFT_GEAR{
 
 TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
 {
-  // Where a tooth jumps there is no equilibrium near; few iterations and no shorter path leave no way across.
+  // Where a tooth jumps there is no equilibrium near; one iteration and no shorter path leave no way across.
   std::vector<std::string> assignments = SOFT_GEAR;
-  assignments.insert(assignments.end(), { "solver.max_iterations=10", "solver.max_step_cuts=0" });
+  assignments.insert(assignments.end(), { "solver.max_iterations=1", "solver.max_step_cuts=0" });
   Twin twin(shippedParameters(assignments));
   twin.commandLoadTorque(MILLISECOND, 600.0);
   twin.commandLoadTorque(100 * MILLISECOND, 0.0);
@@ -116,6 +117,80 @@ TEST(ViolentRunOfTheShippedJoint, ConvergesInEveryStepAndLosesNoEnergy)
       ASSERT_LT(std::abs(twin.outputs().energy_residual), 0.5) << "seed " << seed << " at " << twin.stamp();
     }
   }
+}
+/// Steps of the twin up to `until` in which something is said of the solver.
+TwinCounters countersAfter(Twin& twin, Stamp until)
+{
+  while (twin.step(until))
+  {
+    EXPECT_TRUE(allFinite(numbers(twin.outputs()))) << twin.stamp();
+  }
+  return twin.counters();
+}
+
+TEST(DoubtfulStep, IsSaidWhenItIsTooLongForTheSwing)
+{
+  // The shipped joint swings with 390 rad/s: 0.04 rad of phase in 1e-4 s, 0.4 in 1e-3 s.
+  Twin fine(shippedParameters());
+  EXPECT_EQ(countersAfter(fine, 20 * MILLISECOND).coarse_steps, 0U);
+  EXPECT_EQ(fine.health().solver_state, SolverState::OK);
+  EXPECT_NEAR(fine.outputs().swing_phase, 0.03, 0.01);
+  Twin coarse(shippedParameters({ "solver.rate=1000" }));
+  EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 20U);
+  EXPECT_EQ(coarse.health().solver_state, SolverState::DEGRADED);
+  EXPECT_NEAR(coarse.outputs().swing_phase, 10.0 * fine.outputs().swing_phase, 0.01);
+}
+
+TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)
+{
+  for (const bool stiff : { false, true })
+  {
+    Twin twin(
+        shippedParameters({ "motor.torque_limit=12.0", stiff ? "motor.speed_limit=10.0" : "motor.speed_limit=700.0" }));
+    twin.commandMotorTorque(0, 12.0);
+    const TwinCounters counters = countersAfter(twin, 80 * MILLISECOND);
+    EXPECT_GT(counters.speed_limited, 0U);
+    EXPECT_EQ(counters.coarse_steps > 0, stiff);
+  }
+}
+
+TEST(DoubtfulStep, IsSaidWhenTeethJump)
+{
+  Twin healthy(shippedParameters());
+  healthy.commandMotorTorque(0, 2.87);
+  EXPECT_EQ(countersAfter(healthy, 90 * MILLISECOND).jumps, 0U);
+  EXPECT_GT(healthy.outputs().motor_velocity, 250.0);
+  Twin soft(shippedParameters(SOFT_GEAR));
+  soft.commandLoadTorque(0, 600.0);
+  EXPECT_GT(countersAfter(soft, 90 * MILLISECOND).jumps, 0U);
+  EXPECT_NE(soft.health().solver_state, SolverState::OK);
+}
+
+TEST(FreeOutput, WithoutAWaveStaysFinite)
+{
+  // Nothing slips in a joint whose ring is round: terms of friction without a slip once divided zero by zero.
+  Twin twin(shippedParameters({ "gear.wave_amplitude=0.0" }));
+  twin.commandMotorTorque(0, 1.0);
+  twin.commandLoadTorque(0, -0.1);
+  EXPECT_EQ(countersAfter(twin, 20 * MILLISECOND).solver_failures, 0U);
+  EXPECT_GT(twin.outputs().motor_velocity, 50.0);
+  EXPECT_GT(twin.outputs().output_velocity, 0.0);
+}
+
+TEST(FaultyTeeth, CarryNothingAndTheTwinSaysNothing)
+{
+  Twin twin(shippedParameters(), { { 0, 1, 199 }, {} });
+  twin.commandLoadTorque(0, 20.0);
+  twin.commandBrake(0, true);
+  EXPECT_EQ(countersAfter(twin, 20 * MILLISECOND).solver_failures, 0U);
+  ToothForces teeth = twin.makeToothForces();
+  twin.toothForces(teeth);
+  EXPECT_EQ(teeth.mesh_force[0], 0.0);
+  EXPECT_EQ(teeth.mesh_force[1], 0.0);
+  EXPECT_EQ(teeth.mesh_force[199], 0.0);
+  EXPECT_NE(teeth.mesh_force[2], 0.0);
+  EXPECT_THROW(Twin(shippedParameters(), { { 200 }, {} }), ParameterError);
+  EXPECT_THROW(Twin(shippedParameters(), { {}, { -1 } }), ParameterError);
 }
 }  // namespace
 }  // namespace hjt

@@ -23,15 +23,15 @@ struct TrialSample
 struct TrialResult
 {
   std::vector<TrialSample> samples;
-  bool finite{ true };                  ///< every output of every step was a finite number
+  bool finite{ true };                   ///< every output of every step was a finite number
   SolverState state{ SolverState::OK };  ///< the worst
   TwinCounters counters;
   double iterations_mean{};  ///< Newton iterations a step [-]
   std::uint32_t iterations_max{};
-  double residual_max{};         ///< largest out-of-balance force on a tooth [N]
-  double energy_residual_max{};  ///< largest |energy in - stored - dissipated| [J]
-  double throughput{};           ///< sum of |work| of motor and load [J]
-  double swing_phase_max{};      ///< largest, per step [rad]
+  double residual_max{};             ///< largest out-of-balance force on a tooth [N]
+  double energy_residual_max{};      ///< largest |energy in - stored - dissipated| [J]
+  double throughput{};               ///< sum of |work| of motor and load [J]
+  double swing_phase_max{};          ///< largest, per step [rad]
   double wave_generator_turn_max{};  ///< largest, per step [rad]
 };
 

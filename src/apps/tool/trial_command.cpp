@@ -68,54 +68,55 @@ int trial(const TrialOptions& options)
   TrialResult result;
   {
     Progress progress("running");
-    result = runTrial(twin, end, toStampLength(options.sample_period),
-                      [&](Twin& running)
-                      {
-                        profile.feed(running, profile_begin);
-                        progress.update(static_cast<double>(running.stamp() - begin) / static_cast<double>(end - begin));
-                        return interruptSignal() == 0;
-                      });
+    result =
+        runTrial(twin, end, toStampLength(options.sample_period),
+                 [&](Twin& running)
+                 {
+                   profile.feed(running, profile_begin);
+                   progress.update(static_cast<double>(running.stamp() - begin) / static_cast<double>(end - begin));
+                   return interruptSignal() == 0;
+                 });
   }
   const TwinCounters& counters = result.counters;
   if (options.json)
   {
-    std::cout << Json{ { "finite", result.finite },
-                       { "solver_state", stateName(result.state) },
-                       { "steps", counters.steps },
-                       { "iterations_mean", result.iterations_mean },
-                       { "iterations_max", result.iterations_max },
-                       { "step_cuts", counters.step_cuts },
-                       { "jumps", counters.jumps },
-                       { "coarse_steps", counters.coarse_steps },
-                       { "solver_failures", counters.solver_failures },
-                       { "speed_limited", counters.speed_limited },
-                       { "torque_clamped", counters.torque_clamped },
-                       { "load_clamped", counters.load_clamped },
-                       { "residual_max", result.residual_max },
-                       { "energy_residual_max", result.energy_residual_max },
-                       { "throughput", result.throughput },
-                       { "swing_phase_max", result.swing_phase_max },
-                       { "wave_generator_turn_max", result.wave_generator_turn_max },
-                       { "samples", samplesOf(result) } }
-                     .dump(2)
-              << '\n';
+    std::cout << Json{
+      { "finite", result.finite },
+      { "solver_state", stateName(result.state) },
+      { "steps", counters.steps },
+      { "iterations_mean", result.iterations_mean },
+      { "iterations_max", result.iterations_max },
+      { "step_cuts", counters.step_cuts },
+      { "jumps", counters.jumps },
+      { "coarse_steps", counters.coarse_steps },
+      { "solver_failures", counters.solver_failures },
+      { "speed_limited", counters.speed_limited },
+      { "torque_clamped", counters.torque_clamped },
+      { "load_clamped", counters.load_clamped },
+      { "residual_max", result.residual_max },
+      { "energy_residual_max", result.energy_residual_max },
+      { "throughput", result.throughput },
+      { "swing_phase_max", result.swing_phase_max },
+      { "wave_generator_turn_max", result.wave_generator_turn_max },
+      { "samples", samplesOf(result) }
+    }.dump(2) << '\n';
   }
   else
   {
-    printValues({ { "every output finite", result.finite ? "yes" : "no", "" },
-                  { "solver, worst state", stateName(result.state), "" },
-                  { "steps", std::to_string(counters.steps), "" },
-                  { "Newton iterations a step, mean", shortNumber(result.iterations_mean), "" },
-                  { "Newton iterations a step, most", std::to_string(result.iterations_max), "" },
-                  { "steps cut", std::to_string(counters.step_cuts), "" },
-                  { "steps in which teeth jumped", std::to_string(counters.jumps), "" },
-                  { "steps too long for the motion", std::to_string(counters.coarse_steps), "" },
-                  { "steps failed", std::to_string(counters.solver_failures), "" },
-                  { "energy residual, largest", shortNumber(result.energy_residual_max), "J" },
-                  { "work of motor and load", shortNumber(result.throughput), "J" },
-                  { "swing of the joint a step, largest", shortNumber(result.swing_phase_max), "rad" },
-                  { "turn of the wave generator a step, largest", shortNumber(result.wave_generator_turn_max),
-                    "rad" } });
+    printValues(
+        { { "every output finite", result.finite ? "yes" : "no", "" },
+          { "solver, worst state", stateName(result.state), "" },
+          { "steps", std::to_string(counters.steps), "" },
+          { "Newton iterations a step, mean", shortNumber(result.iterations_mean), "" },
+          { "Newton iterations a step, most", std::to_string(result.iterations_max), "" },
+          { "steps cut", std::to_string(counters.step_cuts), "" },
+          { "steps in which teeth jumped", std::to_string(counters.jumps), "" },
+          { "steps too long for the motion", std::to_string(counters.coarse_steps), "" },
+          { "steps failed", std::to_string(counters.solver_failures), "" },
+          { "energy residual, largest", shortNumber(result.energy_residual_max), "J" },
+          { "work of motor and load", shortNumber(result.throughput), "J" },
+          { "swing of the joint a step, largest", shortNumber(result.swing_phase_max), "rad" },
+          { "turn of the wave generator a step, largest", shortNumber(result.wave_generator_turn_max), "rad" } });
   }
   if (interruptSignal() != 0)
   {
@@ -128,7 +129,8 @@ int trial(const TrialOptions& options)
 void addTrialCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<TrialOptions>();
-  auto* command = app.add_subcommand("trial", "run the twin under a profile and tell what its solver said, step by step");
+  auto* command =
+      app.add_subcommand("trial", "run the twin under a profile and tell what its solver said, step by step");
   command
       ->add_option("--profile", options->profile,
                    "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); "

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One trial as the stress matrix runs it: what the solver said, samples, faults, an advanced profile."""
+import tool
+
+PROFILE = "time,motor_torque,load_torque,brake\n0,0,0,1\n0.004,0,40,1\n0.012,0,-40,1\n"
+
+
+class Trial(tool.ToolTest):
+    def trial(self, *arguments):
+        self.write("profile.csv", PROFILE)
+        return self.succeed_json("trial", "--profile", "profile.csv", "--duration", "0.02", *arguments)
+
+    def test_says_what_the_solver_said(self):
+        fine = self.trial()
+        self.assertTrue(fine["finite"])
+        self.assertEqual(fine["solver_state"], "ok")
+        self.assertEqual(fine["steps"], 200)
+        self.assertEqual(len(fine["samples"]["time"]), 20)
+        self.assertAlmostEqual(fine["samples"]["time"][-1], 0.02)
+        self.assertGreater(max(fine["samples"]["joint_torque"]), 40.0)
+        self.assertLess(fine["energy_residual_max"], 1e-2 * fine["throughput"])
+        coarse = self.trial("--set", "solver.rate=1000")
+        self.assertEqual(coarse["solver_state"], "degraded")
+        self.assertEqual(coarse["coarse_steps"], 20)
+
+    def test_advance_is_an_earlier_profile(self):
+        here = self.trial("--sample-period", "1e-4")["samples"]["joint_torque"]
+        there = self.trial("--sample-period", "1e-4", "--advance", "1e-3")["samples"]["joint_torque"]
+        self.assertEqual(here[30:100], there[20:90])
+
+    def test_faults(self):
+        broken = self.trial("--missing-teeth", "0,1,2,100,101,102", "--cut-rim", "40")["samples"]["output_angle"]
+        whole = self.trial()["samples"]["output_angle"]
+        self.assertGreater(abs(broken[-1] - whole[-1]), 1e-6)
+        self.fail_with(1, ["no tooth 200"], "trial", "--profile", "profile.csv", "--duration", "0.02", "--cut-rim", "200")
+
+    def test_without_a_profile(self):
+        self.fail_with(2, ["--profile"], "trial", "--duration", "0.02")
+
+
+if __name__ == "__main__":
+    tool.main()
