@@ -389,7 +389,7 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
   constexpr double GOOD_CONTRACTION = 0.1;  // better than this, the factors serve another iteration
-  constexpr int DESCENT = 5;  // times as many iterations: one for every few teeth that touch or let go
+  constexpr int DESCENT = 5;                // times as many iterations: one for every few teeth that touch or let go
   const int max_iterations = (descending_ ? DESCENT : 1) * parameters_.max_iterations;
   SolveStatus status;
   predict(target);
@@ -421,7 +421,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
     {
       break;
     }
-    if (++status.iterations > max_iterations || !(descending_ ? descend() : searchLine(status.residual)))
+    if (++status.iterations > max_iterations || !(descending_ ? stepDownhill() : searchLine(status.residual)))
     {
       status.code = SolveCode::NOT_CONVERGED;
       return status;
@@ -531,7 +531,7 @@ double RingEquilibrium::slopeAt(double length) noexcept
 
 /// One step down the energy: all the way if that is still downhill or nearly level, else to where the energy is lowest.
 /// Looks at slopes only: energies near a minimum differ by less than their rounding.
-bool RingEquilibrium::descend() noexcept
+bool RingEquilibrium::stepDownhill() noexcept
 {
   constexpr int MAX_TRIALS = 40;
   constexpr double LEVEL = 0.3;  // of the first slope

@@ -103,7 +103,7 @@ private:
   bool slopesChanged() const noexcept;
   bool searchLine(double residual) noexcept;
   double rounding() noexcept;
-  bool descend() noexcept;
+  bool stepDownhill() noexcept;
   bool downhill() noexcept;
   double slopeAt(double length) noexcept;
   void updateSensitivities() noexcept;
