@@ -8,10 +8,10 @@
 
 namespace hjt
 {
-double BearingFriction::torque(double speed, double load, double temperature) const noexcept
+double BearingFriction::torqueAtViscosity(double speed, double load, double viscosity) const noexcept
 {
   constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
-  const double product = 1e6 * viscosity(temperature) * std::abs(speed) * 60.0 / TWO_PI;
+  const double product = 1e6 * viscosity * std::abs(speed) * 60.0 / TWO_PI;
   const double diameter = 1e3 * parameters_.pitch_diameter;
   const double root = std::cbrt(std::max(product, LOW_SPEED));
   const double rolling = product < LOW_SPEED ? 160.0 : root * root;

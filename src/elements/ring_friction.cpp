@@ -19,21 +19,7 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const
     const bool leading = force > 0.0;
     const Eigen::Vector2d slip(mesh.slidingSpeed(shape, position, i, rates.by_motor, 0.0, leading),
                                mesh.slidingSpeed(shape, position, i, rates.by_output, 1.0, leading));
-    const double relative = slip.dot(speeds) / parameters_.stribeck_velocity;
-    const double coefficient =
-        parameters_.friction_kinetic +
-        (parameters_.friction_static - parameters_.friction_kinetic) * std::exp(-relative * relative);
-    friction.terms.push_back({ coefficient * std::abs(force), slip });
-  }
-}
-
-void CupFriction::addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
-{
-  if (torque_ > 0.0)
-  {
-    friction.terms.push_back({ torque_,
-                               { CupTorsion::meanRotationRate(shape, rates.by_motor),
-                                 CupTorsion::meanRotationRate(shape, rates.by_output) } });
+    friction.terms.push_back({ coefficient(slip.dot(speeds)) * std::abs(force), slip });
   }
 }
 

@@ -32,4 +32,25 @@ void JointModel::friction(const RingShape& shape, const DrivePosition& position,
   friction.viscous(1, 1) += load.viscousFriction();
   damping.add(shape, forces, rates, friction);
 }
+
+void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& speeds,
+                          const JointInputs& inputs, double viscosity, JointFriction& friction) const noexcept
+{
+  friction.terms.clear();
+  const double shaft = motor.coulombTorque() + (inputs.brake_engaged ? brake_torque : 0.0) +
+                       bearing.torqueAtViscosity(speeds[0], ring_response.contact_force, viscosity) +
+                       ring_response.interface_torque;
+  friction.terms.push_back({ shaft, { 1.0, 0.0 } });
+  for (const FlankGroup& group : ring_response.flanks)
+  {
+    if (group.slip[0] != 0.0 || group.slip[1] != 0.0)
+    {
+      friction.terms.push_back({ mesh_friction.coefficient(group.rms_slip.dot(speeds)), group.slip });
+    }
+  }
+  cup_friction.addTerm(ring_response.cup_slip, friction);
+  const Eigen::Vector3d& dashpots = ring_response.viscous;
+  friction.viscous << motor.viscousFriction() + dashpots[0], dashpots[1], dashpots[1],
+      load.viscousFriction() + dashpots[2];
+}
 }  // namespace hjt

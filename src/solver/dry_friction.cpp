@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/dry_friction.hpp"
 
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace hjt
 {
@@ -39,6 +41,29 @@ double shaftStrength(const JointFriction& friction) noexcept
     strength += term.slip[1] == 0.0 ? term.strength * std::abs(term.slip[0]) : 0.0;
   }
   return strength;
+}
+/// One slip s under regularised friction:  s + most r(s) = free,  r = s / sqrt(s^2 + e^2).  Leaves r in `share`.
+/// False: not found in a few steps.
+bool solveSlip(double free, double most, double e, double& share)
+{
+  constexpr int MAX_ITERATIONS = 12;
+  constexpr double ENOUGH = 1e-12;
+  // From the side of the law without regularisation: sliding, or standing with what is needed to hold.
+  const double held = most > 0.0 ? free / most : 2.0;
+  double slip = std::abs(held) < 1.0 ? e * held / std::sqrt(1.0 - held * held) : free - std::copysign(most, free);
+  for (int i = 0; i < MAX_ITERATIONS; ++i)
+  {
+    const double root = std::sqrt(slip * slip + e * e);
+    share = slip / root;
+    const double excess = slip + most * share - free;
+    const double change = excess / (1.0 + most * e * e / (root * root * root));
+    if (std::abs(change) <= ENOUGH * (std::abs(slip) + e))
+    {
+      return true;
+    }
+    slip -= change;
+  }
+  return false;
 }
 }  // namespace
 
@@ -108,6 +133,73 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
     }
   }
   return v;
+}
+
+bool DryFriction::slide(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+                        const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
+{
+  constexpr std::size_t MOST_TERMS = 8;
+  constexpr double SLIDING = 3e4;      // slip over the regularisation's width
+  constexpr double STICK_RANGE = 1e3;  // as in `solve`
+  const std::size_t count = friction.terms.size();
+  if (count == 0 || count > MOST_TERMS)
+  {
+    return false;
+  }
+  // The term nearest to sticking is the one unknown.
+  std::array<double, MOST_TERMS> widths{};
+  std::array<double, MOST_TERMS> senses{};
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t j = 0; j < count; ++j)
+  {
+    const double slip = friction.terms[j].slip.dot(old_speeds);
+    widths[j] = width(friction.terms[j], follow);
+    senses[j] = slip < 0.0 ? -1.0 : 1.0;
+    const double closeness = std::abs(slip) / widths[j];
+    if (closeness < least)
+    {
+      least = closeness;
+      nearest = j;
+    }
+  }
+  Eigen::Vector2d momentum = inertia_.cwiseProduct(free_speeds) - 0.5 * step * (friction.viscous * old_speeds);
+  for (std::size_t j = 0; j < count; ++j)
+  {
+    if (j != nearest)
+    {
+      momentum -= step * friction.terms[j].strength * senses[j] * friction.terms[j].slip;
+    }
+  }
+  const double a = inertia_[0] + 0.5 * step * friction.viscous(0, 0);
+  const double b = 0.5 * step * friction.viscous(0, 1);
+  const double d = inertia_[1] + 0.5 * step * friction.viscous(1, 1);
+  const double inverse = 1.0 / (a * d - b * b);
+  const FrictionTerm& term = friction.terms[nearest];
+  const Eigen::Vector2d without(inverse * (d * momentum[0] - b * momentum[1]),
+                                inverse * (a * momentum[1] - b * momentum[0]));
+  const Eigen::Vector2d response(inverse * (d * term.slip[0] - b * term.slip[1]),
+                                 inverse * (a * term.slip[1] - b * term.slip[0]));
+  const double most = step * term.strength * term.slip.dot(response);  // of its slip, that this term can take
+  double share = 0.0;                                                  // of its strength that it acts with
+  if (!solveSlip(term.slip.dot(without), most, widths[nearest], share))
+  {
+    return false;
+  }
+  const Eigen::Vector2d v = without - step * term.strength * share * response;
+  for (std::size_t j = 0; j < count; ++j)
+  {
+    if (j != nearest && !(senses[j] * friction.terms[j].slip.dot(v) > SLIDING * widths[j]))
+    {
+      return false;
+    }
+  }
+  if (!(std::abs(v[0]) >= STICK_RANGE * width_))
+  {
+    return false;
+  }
+  speeds = v;
+  return true;
 }
 
 Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double follow,

@@ -13,6 +13,8 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
   , running_(2 * model.ring.rest.teeth())
+  , temperature_(inputs.temperature)
+  , viscosity_(model.bearing.viscosity(temperature_))
 {
 }
 
@@ -33,10 +35,82 @@ SolveStatus JointDynamics::settle() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
+  on_surface_ = false;
+  takeRing();
+  surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
   return result;
 }
 
 SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexcept
+{
+  if ((on_surface_ || surface_agrees_) && surface_->locate(motor_angle, output_angle, place_))
+  {
+    on_surface_ = true;
+    surface_agrees_ = false;
+    motor_angle_ = motor_angle;
+    output_angle_ = output_angle;
+    response_ = surface_->response(place_);
+    return {};
+  }
+  if (on_surface_)
+  {
+    on_surface_ = false;
+    const SolveStatus brought = bringRing();  // a short way then remains to what is asked for
+    status.iterations += brought.iterations;
+  }
+  const SolveStatus result = placeRing(motor_angle, output_angle);
+  takeRing();
+  surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
+  return result;
+}
+
+void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
+{
+  if (on_surface_ && surface == nullptr)
+  {
+    on_surface_ = false;
+    const SolveStatus brought = bringRing();
+    status.iterations += brought.iterations;
+    takeRing();
+  }
+  surface_ = surface;
+  surface_agrees_ = surface != nullptr && !on_surface_ && surfaceAgrees();
+}
+
+SolveStatus JointDynamics::bringRing() noexcept
+{
+  return ring_.moveTo({ motor_angle_, output_angle_, model_.ring.gear.wave_amplitude });
+}
+
+/// The full ring's equilibrium is the present one.
+void JointDynamics::takeRing() noexcept
+{
+  const Eigen::Matrix2d& k = ring_.stiffness();
+  response_.energy = ring_.forces().energy;
+  response_.wave_generator_torque = ring_.forces().wave_generator_torque;
+  response_.output_torque = ring_.forces().output_torque;
+  response_.follow = k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0;
+  response_.output_stiffness = k(1, 1);
+  motor_angle_ = ring_.position().wave_generator_angle;
+  output_angle_ = ring_.position().output_angle;
+}
+
+/// Whether the surface gives the full ring's torque at the present angles, well inside its edges. It does not where the
+/// teeth have jumped.
+bool JointDynamics::surfaceAgrees() const noexcept
+{
+  constexpr double MARGIN = 0.05;     // of the surface's range
+  constexpr double TOLERANCE = 2e-6;  // of the output's angle at given torque [rad]
+  ResponseSurface::Place place;
+  if (!surface_->locate(motor_angle_, output_angle_, place) || surface_->nearEdge(place, MARGIN))
+  {
+    return false;
+  }
+  const double miss = surface_->response(place).output_torque - response_.output_torque;
+  return std::abs(miss) <= TOLERANCE * response_.output_stiffness;
+}
+
+SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) noexcept
 {
   const DrivePosition target{ motor_angle, output_angle, model_.ring.gear.wave_amplitude };
   SolveStatus result = ring_.moveTo(target);
@@ -60,17 +134,29 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
   return result;
 }
 
-double JointDynamics::follow() const noexcept
-{
-  const Eigen::Matrix2d& k = ring_.stiffness();
-  return k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0;
-}
-
 void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
 {
+  if (on_surface_)
+  {
+    RingFrictionResponse ring_friction;
+    surface_->friction(place_, ring_friction);
+    model_.friction(ring_friction, speeds, inputs, viscosity(), friction_);
+    return;
+  }
   const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
   model_.friction(ring_.shape(), ring_.position(), ring_.forces(), rates, follow(), speeds, inputs, running_,
                   friction_);
+}
+
+/// Of the bearing's grease, at the present temperature.
+double JointDynamics::viscosity() noexcept
+{
+  if (inputs.temperature != temperature_)
+  {
+    temperature_ = inputs.temperature;
+    viscosity_ = model_.bearing.viscosity(temperature_);
+  }
+  return viscosity_;
 }
 
 void JointDynamics::operator()(const JointState& x, JointState& rate, double) noexcept

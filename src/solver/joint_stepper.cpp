@@ -65,7 +65,7 @@ bool JointStepper::reset() noexcept
   dynamics_.inputs = {};
   const bool settled = dynamics_.settle().ok();
   x_.setZero();
-  x_[OUTPUT_ANGLE] = dynamics_.ring().position().output_angle;
+  x_[OUTPUT_ANGLE] = dynamics_.outputAngle();
   speeds_.setZero();
   friction_.setZero();
   balance_ = 0.0;

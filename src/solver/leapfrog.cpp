@@ -18,7 +18,12 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   const Eigen::Vector2d torque = system.torque();
   system.updateFriction(before);
   const Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
-  const Eigen::Vector2d after = system.dryFriction().solve(system.friction(), system.follow(), before, free, dt);
+  Eigen::Vector2d after;
+  // On the surface the friction is in few terms, and all is done to be quick.
+  if (!system.onSurface() || !system.dryFriction().slide(system.friction(), system.follow(), before, free, dt, after))
+  {
+    after = system.dryFriction().solve(system.friction(), system.follow(), before, free, dt);
+  }
   speeds_ = 0.5 * (before + after);
   friction_ = inertia.cwiseProduct(after - free) / dt;
   x.segment<2>(MOTOR_ANGLE) = angles;

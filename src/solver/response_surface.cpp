@@ -87,6 +87,7 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   place.below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
   place.above = place.below + stride;
   place.u = columns - column;
+  place.at = v;
   place.height = table_.lines[line + 1] - table_.lines[line];
   place.v = (v - table_.lines[line]) * inverse_height_[line];
   return true;
@@ -115,8 +116,7 @@ RingResponse ResponseSurface::response(const Place& place) const noexcept
                                     h * b[Table::ENERGY_BY_UV]);
   }
   const double slope_v = along_u.value(by_v[0], by_uv[0], by_v[1], by_uv[1]) / place.height;
-  const double slope_u =
-      along_u.rate(energy[0], by_u[0], energy[1], by_u[1]) * table_.columns * pitches_per_radian_;
+  const double slope_u = along_u.rate(energy[0], by_u[0], energy[1], by_u[1]) * table_.columns * pitches_per_radian_;
   RingResponse response;
   response.energy = along_u.value(energy[0], by_u[0], energy[1], by_u[1]);
   response.output_torque = -slope_v;

@@ -352,10 +352,11 @@ void RingEquilibrium::shift(int pitches) noexcept
 /// goes along its own tangent.
 void RingEquilibrium::predict(const DrivePosition& target) noexcept
 {
-  constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
+  constexpr double SMALL = 0.02;        // of a pitch; below it the tangent alone is as good
+  constexpr double MOST_PITCHES = 1e9;  // counted as an int
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - now_.position.wave_generator_angle) / pitch;
-  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < now_.shape.teeth())
+  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
   {
     const int whole = static_cast<int>(std::floor(pitches));
     if (whole != 0)

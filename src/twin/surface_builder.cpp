@@ -82,8 +82,8 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
   for (const Sums& group : sums)
   {
     const double size = group.force > 0.0 ? std::sqrt(group.squares[0] / group.force) : 0.0;
-    const Eigen::Vector2d rms = size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size))
-                                           : Eigen::Vector2d(0.0, 0.0);
+    const Eigen::Vector2d rms =
+        size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
     // From (motor speed, output speed less what follows) to (motor speed, output speed).
     *groups++ = group.slip[0] - follow * group.slip[1];
     *groups++ = group.slip[1];
@@ -103,11 +103,10 @@ public:
     , ring_(model_.ring, staticSolver(parameters.solver))
     , friction_(parameters.gear.teeth_flexspline)
     , running_(2 * parameters.gear.teeth_flexspline)
-    , tooth_angles_(Eigen::VectorXd::LinSpaced(
-          parameters.gear.teeth_flexspline, 0.0,
-          (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))
-    , torque_limit_(std::max(parameters.output.load_torque_limit,
-                             parameters.motor.torque_limit * nominalRatio(parameters.gear)))
+    , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,
+                                               (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))
+    , torque_limit_(
+          std::max(parameters.output.load_torque_limit, parameters.motor.torque_limit * nominalRatio(parameters.gear)))
   {
     table_.pitch = model_.ring.rest.pitchAngle();
     table_.ratio = nominalRatio(parameters.gear);
@@ -255,8 +254,8 @@ private:
   /// Friction of ring and bearing at the motor as the drive runs, per speed and with static flanks [N.m].
   double frictionTorque(const RingFrictionResponse& friction, double follow) const
   {
-    double torque = model_.bearing.torque(0.0, friction.contact_force, parameters_.input.temperature) +
-                    friction.interface_torque;
+    double torque =
+        model_.bearing.torque(0.0, friction.contact_force, parameters_.input.temperature) + friction.interface_torque;
     for (const FlankGroup& group : friction.flanks)
     {
       torque += parameters_.mesh.friction_static * std::abs(group.slip[0] + follow * group.slip[1]);
@@ -278,7 +277,7 @@ private:
     RingFrictionResponse interpolated;
     surface.friction(place, interpolated);
     RingFrictionResponse exact;
-    const ResponseSurface::Place at_node{ &node, &node, 0.0, 0.0, 1.0 };
+    const ResponseSurface::Place at_node{ &node, &node, 0.0, 0.0, 1.0, 0.0 };
     surface.friction(at_node, exact);
     const double follow = node[SurfaceTable::FOLLOW];
     return std::abs(response.output_torque - output_torque) <= outputTolerance(node) &&
@@ -345,7 +344,8 @@ private:
     table_.columns = LEAST_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
     {
-      table_.columns = std::max(table_.columns, columnsFor(-load * torque_limit_ / parameters_.cup.torsion_stiffness[0]));
+      table_.columns =
+          std::max(table_.columns, columnsFor(-load * torque_limit_ / parameters_.cup.torsion_stiffness[0]));
     }
     for (const double direction : { 1.0, -1.0 })
     {
@@ -366,8 +366,8 @@ private:
       if (reached < torque_limit_)
       {
         std::ostringstream text;
-        text << "the ring finds no equilibrium beyond " << reached << " N.m at the output, less than the " << torque_limit_
-             << " N.m that load or motor can bring";
+        text << "the ring finds no equilibrium beyond " << reached << " N.m at the output, less than the "
+             << torque_limit_ << " N.m that load or motor can bring";
         obstacle_ = text.str();
       }
     }

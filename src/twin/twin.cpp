@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
@@ -17,7 +19,7 @@ namespace hjt
 {
 struct Twin::Impl
 {
-  Impl(const Parameters& given, const ToothFaults& faults)
+  Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
     : parameters(given)
     , model(makeFaultyJoint(given, faults))
     , stepper(given, model)
@@ -30,6 +32,14 @@ struct Twin::Impl
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
+    if (given.solver.scene == SceneKind::AUTO)
+    {
+      if (std::optional<SurfaceTable> table = obtainSurface(given, surface_source))
+      {
+        surface.emplace(std::move(*table));
+        stepper.useSurface(&*surface);
+      }
+    }
     reset(0);
   }
 
@@ -62,9 +72,11 @@ struct Twin::Impl
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
   SolverState solverState() noexcept;
+  LobeLoads lobes() const noexcept;
 
   Parameters parameters;
   JointModel model;
+  std::optional<ResponseSurface> surface;
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -157,7 +169,7 @@ void Twin::Impl::step() noexcept
 
 void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
 {
-  const RingForces& forces = stepper.dynamics().ring().forces();
+  const RingResponse& ring = stepper.dynamics().response();
   const Eigen::Vector2d& friction = stepper.frictionTorque();
   outputs.stamp = now;
   outputs.motor_angle = stepper.motorAngle();
@@ -166,10 +178,10 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = motor_torque;
   outputs.load_torque = load_torque;
-  outputs.wave_generator_torque = -forces.wave_generator_torque;
-  outputs.joint_torque = forces.output_torque;
-  outputs.friction_torque = std::abs(friction[0] + stepper.dynamics().follow() * friction[1]);
-  outputs.torsional_stiffness = stepper.dynamics().ring().stiffness()(1, 1);
+  outputs.wave_generator_torque = -ring.wave_generator_torque;
+  outputs.joint_torque = ring.output_torque;
+  outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
+  outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
@@ -196,7 +208,26 @@ SolverState Twin::Impl::solverState() noexcept
   return failed ? SolverState::FAILED : doubtful ? SolverState::DEGRADED : SolverState::OK;
 }
 
-Twin::Twin(const Parameters& parameters, const ToothFaults& faults)
+/// How the load is shared at the current instant.
+LobeLoads Twin::Impl::lobes() const noexcept
+{
+  const JointDynamics& dynamics = stepper.dynamics();
+  if (!dynamics.onSurface())
+  {
+    const RingForces& forces = dynamics.ring().forces();
+    return lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles, outputs.motor_angle });
+  }
+  const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
+  LobeLoads loads;
+  loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
+  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  const double sum = loads.mesh_force[0] + loads.mesh_force[1];
+  loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
+  loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);
+  return loads;
+}
+
+Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& surface_source)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
@@ -204,7 +235,7 @@ Twin::Twin(const Parameters& parameters, const ToothFaults& faults)
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
-  impl_ = std::make_unique<Impl>(parameters, faults);
+  impl_ = std::make_unique<Impl>(parameters, faults, surface_source);
 }
 
 Twin::~Twin() = default;
@@ -266,6 +297,11 @@ const TwinCounters& Twin::counters() const noexcept
   return impl_->counters;
 }
 
+bool Twin::onSurface() const noexcept
+{
+  return impl_->stepper.dynamics().onSurface();
+}
+
 EncoderReadings Twin::encoders() const noexcept
 {
   const JointOutputs& joint = impl_->outputs;
@@ -282,10 +318,8 @@ EncoderReadings Twin::encoders() const noexcept
 HealthReport Twin::health() noexcept
 {
   const JointOutputs& joint = impl_->outputs;
-  const RingForces& forces = impl_->stepper.dynamics().ring().forces();
   const MotionIndicators motion = impl_->monitor.indicators();
-  const LobeLoads lobes =
-      lobeLoads({ forces.flank_force, forces.contact_force, impl_->tooth_angles, joint.motor_angle });
+  const LobeLoads lobes = impl_->lobes();
   HealthReport report;
   report.transmission_ratio_valid = motion.transmission_ratio.valid;
   report.transmission_ratio = motion.transmission_ratio.value;
@@ -320,6 +354,7 @@ ToothForces Twin::makeToothForces() const
 
 void Twin::toothForces(ToothForces& out) const noexcept
 {
+  impl_->counters.solver_failures += impl_->stepper.bringRing().ok() ? 0 : 1;
   const RingEquilibrium& ring = impl_->stepper.dynamics().ring();
   const RingModel& model = ring.model();
   const RingShape& shape = ring.shape();

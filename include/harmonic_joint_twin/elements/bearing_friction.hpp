@@ -20,7 +20,13 @@ public:
   explicit BearingFriction(const BearingParameters& parameters) : parameters_(parameters) {}
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
-  double torque(double speed, double load, double temperature) const noexcept;
+  double torque(double speed, double load, double temperature) const noexcept
+  {
+    return torqueAtViscosity(speed, load, viscosity(temperature));
+  }
+
+  /// The same where the viscosity [m^2/s] is known: it is the costly part, and the temperature hardly changes.
+  double torqueAtViscosity(double speed, double load, double viscosity) const noexcept;
 
   /// Kinematic viscosity of the base oil [m^2/s] at a temperature [degC].
   double viscosity(double temperature) const noexcept;

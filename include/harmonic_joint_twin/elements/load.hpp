@@ -20,12 +20,12 @@ public:
 
   double gravityEnergy(double angle) const noexcept
   {
-    return -parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);
+    return weightless() ? 0.0 : -parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);
   }
   /// Torque of gravity on the output: minus the derivative of its energy [N.m].
   double gravityTorque(double angle) const noexcept
   {
-    return -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
+    return weightless() ? 0.0 : -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
   }
   /// Second derivative of its energy [N.m/rad].
   double gravityStiffness(double angle) const noexcept
@@ -34,6 +34,8 @@ public:
   }
 
 private:
+  bool weightless() const noexcept { return parameters_.gravity_torque == 0.0; }
+
   OutputParameters parameters_;
 };
 }  // namespace hjt

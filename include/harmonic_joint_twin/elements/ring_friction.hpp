@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 #include "harmonic_joint_twin/elements/cup_torsion.hpp"
@@ -30,6 +32,14 @@ public:
   void addTerms(const ToothMesh& mesh, const RingShape& shape, const DrivePosition& position, const RingForces& forces,
                 const RingRates& rates, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
+  /// At a sliding speed along the flank [m/s]: the Stribeck curve [-].
+  double coefficient(double sliding_speed) const noexcept
+  {
+    const double relative = sliding_speed / parameters_.stribeck_velocity;
+    return parameters_.friction_kinetic +
+           (parameters_.friction_static - parameters_.friction_kinetic) * std::exp(-relative * relative);
+  }
+
 private:
   MeshParameters parameters_;
 };
@@ -43,7 +53,21 @@ public:
   explicit CupFriction(const CupParameters& parameters) : torque_(parameters.friction_torque) {}
 
   /// Adds one term, or none if there is no friction.
-  void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept;
+  void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
+  {
+    addTerm(
+        { CupTorsion::meanRotationRate(shape, rates.by_motor), CupTorsion::meanRotationRate(shape, rates.by_output) },
+        friction);
+  }
+
+  /// The same where the mean rotation's rates by motor and output angle [-] are known.
+  void addTerm(const Eigen::Vector2d& rates, JointFriction& friction) const noexcept
+  {
+    if (torque_ > 0.0)
+    {
+      friction.terms.push_back({ torque_, rates });
+    }
+  }
 
 private:
   double torque_;  // [N.m]

@@ -10,6 +10,7 @@
 #include "harmonic_joint_twin/elements/ring_damping.hpp"
 #include "harmonic_joint_twin/elements/ring_friction.hpp"
 #include "harmonic_joint_twin/model/ring_model.hpp"
+#include "harmonic_joint_twin/model/ring_response.hpp"
 
 namespace hjt
 {
@@ -30,17 +31,17 @@ struct JointModel
   Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
 
   /// Stored in ring and gravity [J].
-  double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
+  double storedEnergy(const RingResponse& ring_response, double output_angle) const noexcept
   {
-    return forces.energy + load.gravityEnergy(position.output_angle);
+    return ring_response.energy + load.gravityEnergy(output_angle);
   }
 
   /// All torques but friction, on motor and output [N.m].
-  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
+  Eigen::Vector2d torque(const RingResponse& ring_response, double output_angle,
                          const JointInputs& inputs) const noexcept
   {
-    return { inputs.motor_torque + forces.wave_generator_torque,
-             forces.output_torque + load.gravityTorque(position.output_angle) - inputs.load_torque };
+    return { inputs.motor_torque + ring_response.wave_generator_torque,
+             ring_response.output_torque + load.gravityTorque(output_angle) - inputs.load_torque };
   }
 
   /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.
@@ -48,6 +49,10 @@ struct JointModel
   void friction(const RingShape& shape, const DrivePosition& position, const RingForces& forces, const RingRates& rates,
                 double follow, const Eigen::Vector2d& speeds, const JointInputs& inputs, Eigen::VectorXd& running,
                 JointFriction& friction) const noexcept;
+
+  /// The same from a summary of the ring. `viscosity`: of the bearing's grease [m^2/s].
+  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& speeds, const JointInputs& inputs,
+                double viscosity, JointFriction& friction) const noexcept;
 
   RingModel ring;
   Motor motor;

@@ -21,8 +21,8 @@ struct RingResponse
 /// while all flanks of the group slide the same way.
 struct FlankGroup
 {
-  Eigen::Vector2d slip;       ///< sum of force times slip by motor and output angle [N.m]
-  Eigen::Vector2d rms_slip;   ///< root mean square slip, by motor and output angle [m/rad]
+  Eigen::Vector2d slip;      ///< sum of force times slip by motor and output angle [N.m]
+  Eigen::Vector2d rms_slip;  ///< root mean square slip, by motor and output angle [m/rad]
 };
 
 /// Friction of the ring in equilibrium, as it acts on the joint's two speeds.
@@ -30,10 +30,10 @@ struct RingFrictionResponse
 {
   static constexpr int FLANK_GROUPS = 4;
 
-  double contact_force{};                         ///< sum over all teeth: load of the wave generator's bearing [N]
-  double interface_torque{};                      ///< between outer race and rim [N.m]
-  Eigen::Vector2d cup_slip;                       ///< mean rotation of the rim by motor and output angle [-]
-  Eigen::Vector3d viscous;                        ///< dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
+  double contact_force{};     ///< sum over all teeth: load of the wave generator's bearing [N]
+  double interface_torque{};  ///< between outer race and rim [N.m]
+  Eigen::Vector2d cup_slip;   ///< mean rotation of the rim by motor and output angle [-]
+  Eigen::Vector3d viscous;    ///< dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
   std::array<FlankGroup, FLANK_GROUPS> flanks;
 };
 }  // namespace hjt

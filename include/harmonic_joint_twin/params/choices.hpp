@@ -30,6 +30,11 @@ constexpr ChoiceNames<ProfileKind, 4> choiceNames(ProfileKind)
              { "double_arc", ProfileKind::DOUBLE_ARC } } };
 }
 
+constexpr ChoiceNames<SceneKind, 2> choiceNames(SceneKind)
+{
+  return { { { "full_ring", SceneKind::FULL_RING }, { "auto", SceneKind::AUTO } } };
+}
+
 constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
 {
   return { { { "leapfrog", StepperKind::LEAPFROG }, { "runge_kutta4", StepperKind::RUNGE_KUTTA4 } } };

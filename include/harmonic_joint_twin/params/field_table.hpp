@@ -159,6 +159,8 @@ void visitFields(P& p, Visitor&& visit)
         "halvings of a step that does not converge");
   visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
         "motor speed below which friction is regularised");
+  visit("solver.scene", p.solver.scene,
+        "full_ring: every tooth at every step; auto: a response surface built at start, where it holds");
 
   visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{ 1, 1 << 30 },
         "counts of the motor encoder after quadrature");

@@ -160,6 +160,13 @@ enum class StepperKind
   RUNGE_KUTTA4
 };
 
+/// By what the ring's equilibrium is found: always all teeth, or a response surface where one holds.
+enum class SceneKind
+{
+  FULL_RING,
+  AUTO
+};
+
 struct SolverParameters
 {
   double rate{};
@@ -168,6 +175,7 @@ struct SolverParameters
   int max_iterations{};
   int max_step_cuts{};
   double stiction_velocity{};
+  SceneKind scene{};
 };
 
 struct SensorParameters

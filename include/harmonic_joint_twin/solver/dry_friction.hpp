@@ -25,6 +25,12 @@ public:
   Eigen::Vector2d solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
+  /// The same minimum where every term but one slides as it did at the old speeds, far from standing still: linear but
+  /// for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by the tails of the
+  /// regularisation, less than 1e-9 of the friction.
+  bool slide(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+             const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
+
   /// Friction torque on motor and output at given speeds, explicit [N.m].
   Eigen::Vector2d torque(const JointFriction& friction, double follow, const Eigen::Vector2d& speeds) const noexcept;
 

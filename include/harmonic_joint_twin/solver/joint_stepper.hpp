@@ -26,6 +26,10 @@ public:
   /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
   bool step(const JointInputs& inputs) noexcept;
 
+  /// See JointDynamics.
+  void useSurface(const ResponseSurface* surface) noexcept { dynamics_.useSurface(surface); }
+  SolveStatus bringRing() noexcept { return dynamics_.onSurface() ? dynamics_.bringRing() : SolveStatus{}; }
+
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]

@@ -18,19 +18,19 @@ struct SurfaceTable
   /// What is kept at every node, in this order.
   enum Value : std::uint8_t
   {
-    ENERGY,            // U [J]
-    ENERGY_BY_U,       // dU/du, u in pitches [J]
-    ENERGY_BY_V,       // dU/dv [J/rad]
-    ENERGY_BY_UV,      // [J/rad]
-    FOLLOW,            // [-]
-    OUTPUT_STIFFNESS,  // [N.m/rad]
-    CONTACT_FORCE,     // [N]
-    INTERFACE_TORQUE,  // [N.m]
-    CUP_SLIP,          // by motor, by output [-]
-    VISCOUS = CUP_SLIP + 2,                                     // motor-motor, motor-output, output-output [N.m.s/rad]
-    FLANKS = VISCOUS + 3,                                       // slip (2) and rms slip (2) a group [N.m], [m/rad]
+    ENERGY,                  // U [J]
+    ENERGY_BY_U,             // dU/du, u in pitches [J]
+    ENERGY_BY_V,             // dU/dv [J/rad]
+    ENERGY_BY_UV,            // [J/rad]
+    FOLLOW,                  // [-]
+    OUTPUT_STIFFNESS,        // [N.m/rad]
+    CONTACT_FORCE,           // [N]
+    INTERFACE_TORQUE,        // [N.m]
+    CUP_SLIP,                // by motor, by output [-]
+    VISCOUS = CUP_SLIP + 2,  // motor-motor, motor-output, output-output [N.m.s/rad]
+    FLANKS = VISCOUS + 3,    // slip (2) and rms slip (2) a group [N.m], [m/rad]
     TEETH_LOADED = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
-    LOBE_FORCE,                                                 // of both lobes [N]
+    LOBE_FORCE,                                                      // of both lobes [N]
     VALUES = LOBE_FORCE + 2
   };
   using Node = std::array<double, VALUES>;
@@ -61,10 +61,18 @@ public:
     double u;       ///< within the interval, 0 ... 1
     double v;       ///< likewise
     double height;  ///< of the interval in v [rad]
+    double at;      ///< v [rad]
   };
 
   /// False, and nothing done, outside the table or at angles that are no numbers.
   bool locate(double motor_angle, double output_angle, Place& place) const noexcept;
+
+  /// Whether a place lies within a share of the range from its ends.
+  bool nearEdge(const Place& place, double share) const noexcept
+  {
+    return place.at < lowest() + share * (highest() - lowest()) ||
+           place.at > highest() - share * (highest() - lowest());
+  }
 
   RingResponse response(const Place& place) const noexcept;
   void friction(const Place& place, RingFrictionResponse& friction) const noexcept;
@@ -78,7 +86,7 @@ public:
   }
 
   const SurfaceTable& table() const noexcept { return table_; }
-  double lowest() const noexcept { return table_.lines.front(); }   ///< of v [rad]
+  double lowest() const noexcept { return table_.lines.front(); }  ///< of v [rad]
   double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
 
 private:

@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/model/tooth_faults.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
+#include "harmonic_joint_twin/twin/surface_cache.hpp"
 
 namespace hjt
 {
@@ -113,8 +114,10 @@ struct TwinCounters
 class Twin
 {
 public:
-  /// Inserts the wave generator (some milliseconds). @throws ParameterError if the parameters have no equilibrium.
-  explicit Twin(const Parameters& parameters, const ToothFaults& faults = {});
+  /// Inserts the wave generator (some milliseconds). With solver.scene = auto and no faults also builds the response
+  /// surface (seconds) or takes it from the cache. @throws ParameterError if the parameters have no equilibrium.
+  explicit Twin(const Parameters& parameters, const ToothFaults& faults = {},
+                const SurfaceSource& surface_source = {});
   ~Twin();
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;
@@ -139,10 +142,12 @@ public:
   const JointOutputs& outputs() const noexcept;
   EncoderReadings encoders() const noexcept;
   const TwinCounters& counters() const noexcept;
+  bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 
-  ToothForces makeToothForces() const;                   ///< allocates: call once
-  void toothForces(ToothForces& forces) const noexcept;  ///< fills the arrays at the current instant
-  HealthReport health() noexcept;                        ///< at the current instant; clears "since last report" states
+  ToothForces makeToothForces() const;  ///< allocates: call once
+  /// Fills the arrays at the current instant. On the response surface this solves the full ring, once.
+  void toothForces(ToothForces& forces) const noexcept;
+  HealthReport health() noexcept;  ///< at the current instant; clears "since last report" states
 
 private:
   struct Impl;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/response_surface.hpp"
+
+namespace hjt
+{
+/// Where response surfaces are kept, and whom to tell.
+struct SurfaceSource
+{
+  std::string cache_directory;                     ///< made if missing; empty: nothing is kept
+  std::function<void(double)> progress;            ///< of building, 0 ... 1
+  std::function<void(const std::string&)> notice;  ///< why there is no surface, or why it could not be kept
+};
+
+/// $XDG_CACHE_HOME/harmonic_joint_twin, or ~/.cache/harmonic_joint_twin; empty if there is no home.
+std::string surfaceCacheDirectory();
+
+/// The surface of these parameters: from the cache, or built and put there. Nothing if the gear has none.
+///
+/// A file counts only if it names this format, holds the very same parameters and its sum is right; else it is built
+/// anew and written over. Files appear whole or not at all.
+std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const SurfaceSource& source);
+
+/// File of these parameters within the directory.
+std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);
+}  // namespace hjt
