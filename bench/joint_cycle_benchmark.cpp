@@ -63,15 +63,24 @@ struct Result
   std::uint64_t solver_failures{};
 };
 
+/// What is asked of the twin: every per-tooth array at every step, or encoders at 1 kHz and health, on the response surface.
+enum class Watch
+{
+  TEETH,
+  ENCODERS
+};
+
 /// One cycle: a command, a step, and at every step every output and every per-tooth array, published or not; only the
 /// health report keeps to its rate.
 class Cycle
 {
 public:
-  Cycle(const hjt::Parameters& parameters, const Scene& scene)
+  Cycle(const hjt::Parameters& parameters, const Scene& scene, Watch watch)
     : scene_(scene)
-    , twin_(parameters)
+    , watch_(watch)
+    , twin_(parameters, hjt::SurfaceSource{ hjt::surfaceCacheDirectory(), {}, {} })
     , forces_(twin_.makeToothForces())
+    , encoder_interval_(std::max(1ll, std::llround(parameters.solver.rate / parameters.publish.encoders_rate)))
     , health_interval_(std::max(1ll, std::llround(parameters.solver.rate / parameters.publish.health_rate)))
     , reduced_load_(scene.load_torque / hjt::nominalRatio(parameters.gear))
   {
@@ -86,8 +95,14 @@ public:
     twin_.commandMotorTorque(next, reduced_load_ + GAIN * error);
     twin_.commandLoadTorque(next, scene_.load_torque);
     twin_.step(next);
-    twin_.toothForces(forces_);
-    encoders_ = twin_.encoders();
+    if (watch_ == Watch::TEETH)
+    {
+      twin_.toothForces(forces_);
+    }
+    if (watch_ == Watch::TEETH || twin_.counters().steps % encoder_interval_ == 0)
+    {
+      encoders_ = twin_.encoders();
+    }
     if (twin_.counters().steps % health_interval_ == 0)
     {
       health_ = twin_.health();
@@ -98,23 +113,29 @@ public:
 
 private:
   const Scene& scene_;
+  Watch watch_;
   hjt::Twin twin_;
   hjt::ToothForces forces_;
   hjt::EncoderReadings encoders_;
   hjt::HealthReport health_;
-  std::uint64_t health_interval_;  // [steps]
-  double reduced_load_;            // [N.m]
+  std::uint64_t encoder_interval_;  // [steps]
+  std::uint64_t health_interval_;   // [steps]
+  double reduced_load_;             // [N.m]
 };
 
 /// `clock`: what single cycles are timed with.
-Result measure(const hjt::Parameters& parameters, const Scene& scene, double duration, clockid_t clock)
+/// On the surface a cycle is no longer than a look at the clock, so there a hundred are timed at once.
+Result measure(const hjt::Parameters& parameters, const Scene& scene, Watch watch, double duration, clockid_t clock)
 {
+  const std::size_t cycles = watch == Watch::TEETH ? 1 : 100;
   constexpr double RUN_UP = 0.25;  // [s] simulated, until the speed is reached; timed is what comes after
   const auto run_up_steps = static_cast<int>(RUN_UP * parameters.solver.rate);
-  const auto steps = static_cast<std::size_t>(std::max(1.0, duration * parameters.solver.rate));
-  std::vector<double> times(steps);
+  const auto timed =
+      static_cast<std::size_t>(std::max(1.0, duration * parameters.solver.rate / static_cast<double>(cycles)));
+  const std::size_t steps = timed * cycles;
+  std::vector<double> times(timed);
   Result result;
-  Cycle cycle(parameters, scene);
+  Cycle cycle(parameters, scene, watch);
   std::uint64_t iterations = 0;
 
   const std::size_t allocations_before = hjt::allocationCount();
@@ -127,37 +148,40 @@ Result measure(const hjt::Parameters& parameters, const Scene& scene, double dur
   double before = readClock(clock);
   for (double& time : times)
   {
-    cycle.run();
+    for (std::size_t i = 0; i < cycles; ++i)
+    {
+      cycle.run();
+      iterations += cycle.twin().outputs().iterations;
+    }
     const double after = readClock(clock);
-    time = 1e6 * (after - before);
+    time = 1e6 * (after - before) / static_cast<double>(cycles);
     before = after;
-    iterations += cycle.twin().outputs().iterations;
     result.motor_speed = std::max(result.motor_speed, std::abs(cycle.twin().outputs().motor_velocity));
   }
   const double wall_time = readClock(CLOCK_MONOTONIC) - start;
   const double processor_time = readClock(CLOCK_THREAD_CPUTIME_ID) - processor_start;
   result.allocations = hjt::allocationCount() - allocations_before;
 
-  result.scene = scene.name;
+  result.scene = (watch == Watch::TEETH ? "" : "surface: ") + scene.name;
   result.simulated = static_cast<double>(steps) / parameters.solver.rate;
   result.real_time = result.simulated / wall_time;
   result.one_core = result.simulated / processor_time;
   result.iterations = static_cast<double>(iterations) / static_cast<double>(steps);
   result.solver_failures = cycle.twin().counters().solver_failures;
   std::sort(times.begin(), times.end());
-  result.median = times[steps / 2];
-  result.p999 = times[std::min(steps - 1, static_cast<std::size_t>(0.999 * static_cast<double>(steps)))];
+  result.median = times[timed / 2];
+  result.p999 = times[std::min(timed - 1, static_cast<std::size_t>(0.999 * static_cast<double>(timed)))];
   result.max = times.back();
   return result;
 }
 
 void printTable(const std::vector<Result>& results)
 {
-  std::printf("%-34s %10s %10s %10s %10s %10s %10s %11s %9s\n", "cycle", "median us", "p99.9 us", "max us",
+  std::printf("%-44s %10s %10s %10s %10s %10s %10s %11s %9s\n", "cycle", "median us", "p99.9 us", "max us",
               "x realtime", "x one core", "iterations", "allocations", "failures");
   for (const Result& result : results)
   {
-    std::printf("%-34s %10.1f %10.1f %10.1f %10.2f %10.2f %10.2f %11zu %9zu\n", result.scene.c_str(), result.median,
+    std::printf("%-44s %10.3f %10.3f %10.1f %10.2f %10.2f %10.2f %11zu %9zu\n", result.scene.c_str(), result.median,
                 result.p999, result.max, result.real_time, result.one_core, result.iterations, result.allocations,
                 static_cast<std::size_t>(result.solver_failures));
   }
@@ -187,7 +211,8 @@ void printJson(const std::vector<Result>& results)
 int main(int argc, char** argv)
 {
   CLI::App app(
-      "Time of the twin's whole cycle, every per-tooth array filled at every step.\n"
+      "Time of the twin's whole cycle: every per-tooth array filled at every step; and on the response surface, only\n"
+      "encoders and health asked for, twenty times as long.\n"
       "Exit code 1 if a cycle allocates, if the solver fails or if it is slower than asked for.");
   std::vector<std::string> assignments;
   double duration = 5.0;
@@ -209,7 +234,13 @@ int main(int argc, char** argv)
     const hjt::Parameters parameters = hjt::shippedParameters(assignments);
     for (const Scene& scene : SCENES)
     {
-      results.push_back(measure(parameters, scene, duration, processor ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC));
+      for (const Watch watch : { Watch::TEETH, Watch::ENCODERS })
+      {
+        hjt::Parameters given = parameters;
+        given.solver.scene = watch == Watch::TEETH ? hjt::SceneKind::FULL_RING : hjt::SceneKind::AUTO;
+        results.push_back(measure(given, scene, watch, watch == Watch::TEETH ? duration : 20.0 * duration,
+                                  processor ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC));
+      }
     }
   }
   catch (const hjt::InputError& error)

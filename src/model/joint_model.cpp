@@ -33,22 +33,27 @@ void JointModel::friction(const RingShape& shape, const DrivePosition& position,
   damping.add(shape, forces, rates, friction);
 }
 
-void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& speeds,
-                          const JointInputs& inputs, double viscosity, JointFriction& friction) const noexcept
+void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
+                          const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
+                          JointFriction& friction) const noexcept
 {
   friction.terms.clear();
   const double shaft = motor.coulombTorque() + (inputs.brake_engaged ? brake_torque : 0.0) +
                        bearing.torqueAtViscosity(speeds[0], ring_response.contact_force, viscosity) +
                        ring_response.interface_torque;
   friction.terms.push_back({ shaft, { 1.0, 0.0 } });
-  for (const FlankGroup& group : ring_response.flanks)
+  using Groups = RingFrictionResponse::Groups;
+  const Groups sliding = ring_response.rms_slip_by_motor * speeds[0] + ring_response.rms_slip_by_output * speeds[1];
+  const Groups coefficients = mesh_friction.coefficients(sliding);
+  for (int i = 0; i < RingFrictionResponse::FLANK_GROUPS; ++i)
   {
-    if (group.slip[0] != 0.0 || group.slip[1] != 0.0)
+    const Eigen::Vector2d slip(ring_response.flank_by_motor[i], ring_response.flank_by_output[i]);
+    if (slip[0] != 0.0 || slip[1] != 0.0)
     {
-      friction.terms.push_back({ mesh_friction.coefficient(group.rms_slip.dot(speeds)), group.slip });
+      friction.terms.push_back({ coefficients[i], slip });
     }
   }
-  cup_friction.addTerm(ring_response.cup_slip, friction);
+  cup_friction.addTerm(cup_slip, friction);
   const Eigen::Vector3d& dashpots = ring_response.viscous;
   friction.viscous << motor.viscousFriction() + dashpots[0], dashpots[1], dashpots[1],
       load.viscousFriction() + dashpots[2];

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/twin_node.hpp"
 
+#include <string>
+
+#include <ros/console.h>
+
 #include "harmonic_joint_twin/ros_io/time.hpp"
 
 namespace hjt
@@ -11,10 +15,18 @@ Stamp now()
 {
   return fromRosTime(ros::Time::now());
 }
+
+/// Response surfaces from the user's cache; building tells how far it is.
+SurfaceSource surfaceSource()
+{
+  return { surfaceCacheDirectory(),
+           [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
+           [](const std::string& what) { ROS_WARN_STREAM(what); } };
+}
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters)
+  : twin_(parameters, surfaceSource())
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
   , subscribers_(node, JointNames(parameters.joint.name), inbox_)

@@ -49,7 +49,7 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
     surface_agrees_ = false;
     motor_angle_ = motor_angle;
     output_angle_ = output_angle;
-    response_ = surface_->response(place_);
+    response_ = surface_->response(place_, housing_stiffness_);
     return {};
   }
   if (on_surface_)
@@ -140,7 +140,10 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
   {
     RingFrictionResponse ring_friction;
     surface_->friction(place_, ring_friction);
-    model_.friction(ring_friction, speeds, inputs, viscosity(), friction_);
+    // The rim turns with the torque that it leans on the housing with.
+    const double cup_stiffness =
+        model_.ring.cup.stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
+    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, speeds, inputs, viscosity(), friction_);
     return;
   }
   const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };

@@ -9,37 +9,29 @@ namespace hjt
 {
 namespace
 {
-/// Cubic Hermite basis on 0 ... 1 and its derivatives: weights of value and slope at both ends.
-struct Hermite
+/// Cubic on 0 ... 1 from value and slope at its start and at its end, and its derivatives.
+class Hermite
 {
-  explicit Hermite(double t) noexcept
-    : end(t * t * (3.0 - 2.0 * t))
-    , start(1.0 - end)
-    , start_slope(t * (1.0 - t) * (1.0 - t))
-    , end_slope(-t * t * (1.0 - t))
-    , end_rate(6.0 * t * (1.0 - t))
-    , start_slope_rate((1.0 - t) * (1.0 - 3.0 * t))
-    , end_slope_rate(t * (3.0 * t - 2.0))
+public:
+  explicit Hermite(double t) noexcept : t_(t), r_(1.0 - t) {}
+
+  double value(const std::array<double, 4>& x) const noexcept
   {
+    const double end = t_ * t_ * (3.0 - 2.0 * t_);
+    return x[0] + end * (x[2] - x[0]) + t_ * r_ * (r_ * x[1] - t_ * x[3]);
+  }
+  double rate(const std::array<double, 4>& x) const noexcept
+  {
+    return 6.0 * t_ * r_ * (x[2] - x[0]) + r_ * (1.0 - 3.0 * t_) * x[1] + t_ * (3.0 * t_ - 2.0) * x[3];
+  }
+  double curvature(const std::array<double, 4>& x) const noexcept
+  {
+    return 6.0 * (1.0 - 2.0 * t_) * (x[2] - x[0]) + (6.0 * t_ - 4.0) * x[1] + (6.0 * t_ - 2.0) * x[3];
   }
 
-  double value(double a, double slope_a, double b, double slope_b) const noexcept
-  {
-    return start * a + start_slope * slope_a + end * b + end_slope * slope_b;
-  }
-
-  double rate(double a, double slope_a, double b, double slope_b) const noexcept
-  {
-    return end_rate * (b - a) + start_slope_rate * slope_a + end_slope_rate * slope_b;
-  }
-
-  double end;
-  double start;
-  double start_slope;
-  double end_slope;
-  double end_rate;
-  double start_slope_rate;
-  double end_slope_rate;
+private:
+  double t_;
+  double r_;
 };
 }  // namespace
 
@@ -93,36 +85,54 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   return true;
 }
 
-RingResponse ResponseSurface::response(const Place& place) const noexcept
+RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& housing_stiffness) const noexcept
 {
   using Table = SurfaceTable;
   const Hermite along_v(place.v);
   const Hermite along_u(place.u);
-  const double width = 1.0 / table_.columns;  // of an interval in u
-  std::array<double, 2> energy;               // at the lower and higher u, at this v
+  const double h = place.height;
+  const double width = 1.0 / table_.columns;  // of an interval in u [pitches]
+  const double per_height = 1.0 / h;
+  const double per_width = table_.columns * pitches_per_radian_;  // [1/rad]
+  // At the lower and the higher u, at this v; derivatives by the place within the interval.
+  std::array<double, 2> energy;
   std::array<double, 2> by_u;
   std::array<double, 2> by_v;
   std::array<double, 2> by_uv;
+  std::array<double, 2> by_vv;
+  std::array<double, 2> by_uvv;
   for (int i = 0; i < 2; ++i)
   {
     const Table::Node& a = place.below[i];
     const Table::Node& b = place.above[i];
-    const double h = place.height;
-    energy[i] = along_v.value(a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY], h * b[Table::ENERGY_BY_V]);
-    by_v[i] = along_v.rate(a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY], h * b[Table::ENERGY_BY_V]);
-    by_u[i] = width * along_v.value(a[Table::ENERGY_BY_U], h * a[Table::ENERGY_BY_UV], b[Table::ENERGY_BY_U],
-                                    h * b[Table::ENERGY_BY_UV]);
-    by_uv[i] = width * along_v.rate(a[Table::ENERGY_BY_U], h * a[Table::ENERGY_BY_UV], b[Table::ENERGY_BY_U],
-                                    h * b[Table::ENERGY_BY_UV]);
+    const std::array<double, 4> values{ a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY],
+                                        h * b[Table::ENERGY_BY_V] };
+    const std::array<double, 4> slopes{ width * a[Table::ENERGY_BY_U], width * h * a[Table::ENERGY_BY_UV],
+                                        width * b[Table::ENERGY_BY_U], width * h * b[Table::ENERGY_BY_UV] };
+    energy[i] = along_v.value(values);
+    by_v[i] = along_v.rate(values);
+    by_vv[i] = along_v.curvature(values);
+    by_u[i] = along_v.value(slopes);
+    by_uv[i] = along_v.rate(slopes);
+    by_uvv[i] = along_v.curvature(slopes);
   }
-  const double slope_v = along_u.value(by_v[0], by_uv[0], by_v[1], by_uv[1]) / place.height;
-  const double slope_u = along_u.rate(energy[0], by_u[0], energy[1], by_u[1]) * table_.columns * pitches_per_radian_;
+  const std::array<double, 4> energies{ energy[0], by_u[0], energy[1], by_u[1] };
+  const std::array<double, 4> rates{ by_v[0], by_uv[0], by_v[1], by_uv[1] };
+  const double slope_u = along_u.rate(energies) * per_width;
+  const double slope_v = along_u.value(rates) * per_height;
+  const double k_uu = along_u.curvature(energies) * per_width * per_width;
+  const double k_uv = along_u.rate(rates) * per_width * per_height;
+  const double k_vv = along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height;
   RingResponse response;
-  response.energy = along_u.value(energy[0], by_u[0], energy[1], by_u[1]);
+  response.energy = along_u.value(energies);
   response.output_torque = -slope_v;
   response.wave_generator_torque = slope_v * inverse_ratio_ - slope_u;
   response.follow = value(place, Table::FOLLOW);
   response.output_stiffness = value(place, Table::OUTPUT_STIFFNESS);
+  // The housing holds what wave generator and output bring: (1 - 1/ratio) dU/dv + dU/du.
+  const double by_output = (1.0 - inverse_ratio_) * k_vv + k_uv;
+  housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
+  housing_stiffness[1] = by_output;
   return response;
 }
 
@@ -141,13 +151,12 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
       w00 * at(place.below[0]) + w01 * at(place.below[1]) + w10 * at(place.above[0]) + w11 * at(place.above[1]);
   friction.contact_force = x[Table::CONTACT_FORCE - FIRST];
   friction.interface_torque = x[Table::INTERFACE_TORQUE - FIRST];
-  friction.cup_slip << x[Table::CUP_SLIP - FIRST], x[Table::CUP_SLIP - FIRST + 1];
   friction.viscous << x[Table::VISCOUS - FIRST], x[Table::VISCOUS - FIRST + 1], x[Table::VISCOUS - FIRST + 2];
-  for (int g = 0; g < RingFrictionResponse::FLANK_GROUPS; ++g)
-  {
-    const int i = Table::FLANKS - FIRST + 4 * g;
-    friction.flanks[g].slip << x[i], x[i + 1];
-    friction.flanks[g].rms_slip << x[i + 2], x[i + 3];
-  }
+  constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
+  constexpr int FLANKS = Table::FLANKS - FIRST;
+  friction.flank_by_motor = x.segment<GROUPS>(FLANKS);
+  friction.flank_by_output = x.segment<GROUPS>(FLANKS + GROUPS);
+  friction.rms_slip_by_motor = x.segment<GROUPS>(FLANKS + 2 * GROUPS);
+  friction.rms_slip_by_output = x.segment<GROUPS>(FLANKS + 3 * GROUPS);
 }
 }  // namespace hjt

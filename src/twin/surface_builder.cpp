@@ -22,7 +22,7 @@ using Node = SurfaceTable::Node;
 using Line = std::vector<Node>;
 
 constexpr double TORQUE_MARGIN = 2.0;     // the table reaches to this times the torque limits
-constexpr double ANGLE_TOLERANCE = 1e-7;  // of the output at given torque [rad]; 0.02 seconds of arc
+constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
 constexpr int COARSE_LINES = 32;          // a side, before refinement, about
@@ -37,15 +37,16 @@ MeshParameters unitFriction(MeshParameters parameters)
   return parameters;
 }
 
-/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in two by
+/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in three by
 /// the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor speed.
 ///
 /// While the drive runs, and while the motor stands and the output swings, all flanks of a group slide the same way, so
 /// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean square.
 void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* groups)
 {
-  constexpr double LOW = 0.35;  // slip, as a share of the mean, that counts to the slow half only
-  constexpr double HIGH = 1.3;  // likewise to the fast half
+  constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
+  constexpr double LOW = 0.25;   // slip, as a share of the mean, that counts to the slowest group only
+  constexpr double HIGH = 1.25;  // likewise to the fastest; between them it is shared by two
   struct Sums
   {
     double force{};
@@ -69,11 +70,11 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
     const double mean = first[half] > 0.0 ? second[half] / first[half] : 1.0;
     const double sign = running(term) >= 0.0 ? 1.0 : -1.0;
     const Eigen::Vector2d slip(sign * running(term), sign * term.slip[1]);
-    const double fast = std::clamp((slip[0] / mean - LOW) / (HIGH - LOW), 0.0, 1.0);
-    for (const int i : { 0, 1 })
+    const double size = std::clamp((slip[0] / mean - LOW) / (HIGH - LOW), 0.0, 1.0) * (SIZES - 1);
+    for (int i = 0; i < SIZES; ++i)
     {
-      const double force = term.strength * (i == 0 ? 1.0 - fast : fast);
-      Sums& group = sums[2 * half + i];
+      const double force = term.strength * std::max(0.0, 1.0 - std::abs(size - i));
+      Sums& group = sums[SIZES * half + i];
       group.force += force;
       group.slip += force * slip;
       group.squares += force * slip[0] * slip;
@@ -85,10 +86,11 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
     const Eigen::Vector2d rms =
         size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
     // From (motor speed, output speed less what follows) to (motor speed, output speed).
-    *groups++ = group.slip[0] - follow * group.slip[1];
-    *groups++ = group.slip[1];
-    *groups++ = rms[0] - follow * rms[1];
-    *groups++ = rms[1];
+    groups[0] = group.slip[0] - follow * group.slip[1];
+    groups[2 * SIZES] = group.slip[1];
+    groups[4 * SIZES] = rms[0] - follow * rms[1];
+    groups[6 * SIZES] = rms[1];
+    ++groups;
   }
 }
 
@@ -200,8 +202,6 @@ private:
     node[SurfaceTable::CONTACT_FORCE] = forces.contact_force.sum();
     running_ = rates.by_motor + follow * rates.by_output;
     node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), forces, running_);
-    node[SurfaceTable::CUP_SLIP] = CupTorsion::meanRotationRate(ring_.shape(), rates.by_motor);
-    node[SurfaceTable::CUP_SLIP + 1] = CupTorsion::meanRotationRate(ring_.shape(), rates.by_output);
     friction_.setZero();
     model_.damping.add(ring_.shape(), forces, rates, friction_);
     node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
@@ -254,13 +254,9 @@ private:
   /// Friction of ring and bearing at the motor as the drive runs, per speed and with static flanks [N.m].
   double frictionTorque(const RingFrictionResponse& friction, double follow) const
   {
-    double torque =
-        model_.bearing.torque(0.0, friction.contact_force, parameters_.input.temperature) + friction.interface_torque;
-    for (const FlankGroup& group : friction.flanks)
-    {
-      torque += parameters_.mesh.friction_static * std::abs(group.slip[0] + follow * group.slip[1]);
-    }
-    return torque;
+    return model_.bearing.torque(0.0, friction.contact_force, parameters_.input.temperature) +
+           friction.interface_torque +
+           parameters_.mesh.friction_static * (friction.flank_by_motor + follow * friction.flank_by_output).abs().sum();
   }
 
   /// Whether the surface over two lines gives the torques of a node that lies between them.

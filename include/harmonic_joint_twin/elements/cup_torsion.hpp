@@ -29,6 +29,11 @@ public:
   double torque(double rotation) const noexcept;        ///< C(Phi) [N.m]
   double storedEnergy(double rotation) const noexcept;  ///< [J]
   double stiffness(double rotation) const noexcept;     ///< dC/dPhi [N.m/rad]
+  double stiffnessAtTorque(double torque) const noexcept
+  {
+    const double size = torque < 0.0 ? -torque : torque;
+    return size > torques_[1] ? slopes_[2] : size > torques_[0] ? slopes_[1] : slopes_[0];
+  }
 
   void addForces(const RingShape& shape, RingForces& forces) const noexcept;
   /// `forces`: of the same shape.

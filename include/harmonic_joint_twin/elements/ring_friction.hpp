@@ -40,6 +40,18 @@ public:
            (parameters_.friction_static - parameters_.friction_kinetic) * std::exp(-relative * relative);
   }
 
+  /// The same for several speeds at once, an array of fixed size: quicker, and off by less than 3e-4 of the difference
+  /// between static and kinetic friction, exp(-q) taken as (1 + x + x^2/2)^-32 with x = q/32.
+  template <class Speeds>
+  Speeds coefficients(const Speeds& sliding_speeds) const noexcept
+  {
+    const double scale = 1.0 / (32.0 * parameters_.stribeck_velocity * parameters_.stribeck_velocity);
+    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond it nothing is left of the difference
+    const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
+    return parameters_.friction_kinetic + (parameters_.friction_static - parameters_.friction_kinetic) /
+                                              base.square().square().square().square().square();
+  }
+
 private:
   MeshParameters parameters_;
 };

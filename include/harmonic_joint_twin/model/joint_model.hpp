@@ -50,9 +50,11 @@ struct JointModel
                 double follow, const Eigen::Vector2d& speeds, const JointInputs& inputs, Eigen::VectorXd& running,
                 JointFriction& friction) const noexcept;
 
-  /// The same from a summary of the ring. `viscosity`: of the bearing's grease [m^2/s].
-  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& speeds, const JointInputs& inputs,
-                double viscosity, JointFriction& friction) const noexcept;
+  /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-];
+  /// `viscosity`: of the bearing's grease [m^2/s].
+  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
+                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
+                JointFriction& friction) const noexcept;
 
   RingModel ring;
   Motor motor;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 
 namespace hjt
@@ -17,23 +15,20 @@ struct RingResponse
   double output_stiffness{};       ///< of the output, the wave generator held [N.m/rad]
 };
 
-/// Loaded flanks that slide alike, taken together. The sums stand for sum_i |F_i| |slip_i . (motor, output speed)|: exact
-/// while all flanks of the group slide the same way.
-struct FlankGroup
-{
-  Eigen::Vector2d slip;      ///< sum of force times slip by motor and output angle [N.m]
-  Eigen::Vector2d rms_slip;  ///< root mean square slip, by motor and output angle [m/rad]
-};
-
 /// Friction of the ring in equilibrium, as it acts on the joint's two speeds.
 struct RingFrictionResponse
 {
-  static constexpr int FLANK_GROUPS = 4;
+  /// Loaded flanks that slide alike, taken together: sum_i |F_i| |slip_i . (motor, output speed)|, exact while all flanks
+  /// of a group slide the same way.
+  static constexpr int FLANK_GROUPS = 6;
+  using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 
   double contact_force{};     ///< sum over all teeth: load of the wave generator's bearing [N]
   double interface_torque{};  ///< between outer race and rim [N.m]
-  Eigen::Vector2d cup_slip;   ///< mean rotation of the rim by motor and output angle [-]
   Eigen::Vector3d viscous;    ///< dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
-  std::array<FlankGroup, FLANK_GROUPS> flanks;
+  Groups flank_by_motor;      ///< sum of force times slip by motor angle [N.m]
+  Groups flank_by_output;     ///< by output angle
+  Groups rms_slip_by_motor;   ///< root mean square slip by motor angle [m/rad]
+  Groups rms_slip_by_output;  ///< by output angle
 };
 }  // namespace hjt

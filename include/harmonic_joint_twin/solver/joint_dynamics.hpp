@@ -72,6 +72,7 @@ private:
   double output_angle_{};
   const ResponseSurface* surface_{};
   ResponseSurface::Place place_{};
+  Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output [N.m/rad]
   bool on_surface_{};
   bool surface_agrees_{};  // at the present angles, while on the full ring
   DryFriction dry_;

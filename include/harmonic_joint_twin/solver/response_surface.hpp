@@ -18,17 +18,16 @@ struct SurfaceTable
   /// What is kept at every node, in this order.
   enum Value : std::uint8_t
   {
-    ENERGY,                  // U [J]
-    ENERGY_BY_U,             // dU/du, u in pitches [J]
-    ENERGY_BY_V,             // dU/dv [J/rad]
-    ENERGY_BY_UV,            // [J/rad]
-    FOLLOW,                  // [-]
-    OUTPUT_STIFFNESS,        // [N.m/rad]
-    CONTACT_FORCE,           // [N]
-    INTERFACE_TORQUE,        // [N.m]
-    CUP_SLIP,                // by motor, by output [-]
-    VISCOUS = CUP_SLIP + 2,  // motor-motor, motor-output, output-output [N.m.s/rad]
-    FLANKS = VISCOUS + 3,    // slip (2) and rms slip (2) a group [N.m], [m/rad]
+    ENERGY,                // U [J]
+    ENERGY_BY_U,           // dU/du, u in pitches [J]
+    ENERGY_BY_V,           // dU/dv [J/rad]
+    ENERGY_BY_UV,          // [J/rad]
+    FOLLOW,                // [-]
+    OUTPUT_STIFFNESS,      // [N.m/rad]
+    CONTACT_FORCE,         // [N]
+    INTERFACE_TORQUE,      // [N.m]
+    VISCOUS,               // motor-motor, motor-output, output-output [N.m.s/rad]
+    FLANKS = VISCOUS + 3,  // slip (2) and rms slip (2) a group [N.m], [m/rad]
     TEETH_LOADED = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
     LOBE_FORCE,                                                      // of both lobes [N]
     VALUES = LOBE_FORCE + 2
@@ -74,7 +73,14 @@ public:
            place.at > highest() - share * (highest() - lowest());
   }
 
-  RingResponse response(const Place& place) const noexcept;
+  /// `housing_stiffness`: derivatives of the torque between ring and housing by motor and output angle [N.m/rad].
+  RingResponse response(const Place& place, Eigen::Vector2d& housing_stiffness) const noexcept;
+  RingResponse response(const Place& place) const noexcept
+  {
+    Eigen::Vector2d unused;
+    return response(place, unused);
+  }
+
   void friction(const Place& place, RingFrictionResponse& friction) const noexcept;
 
   /// Bilinear, of any value but the energy's.

@@ -14,6 +14,7 @@
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "run_summary.hpp"
+#include "surface_source.hpp"
 #include "validators.hpp"
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
@@ -196,7 +197,7 @@ int replay(const ReplayOptions& options)
   openForReading(bag, options.bag);
   refuseTakenTopics(bag, options);
   const BagInputs found = requireInputs(bag, options, map, parameters);
-  Twin twin(parameters);
+  Twin twin(parameters, surfaceSource());
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
   Replay run(bag, twin, found.inputs, options);

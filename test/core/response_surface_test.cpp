@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/response_surface.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/model/joint_model.hpp"
+#include "harmonic_joint_twin/solver/joint_dynamics.hpp"
+#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "harmonic_joint_twin/twin/static_solver.hpp"
+#include "harmonic_joint_twin/twin/surface_builder.hpp"
+#include "harmonic_joint_twin/twin/surface_cache.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr double ARC_SECOND = PI / 180.0 / 3600.0;
+/// The rated torque of the catalogue, and what it is at the motor.
+constexpr double RATED_TORQUE = 108.0;  // N.m
+constexpr double RATED_MOTOR_TORQUE = RATED_TORQUE / 101.0;
+
+/// A folder that every test of this program shares as cache, so that the surface is built once.
+const std::string& cacheDirectory()
+{
+  struct Folder
+  {
+    Folder() : path((fs::temp_directory_path() / ("hjt_surface_" + std::to_string(std::random_device{}()))).string()) {}
+    ~Folder() { fs::remove_all(path); }
+    std::string path;
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
+Parameters surfaceParameters()
+{
+  return shippedParameters({ "solver.scene=auto", "input.command_timeout=10.0" });
+}
+
+SurfaceSource cached()
+{
+  return { cacheDirectory(), {}, {} };
+}
+
+const ResponseSurface& surface()
+{
+  static const ResponseSurface shipped(*obtainSurface(surfaceParameters(), cached()));
+  return shipped;
+}
+
+RingResponse at(double motor_angle, double output_angle)
+{
+  ResponseSurface::Place place;
+  EXPECT_TRUE(surface().locate(motor_angle, output_angle, place));
+  return surface().response(place);
+}
+
+TEST(ResponseSurface, TorquesAreMinusTheEnergysDerivatives)
+{
+  constexpr double STEP = 1e-7;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  for (int i = 0; i < 2000; ++i)
+  {
+    const double motor = 3.0 * part(random);
+    const double output = motor / 101.0 + 5e-3 * part(random);
+    const RingResponse here = at(motor, output);
+    const double by_motor = (at(motor + STEP, output).energy - at(motor - STEP, output).energy) / (2.0 * STEP);
+    const double by_output = (at(motor, output + STEP).energy - at(motor, output - STEP).energy) / (2.0 * STEP);
+    EXPECT_NEAR(here.wave_generator_torque, -by_motor, 2e-6);
+    EXPECT_NEAR(here.output_torque, -by_output, 2e-4);
+  }
+}
+
+TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
+{
+  constexpr double STEP = 1e-9;
+  const double motor = 0.3;
+  const double output = motor / 101.0 + 1.7e-3;
+  ResponseSurface::Place place;
+  ASSERT_TRUE(surface().locate(motor, output, place));
+  Eigen::Vector2d stiffness;
+  surface().response(place, stiffness);
+  const auto housing = [](const RingResponse& r) { return -r.wave_generator_torque - r.output_torque; };
+  EXPECT_NEAR(stiffness[1], (housing(at(motor, output + STEP)) - housing(at(motor, output - STEP))) / (2.0 * STEP),
+              1e-3 * stiffness[1]);
+  const double by_motor =
+      (housing(at(motor + 10.0 * STEP, output)) - housing(at(motor - 10.0 * STEP, output))) / (20.0 * STEP);
+  EXPECT_NEAR(stiffness[0], by_motor, 1e-3 * std::abs(by_motor));
+}
+
+TEST(ResponseSurface, IsTheSameAgainAfterEveryPitch)
+{
+  const double pitch = TWO_PI / 200;
+  for (const double v : { -4e-3, -1e-5, 2e-3 })
+  {
+    const RingResponse here = at(0.4 * pitch, v + 0.4 * pitch / 101.0);
+    const RingResponse later = at(1000.4 * pitch, v + 1000.4 * pitch / 101.0);
+    EXPECT_NEAR(here.energy, later.energy, 1e-10);
+    EXPECT_NEAR(here.output_torque, later.output_torque, 1e-7);
+    EXPECT_NEAR(here.wave_generator_torque, later.wave_generator_torque, 1e-7);
+  }
+}
+
+TEST(ResponseSurface, SaysWhereItEnds)
+{
+  ResponseSurface::Place place;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(surface().locate(0.0, surface().highest() * 1.001, place));
+  EXPECT_FALSE(surface().locate(0.0, surface().lowest() * 1.001, place));
+  EXPECT_FALSE(surface().locate(nan, 0.0, place));
+  EXPECT_FALSE(surface().locate(0.0, nan, place));
+  EXPECT_FALSE(surface().locate(1e300, 1e300 / 101.0, place));
+}
+
+/// At equal angles: torques within a thousandth of the rated ones, and the angle that the torque's error stands for within
+/// a tenth of a second of arc. The bounds are a tenth of that.
+TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
+{
+  const Parameters parameters = surfaceParameters();
+  const JointModel model(parameters);
+  RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
+  ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  double v = 0.0;
+  double motor = 0.0;
+  for (int i = 0; i < 3000; ++i)
+  {
+    v = i % 50 == 0 ? 5e-3 * part(random) : v + 1e-5 * part(random);
+    motor += 0.05 * part(random);
+    ASSERT_TRUE(ring.moveTo({ motor, v + motor / 101.0, parameters.gear.wave_amplitude }).ok());
+    const RingResponse response = at(motor, v + motor / 101.0);
+    const double miss = response.output_torque - ring.forces().output_torque;
+    EXPECT_LT(std::abs(miss), 1e-4 * RATED_TORQUE);
+    EXPECT_LT(std::abs(miss) / ring.stiffness()(1, 1), 0.01 * ARC_SECOND);
+    EXPECT_LT(std::abs(response.wave_generator_torque - ring.forces().wave_generator_torque),
+              1e-4 * RATED_MOTOR_TORQUE);
+    EXPECT_NEAR(response.energy, ring.forces().energy, 1e-7);
+  }
+}
+
+/// Twins side by side, all teeth and the surface, position-controlled as a robot's drive is, over moves, reversals, jumps of
+/// the load and the brake.
+TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
+{
+  constexpr int STEPS = 10000;
+  Twin full(shippedParameters({ "input.command_timeout=10.0" }));
+  Twin fast(surfaceParameters(), cached());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  double load = 0.0;
+  double wanted = 0.0;
+  double path = 0.0;
+  double torque_squares = 0.0;
+  double motor_torque_squares = 0.0;
+  double output_squares = 0.0;
+  for (int i = 0; i < STEPS; ++i)
+  {
+    const Stamp next = full.stamp() + full.stepLength();
+    load = i % 2000 == 0 ? 80.0 * part(random) : load;
+    wanted = i % 1500 == 0 ? 150.0 * part(random) : wanted;
+    path += wanted * 1e-4;
+    for (Twin* twin : { &full, &fast })
+    {
+      const JointOutputs& now = twin->outputs();
+      twin->commandLoadTorque(next, load);
+      twin->commandMotorTorque(next, 0.05 * (wanted - now.motor_velocity) + (path - now.motor_angle));
+      twin->commandBrake(next, i % 5000 > 4000 && i % 5000 < 4500);
+      twin->step(next);
+    }
+    ASSERT_TRUE(fast.outputs().converged);
+    ASSERT_TRUE(i == 0 || fast.onSurface());
+    torque_squares += std::pow(full.outputs().joint_torque - fast.outputs().joint_torque, 2);
+    motor_torque_squares += std::pow(full.outputs().wave_generator_torque - fast.outputs().wave_generator_torque, 2);
+    output_squares += std::pow(full.outputs().output_angle - fast.outputs().output_angle, 2);
+  }
+  RecordProperty("torque_rms_share", std::to_string(std::sqrt(torque_squares / STEPS) / RATED_TORQUE));
+  RecordProperty("output_rms_arcsec", std::to_string(std::sqrt(output_squares / STEPS) / ARC_SECOND));
+  EXPECT_LT(std::sqrt(torque_squares / STEPS), 1e-3 * RATED_TORQUE);
+  EXPECT_LT(std::sqrt(motor_torque_squares / STEPS), 1e-3 * RATED_MOTOR_TORQUE);
+  // Stick and slip of cup and flanks carry small differences on: see docs/response_surface.md.
+  EXPECT_LT(std::sqrt(output_squares / STEPS), 0.5 * ARC_SECOND);
+}
+
+TEST(SceneAuto, EnergyBalances)
+{
+  Twin twin(surfaceParameters(), cached());
+  for (const Input& input : randomInputs(9, SECOND, 1.5, 60.0))
+  {
+    give(twin, input);
+  }
+  double through = 0.0;
+  double last = 0.0;
+  while (twin.step(SECOND))
+  {
+    const double power = std::abs(twin.outputs().motor_torque * twin.outputs().motor_velocity);
+    through += 0.5e-4 * (power + last);
+    last = power;
+  }
+  EXPECT_LT(std::abs(twin.outputs().energy_residual), 2e-4 * through);
+}
+
+/// Overload drives the joint off the surface and the relief brings it back: angles and speeds go on, and no output jumps by
+/// more than it does from step to step anyhow.
+TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
+{
+  Parameters parameters = surfaceParameters();
+  parameters.output.load_torque_limit = 3000.0;  // so that the load leads beyond the surface of the shipped limit
+  const ResponseSurface& narrow = surface();
+  const JointModel model(parameters);
+  JointDynamics dynamics(model, parameters.solver);
+  ASSERT_TRUE(dynamics.settle().ok());
+  dynamics.useSurface(&narrow);
+  int changes = 0;
+  double before = 0.0;
+  constexpr double STEP = 2e-6;  // rad; 0.13 N.m a step
+  for (int i = 0; i <= 11000; ++i)
+  {
+    const double v = i <= 5500 ? i * STEP : (11000 - i) * STEP;
+    const bool was_on_surface = dynamics.onSurface();
+    ASSERT_TRUE(dynamics.place(0.01 * v, v).ok());
+    const double torque = dynamics.response().output_torque;
+    const double moved = std::abs(torque - before);
+    if (i > 0)
+    {
+      EXPECT_LT(moved, 70e3 * STEP) << "step " << i;
+      changes += dynamics.onSurface() != was_on_surface ? 1 : 0;
+    }
+    before = torque;
+  }
+  EXPECT_EQ(changes, 3);  // onto it, off it at its end, onto it again
+  EXPECT_TRUE(dynamics.onSurface());
+}
+
+TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
+{
+  Twin twin(surfaceParameters(), cached());
+  twin.commandLoadTorque(0, 40.0);
+  twin.commandMotorTorque(0, 1.0);
+  advance(twin, SECOND / 2);
+  ASSERT_TRUE(twin.onSurface());
+  ToothForces forces = twin.makeToothForces();
+  twin.toothForces(forces);
+  const HealthReport health = twin.health();
+  double load = 0.0;
+  int teeth = 0;
+  for (std::size_t i = 0; i < forces.mesh_force.size(); ++i)
+  {
+    load += forces.wave_generator_force[i];
+    teeth += forces.mesh_force[i] != 0.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(load, health.wave_generator_load, 1e-3 * load);
+  EXPECT_NEAR(teeth, static_cast<int>(health.teeth_loaded), 2);
+  EXPECT_TRUE(twin.onSurface());
+}
+
+TEST(SceneAuto, SameBitsFromTheCacheAndAnew)
+{
+  std::vector<std::vector<double>> runs;
+  for (const SurfaceSource& source : { SurfaceSource{}, cached() })
+  {
+    Twin twin(surfaceParameters(), source);
+    twin.commandMotorTorque(0, 0.7);
+    advance(twin, SECOND / 10);
+    runs.push_back(numbers(twin.outputs()));
+  }
+  EXPECT_TRUE(runs[0] == runs[1]);
+}
+
+TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
+{
+  surface();
+  const std::string file = surfaceCacheFile(surfaceParameters(), cacheDirectory());
+  ASSERT_TRUE(fs::exists(file));
+  const auto size = fs::file_size(file);
+  int built = 0;
+  const SurfaceSource counting{ cacheDirectory(), [&](double done) { built += done >= 1.0 ? 1 : 0; }, {} };
+  ASSERT_TRUE(obtainSurface(surfaceParameters(), counting));
+  EXPECT_EQ(built, 0);
+  {
+    std::fstream spoilt(file, std::ios::in | std::ios::out | std::ios::binary);
+    spoilt.seekp(static_cast<std::streamoff>(size / 2));
+    spoilt.put('!');
+  }
+  ASSERT_TRUE(obtainSurface(surfaceParameters(), counting));
+  EXPECT_EQ(built, 1);
+  EXPECT_EQ(fs::file_size(file), size);
+  EXPECT_NE(surfaceCacheFile(shippedParameters({ "cup.friction_torque=1.0" }), "x"),
+            surfaceCacheFile(shippedParameters(), "x"));
+  EXPECT_EQ(surfaceCacheFile(shippedParameters({ "health.averaging_time=2.0" }), "x"),
+            surfaceCacheFile(shippedParameters(), "x"));
+}
+}  // namespace
+}  // namespace hjt
