@@ -245,7 +245,7 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
     }
     before = torque;
   }
-  EXPECT_EQ(changes, 3);  // onto it, off it at its end, onto it again
+  EXPECT_EQ(changes, 2);  // off it at its end, onto it again
   EXPECT_TRUE(dynamics.onSurface());
 }
 
