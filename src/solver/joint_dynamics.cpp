@@ -86,9 +86,7 @@ SolveStatus JointDynamics::bringRing() noexcept
 void JointDynamics::takeRing() noexcept
 {
   const Eigen::Matrix2d& k = ring_.stiffness();
-  response_.energy = ring_.forces().energy;
-  response_.wave_generator_torque = ring_.forces().wave_generator_torque;
-  response_.output_torque = ring_.forces().output_torque;
+  response_ = JointModel::summary(ring_.forces());
   response_.follow = k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0;
   response_.output_stiffness = k(1, 1);
   motor_angle_ = ring_.position().wave_generator_angle;

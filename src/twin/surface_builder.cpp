@@ -114,14 +114,21 @@ public:
     table_.ratio = nominalRatio(parameters.gear);
   }
 
-  SurfaceBuild build()
+  /// See surfaceObstacle.
+  const std::string& obstacle()
   {
-    SurfaceBuild result;
     insert();
     if (good() && !repeatsEveryPitch())
     {
       obstacle_ = "the gear is not the same again after every tooth pitch";
     }
+    return obstacle_;
+  }
+
+  SurfaceBuild build()
+  {
+    SurfaceBuild result;
+    obstacle();
     if (good())
     {
       coverRange();
@@ -428,7 +435,7 @@ private:
   }
 
   const Parameters& parameters_;
-  const std::function<void(double)>& progress_;
+  std::function<void(double)> progress_;
   JointModel model_;
   MeshFriction unit_friction_;
   RingEquilibrium ring_;
@@ -442,6 +449,11 @@ private:
   int solves_{};
 };
 }  // namespace
+
+std::string surfaceObstacle(const Parameters& parameters)
+{
+  return SurfaceBuilder(parameters, {}).obstacle();
+}
 
 SurfaceBuild buildSurface(const Parameters& parameters, const std::function<void(double)>& progress)
 {

@@ -176,6 +176,13 @@ std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const Su
       source.notice(what);
     }
   };
+  // Before the cache is asked: its key has the parameters only, not the files that they name.
+  const std::string obstacle = surfaceObstacle(parameters);
+  if (!obstacle.empty())
+  {
+    tell("no response surface: " + obstacle + "; the twin solves the full ring at every step");
+    return std::nullopt;
+  }
   const bool kept = !source.cache_directory.empty();
   const std::string key = header(parameters);
   const std::string path = kept ? surfaceCacheFile(parameters, source.cache_directory) : "";

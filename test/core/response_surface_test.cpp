@@ -284,6 +284,20 @@ TEST(SceneAuto, SameBitsFromTheCacheAndAnew)
   EXPECT_TRUE(runs[0] == runs[1]);
 }
 
+TEST(SurfaceBuilder, AGearWithUnequalTeethHasNone)
+{
+  EXPECT_EQ(surfaceObstacle(surfaceParameters()), "");
+  const std::string error = "manufacture.flexspline_pitch_deviation=2.0e-6";
+  EXPECT_NE(surfaceObstacle(shippedParameters({ error })), "");
+  std::string told;
+  Twin twin(shippedParameters({ "solver.scene=auto", error }),
+            { cacheDirectory(), {}, [&](const std::string& what) { told = what; } });
+  EXPECT_NE(told.find("not the same again"), std::string::npos);
+  twin.commandMotorTorque(0, 0.5);
+  advance(twin, SECOND / 100);
+  EXPECT_FALSE(twin.onSurface());
+}
+
 TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
 {
   surface();

@@ -31,6 +31,10 @@ struct JointModel
   Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
 
   /// Stored in ring and gravity [J].
+  double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
+  {
+    return storedEnergy(summary(forces), position.output_angle);
+  }
   double storedEnergy(const RingResponse& ring_response, double output_angle) const noexcept
   {
     return ring_response.energy + load.gravityEnergy(output_angle);
@@ -42,6 +46,21 @@ struct JointModel
   {
     return { inputs.motor_torque + ring_response.wave_generator_torque,
              ring_response.output_torque + load.gravityTorque(output_angle) - inputs.load_torque };
+  }
+
+  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
+                         const JointInputs& inputs) const noexcept
+  {
+    return torque(summary(forces), position.output_angle, inputs);
+  }
+
+  static RingResponse summary(const RingForces& forces) noexcept
+  {
+    RingResponse response;
+    response.energy = forces.energy;
+    response.wave_generator_torque = forces.wave_generator_torque;
+    response.output_torque = forces.output_torque;
+    return response;
   }
 
   /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.

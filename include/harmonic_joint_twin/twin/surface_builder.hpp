@@ -17,6 +17,10 @@ struct SurfaceBuild
   int solves{};          ///< equilibria of the ring that were found for it
 };
 
+/// Why the ring of these parameters has no response surface, as far as a turn with equal steps of one tooth pitch under
+/// load tells: its torques must come back after every step. Empty: nothing against it. Some ten milliseconds.
+std::string surfaceObstacle(const Parameters& parameters);
+
 /// Tabulates the ring in equilibrium from no load to twice the torque that load or motor can bring, both ways.
 ///
 /// The grid follows from measured errors: wherever the table's torques at the middle of an interval miss the ring's by
