@@ -26,7 +26,7 @@ SurfaceSource surfaceSource()
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters, surfaceSource())
+  : twin_(parameters, {}, surfaceSource())
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
   , subscribers_(node, JointNames(parameters.joint.name), inbox_)

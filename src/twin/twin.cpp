@@ -32,7 +32,7 @@ struct Twin::Impl
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO)
+    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
     {
       if (std::optional<SurfaceTable> table = obtainSurface(given, surface_source))
       {

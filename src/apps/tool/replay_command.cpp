@@ -197,7 +197,7 @@ int replay(const ReplayOptions& options)
   openForReading(bag, options.bag);
   refuseTakenTopics(bag, options);
   const BagInputs found = requireInputs(bag, options, map, parameters);
-  Twin twin(parameters, surfaceSource());
+  Twin twin(parameters, {}, surfaceSource());
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
   Replay run(bag, twin, found.inputs, options);
