@@ -85,7 +85,7 @@ class Cell:
 
 def lines():
     """One factor at a time; the rest as shipped."""
-    for step in STEPS:
+    for step in STEPS[:1] + STEPS[3:]:
         yield Cell("step, load steps of 100 N.m", (step,), step=step)
         yield Cell("step, reversal at 3030 rpm", (step,), at_speed(3030), reversal(12.0), step)
     for factor in STIFFNESSES:

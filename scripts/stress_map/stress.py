@@ -195,7 +195,7 @@ def parse(arguments):
         "stability.md with its maps. Exit code 1 if a cell is silently wrong, not finite, hung or crashed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--seeds", type=int, default=40, metavar="N", help="random cells, seeds 1 ... N [40]")
+    parser.add_argument("--seeds", type=int, default=30, metavar="N", help="random cells, seeds 1 ... N [30]")
     parser.add_argument("--only", metavar="TEXT", help="only cells whose name has this in it; needs --out to write a page")
     parser.add_argument("--out", metavar="DIR", help="folder of page and figures (default: docs/ of the checkout)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cells at a time")
@@ -211,6 +211,9 @@ def main(arguments):
     judged = []
     with tempfile.TemporaryDirectory(prefix="stress.") as work:
         runner = judge.Runner(options.tool, work)
+        shipped = judge.judge(runner, cells.Cell("shipped", ("parameters",)))
+        if shipped.verdict != judge.ACCURATE:
+            sys.exit(f"stress: the shipped parameters themselves are {shipped.verdict}: {shipped.reason}")
         with concurrent.futures.ProcessPoolExecutor(max(1, options.jobs)) as pool:
             for j in pool.map(judge.judge, [runner] * len(chosen), chosen):
                 judged.append(j)

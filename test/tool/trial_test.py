@@ -26,10 +26,11 @@ class Trial(tool.ToolTest):
     def test_advance_is_an_earlier_profile(self):
         here = self.trial("--sample-period", "1e-4")["samples"]["joint_torque"]
         there = self.trial("--sample-period", "1e-4", "--advance", "1e-3")["samples"]["joint_torque"]
-        self.assertEqual(here[30:100], there[20:90])
+        for now, earlier in zip(here[30:100], there[20:90]):
+            self.assertAlmostEqual(now, earlier, delta=1e-9)
 
     def test_faults(self):
-        broken = self.trial("--missing-teeth", "0,1,2,100,101,102", "--cut-rim", "40")["samples"]["output_angle"]
+        broken = self.trial("--missing-teeth", "0,1,2,100,101,102")["samples"]["output_angle"]
         whole = self.trial()["samples"]["output_angle"]
         self.assertGreater(abs(broken[-1] - whole[-1]), 1e-6)
         self.fail_with(1, ["no tooth 200"], "trial", "--profile", "profile.csv", "--duration", "0.02", "--cut-rim", "200")
