@@ -50,28 +50,59 @@ struct RingForces
 };
 
 using Block2 = Eigen::Matrix2d;
-using Block4 = Eigen::Matrix4d;
 
-/// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
-///
-/// The tooth part couples a tooth with two neighbours on each side. Teeth in pairs make it cyclic block-tridiagonal
-/// with 4x4 blocks, symmetric; the cup adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
-struct RingTangent
+/// A 2x2 block for every tooth, each entry in an array of its own: loops over the teeth then vectorise. [N/m]
+struct ToothBlocks
 {
-  explicit RingTangent(int teeth)
-    : diagonal(teeth / 2), upper(teeth / 2), cup_direction(2 * teeth), wave_generator(2 * teeth), output(2 * teeth)
-  {
-  }
-
-  int pairs() const noexcept { return static_cast<int>(diagonal.size()); }
+  explicit ToothBlocks(int teeth) : xx(teeth), xy(teeth), yx(teeth), yy(teeth) {}
 
   void setZero() noexcept
   {
-    for (int p = 0; p < pairs(); ++p)
-    {
-      diagonal[p].setZero();
-      upper[p].setZero();
-    }
+    xx.setZero();
+    xy.setZero();
+    yx.setZero();
+    yy.setZero();
+  }
+
+  void add(int i, const Block2& block) noexcept
+  {
+    xx[i] += block(0, 0);
+    xy[i] += block(0, 1);
+    yx[i] += block(1, 0);
+    yy[i] += block(1, 1);
+  }
+
+  Block2 at(int i) const noexcept
+  {
+    Block2 block;
+    block << xx[i], xy[i], yx[i], yy[i];
+    return block;
+  }
+
+  Eigen::VectorXd xx;
+  Eigen::VectorXd xy;
+  Eigen::VectorXd yx;
+  Eigen::VectorXd yy;
+};
+
+/// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
+///
+/// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup adds
+/// `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
+struct RingTangent
+{
+  explicit RingTangent(int teeth)
+    : diagonal(teeth), next(teeth), second(teeth), cup_direction(2 * teeth), wave_generator(2 * teeth), output(2 * teeth)
+  {
+  }
+
+  int teeth() const noexcept { return static_cast<int>(diagonal.xx.size()); }
+
+  void setZero() noexcept
+  {
+    diagonal.setZero();
+    next.setZero();
+    second.setZero();
     cup_direction.setZero();
     cup_stiffness = 0.0;
     wave_generator.setZero();
@@ -80,31 +111,21 @@ struct RingTangent
     output_stiffness = 0.0;
   }
 
-  void addDiagonal(int i, const Block2& block) noexcept
-  {
-    diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (i & 1)) += block;
-  }
+  void addDiagonal(int i, const Block2& block) noexcept { diagonal.add(i, block); }
 
   /// Adds `block` at (i, j) and its transpose at (j, i); j is i+1 or i+2, cyclic.
   void addPair(int i, int j, const Block2& block) noexcept
   {
-    if (i / 2 == j / 2)
-    {
-      diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (j & 1)) += block;
-      diagonal[i / 2].block<2, 2>(2 * (j & 1), 2 * (i & 1)) += block.transpose();
-    }
-    else
-    {
-      upper[i / 2].block<2, 2>(2 * (i & 1), 2 * (j & 1)) += block;
-    }
+    (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  std::vector<Block4, Eigen::aligned_allocator<Block4>> diagonal;  ///< N/2 [N/m]
-  std::vector<Block4, Eigen::aligned_allocator<Block4>> upper;     ///< N/2, pair p to p+1, cyclic [N/m]
-  Eigen::VectorXd cup_direction;                                   ///< 2 N, gradient of the mean rotation [rad/m]
-  double cup_stiffness{};                                          ///< [N.m/rad]
-  Eigen::VectorXd wave_generator;     ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
-  Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
+  ToothBlocks diagonal;            ///< at (i, i); symmetric
+  ToothBlocks next;                ///< at (i, i+1), cyclic
+  ToothBlocks second;              ///< at (i, i+2), cyclic
+  Eigen::VectorXd cup_direction;   ///< 2 N, gradient of the mean rotation [rad/m]
+  double cup_stiffness{};          ///< [N.m/rad]
+  Eigen::VectorXd wave_generator;  ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
+  Eigen::VectorXd output;          ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
 };
