@@ -21,7 +21,22 @@ struct RingForces
     , flank_force(teeth)
     , meshed(teeth)
     , bending_moment(teeth)
+    , segment(2 * teeth)
   {
+  }
+
+  /// Pulls tooth i with the force of segment i and pushes tooth i+1 with it, for all segments.
+  void addSegmentForces() noexcept
+  {
+    const int n = static_cast<int>(flank_force.size());
+    const double* pull = segment.data();
+    double* force = teeth.data();
+    force[0] += pull[0] - pull[2 * n - 2];
+    force[1] += pull[1] - pull[2 * n - 1];
+    for (int k = 2; k < 2 * n; ++k)
+    {
+      force[k] += pull[k] - pull[k - 2];
+    }
   }
 
   void setZero() noexcept
@@ -47,6 +62,7 @@ struct RingForces
   Eigen::VectorXd
       bending_moment;     ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
   double cup_rotation{};  ///< mean rotation of the tooth points [rad]
+  Eigen::VectorXd segment;  ///< 2 N, what an element does along the rim, before `addSegmentForces` [N]
 };
 
 using Block2 = Eigen::Matrix2d;
@@ -92,7 +108,13 @@ struct ToothBlocks
 struct RingTangent
 {
   explicit RingTangent(int teeth)
-    : diagonal(teeth), next(teeth), second(teeth), cup_direction(2 * teeth), wave_generator(2 * teeth), output(2 * teeth)
+    : diagonal(teeth)
+    , next(teeth)
+    , second(teeth)
+    , cup_direction(2 * teeth)
+    , wave_generator(2 * teeth)
+    , output(2 * teeth)
+    , segment(teeth)
   {
   }
 
@@ -119,6 +141,15 @@ struct RingTangent
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
+  /// Adds the symmetric blocks of `segment` (xx, xy, yy): springs between teeth i and i+1.
+  void addSegments() noexcept
+  {
+    addSpring(segment.xx, diagonal.xx, next.xx);
+    addSpring(segment.xy, diagonal.xy, next.xy);
+    addSpring(segment.xy, diagonal.yx, next.yx);
+    addSpring(segment.yy, diagonal.yy, next.yy);
+  }
+
   ToothBlocks diagonal;            ///< at (i, i); symmetric
   ToothBlocks next;                ///< at (i, i+1), cyclic
   ToothBlocks second;              ///< at (i, i+2), cyclic
@@ -128,5 +159,16 @@ struct RingTangent
   Eigen::VectorXd output;          ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
+  ToothBlocks segment;  ///< what an element does between teeth i and i+1, before `addSegments`
+
+private:
+  static void addSpring(const Eigen::VectorXd& spring, Eigen::VectorXd& at_tooth, Eigen::VectorXd& to_next) noexcept
+  {
+    const Eigen::Index n = spring.size();
+    at_tooth[0] += spring[n - 1];
+    at_tooth.tail(n - 1) += spring.head(n - 1);
+    at_tooth += spring;
+    to_next -= spring;
+  }
 };
 }  // namespace hjt
