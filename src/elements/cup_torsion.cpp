@@ -23,14 +23,14 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const 
   const auto along = [&](int i) { return rest[2 * i] * point[2 * i] + rest[2 * i + 1] * point[2 * i + 1]; };
   const auto across = [&](int i) { return rest[2 * i] * point[2 * i + 1] - rest[2 * i + 1] * point[2 * i]; };
   double sum = 0.0;
-  int large = 0;
+  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
 #pragma omp simd reduction(+ : sum, large)
   for (int i = 0; i < n; ++i)
   {
-    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0 : 1;
+    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
     sum += smallAngle(across(i) / along(i));
   }
-  if (large > 0)
+  if (large > 0.0)
   {
     sum = 0.0;
     for (int i = 0; i < n; ++i)

@@ -48,16 +48,16 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
   const auto across = [&](int i)
   { return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i]; };
   double energy = 0.0;
-  int large = 0;
+  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
 #pragma omp simd reduction(+ : energy, large)
   for (int i = 0; i < n; ++i)
   {
     const double angle = smallAngle(across(i) / along(i));
-    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0 : 1;
+    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
     moment[i] = stiffness[i] * angle;
     energy += 0.5 * stiffness[i] * angle * angle;
   }
-  if (large > 0)
+  if (large > 0.0)
   {
     energy = 0.0;
     for (int i = 0; i < n; ++i)

@@ -79,16 +79,16 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
     }
     return;
   }
-  int far = 0;
+  double far = 0.0;  // teeth; as wide as the other numbers, for the vectors
 #pragma omp simd reduction(+ : far)
   for (int i = 0; i < n; ++i)
   {
     const double x = ownX(i);
     const double y = ownY(i);
     store(i, closestPointNear(a, b, x, y));
-    far += isNear(a, b, x, y) ? 0 : 1;
+    far += isNear(a, b, x, y) ? 0.0 : 1.0;
   }
-  if (far > 0)
+  if (far > 0.0)
   {
     for (int i = 0; i < n; ++i)
     {

@@ -8,22 +8,19 @@ using arcs::COUNT;
 
 CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
   : kernels_(kernels)
-  , steps_((teeth - 2 * COUNT + COUNT - 1) / COUNT)
-  , tooth_(static_cast<std::size_t>(COUNT * steps_))
+  , layout_{ (teeth - 2 * COUNT + COUNT - 1) / COUNT, {}, {} }
   , separator_{}
-  , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * steps_))
-  , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * steps_))
+  , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * layout_.steps))
+  , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * layout_.steps))
 {
   int tooth = 0;
   for (int k = 0; k < COUNT; ++k)
   {
-    separator_[k] = tooth;
-    tooth += 2;
     const int length = (teeth - 2 * COUNT + k) / COUNT;
-    for (int t = 0; t < steps_; ++t)
-    {
-      tooth_[COUNT * t + k] = t < steps_ - length ? -1 : tooth++;
-    }
+    separator_[k] = tooth;
+    layout_.idle[k] = length < layout_.steps;
+    layout_.first[k] = tooth + (layout_.idle[k] ? 1 : 2);
+    tooth += 2 + length;
   }
 }
 
@@ -39,7 +36,7 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
   Entry before[arcs::BEFORE_ENTRIES];
   Entry after[arcs::AFTER_ENTRIES];
   Entry between[arcs::BETWEEN_ENTRIES];
-  kernels_.factor(layout(), entries, factors_.data()->lane, { before->lane, after->lane, between->lane });
+  kernels_.factor(layout_, entries, factors_.data()->lane, { before->lane, after->lane, between->lane });
 
   // The upper triangle; the lower follows.
   Corner corner = Corner::Zero();
@@ -90,7 +87,7 @@ void CyclicSolver::solve(double* b, int columns) noexcept
 {
   Entry before[BORDER * MAX_COLUMNS];
   Entry after[4 * MAX_COLUMNS];
-  kernels_.forward[columns - 1](layout(), factors_.data()->lane, b, rows_.data()->lane, before->lane, after->lane);
+  kernels_.forward[columns - 1](layout_, factors_.data()->lane, b, rows_.data()->lane, before->lane, after->lane);
   for (int c = 0; c < columns; ++c)
   {
     Eigen::Matrix<double, CORNER, 1> x;
@@ -118,6 +115,6 @@ void CyclicSolver::solve(double* b, int columns) noexcept
       before[BORDER * c + 4].lane[k] = x[SEPARATORS];
     }
   }
-  kernels_.backward[columns - 1](layout(), factors_.data()->lane, rows_.data()->lane, before->lane, after->lane, b);
+  kernels_.backward[columns - 1](layout_, factors_.data()->lane, rows_.data()->lane, before->lane, after->lane, b);
 }
 }  // namespace hjt

@@ -19,12 +19,12 @@ constexpr int BEFORE_ENTRIES = BORDER * (BORDER + 1) / 2;
 constexpr int AFTER_ENTRIES = 10;
 constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
-/// Which tooth each lane eliminates at each step.
+/// Where the arcs lie. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
 struct Layout
 {
-  int steps;             ///< length of the longest arc
-  const int* tooth;      ///< 4 a step. An arc one tooth shorter idles in the first step: its entry there is -1
-  const int* separator;  ///< 4, first tooth of the separator before each arc; the second is the one after it
+  int steps;         ///< length of the longest arc
+  int first[COUNT];  ///< at the first step
+  bool idle[COUNT];  ///< a shorter arc has nothing to eliminate at the first step: first[k] is its separator's end
 };
 
 /// Entries of the ring's tangent, one array each.

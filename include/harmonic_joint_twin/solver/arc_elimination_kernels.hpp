@@ -24,11 +24,22 @@ inline const Lanes* lanes(const double* values)
   return reinterpret_cast<const Lanes*>(values);
 }
 
-/// values[stride * tooth] of each lane's tooth; an idle lane reads some tooth and is patched.
-inline Lanes gather(const double* values, const int* tooth, int stride = 1)
+/// values[stride * tooth] of each lane's tooth.
+inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 {
-  return Lanes{ values[stride * tooth[0]], values[stride * tooth[1]], values[stride * tooth[2]],
-                values[stride * tooth[3]] };
+  const int* first = layout.first;
+  return Lanes{ values[stride * first[0]], values[stride * first[1]], values[stride * first[2]],
+                values[stride * first[3]] };
+}
+
+/// The same with `value` in the lanes that idle at the first step.
+inline Lanes patch(const Layout& layout, Lanes values, double value)
+{
+  for (int k = 0; k < COUNT; ++k)
+  {
+    values[k] = layout.idle[k] ? value : values[k];
+  }
+  return values;
 }
 
 /// What a tooth leaves: the inverse of its block, and that times its couplings.
@@ -41,32 +52,6 @@ struct Factors
 };
 static_assert(sizeof(Factors) == FACTOR_ENTRIES * sizeof(Lanes), "entries a tooth");
 
-/// Teeth to read at a step: idle lanes read their separator instead.
-struct Step
-{
-  Step(const Layout& layout, int step)
-  {
-    for (int k = 0; k < COUNT; ++k)
-    {
-      const int at = layout.tooth[COUNT * step + k];
-      idle[k] = at < 0;
-      tooth[k] = idle[k] ? layout.separator[k] : at;
-    }
-  }
-
-  Lanes patch(Lanes values, double idle_value) const
-  {
-    for (int k = 0; k < COUNT; ++k)
-    {
-      values[k] = idle[k] ? idle_value : values[k];
-    }
-    return values;
-  }
-
-  int tooth[COUNT];
-  bool idle[COUNT];
-};
-
 /// Couplings of the first two teeth of each arc to the separator before it, at the first three steps.
 struct Seeds
 {
@@ -74,9 +59,9 @@ struct Seeds
   {
     for (int k = 0; k < COUNT; ++k)
     {
-      const int first = layout.steps > 0 && layout.tooth[k] < 0 ? 1 : 0;
-      const int a = layout.separator[k];
-      const int b = a + 1;
+      const int first = layout.idle[k] ? 1 : 0;
+      const int b = layout.first[k] + first - 1;
+      const int a = b - 1;
       x[first][0][k] = tangent.second[0][a];
       y[first][0][k] = tangent.second[1][a];
       x[first][1][k] = tangent.second[2][a];
@@ -115,31 +100,29 @@ void factor(const Layout& layout, const Tangent& tangent, double* factors, const
   Factors* out = reinterpret_cast<Factors*>(factors);
   for (int t = 0; t < layout.steps; ++t, ++out)
   {
-    const Step step(layout, t);
-    const int* i = step.tooth;
-    Lanes a = gather(tangent.diagonal[0], i);
-    Lanes b = gather(tangent.diagonal[1], i);
-    Lanes c = gather(tangent.diagonal[2], i);
+    Lanes a = gather(layout, tangent.diagonal[0] + t);
+    Lanes b = gather(layout, tangent.diagonal[1] + t);
+    Lanes c = gather(layout, tangent.diagonal[2] + t);
     Lanes fresh_n[4], s[4];
     for (int e = 0; e < 4; ++e)
     {
-      fresh_n[e] = gather(tangent.next[e], i);
-      s[e] = gather(tangent.second[e], i);
+      fresh_n[e] = gather(layout, tangent.next[e] + t);
+      s[e] = gather(layout, tangent.second[e] + t);
     }
-    Lanes cup_x = gather(tangent.cup, i, 2);
-    Lanes cup_y = gather(tangent.cup + 1, i, 2);
+    Lanes cup_x = gather(layout, tangent.cup + 2 * t, 2);
+    Lanes cup_y = gather(layout, tangent.cup + 2 * t + 1, 2);
     if (t == 0)
     {
-      a = step.patch(a, 1.0);
-      b = step.patch(b, 0.0);
-      c = step.patch(c, 1.0);
+      a = patch(layout, a, 1.0);
+      b = patch(layout, b, 0.0);
+      c = patch(layout, c, 1.0);
       for (int e = 0; e < 4; ++e)
       {
-        fresh_n[e] = step.patch(fresh_n[e], 0.0);
-        s[e] = step.patch(s[e], 0.0);
+        fresh_n[e] = patch(layout, fresh_n[e], 0.0);
+        s[e] = patch(layout, s[e], 0.0);
       }
-      cup_x = step.patch(cup_x, 0.0);
-      cup_y = step.patch(cup_y, 0.0);
+      cup_x = patch(layout, cup_x, 0.0);
+      cup_y = patch(layout, cup_y, 0.0);
     }
     a += d_xx;
     b += d_xy;
@@ -250,15 +233,14 @@ void forward(const Layout& layout, const double* factors, const double* b, doubl
   Lanes* row = lanes(rows);
   for (int t = 0; t < layout.steps; ++t, ++f, row += 2 * COLUMNS)
   {
-    const Step step(layout, t);
     for (int c = 0; c < COLUMNS; ++c)
     {
-      Lanes x = gather(b + c, step.tooth, 2 * COLUMNS);
-      Lanes y = gather(b + COLUMNS + c, step.tooth, 2 * COLUMNS);
+      Lanes x = gather(layout, b + 2 * COLUMNS * t + c, 2 * COLUMNS);
+      Lanes y = gather(layout, b + 2 * COLUMNS * t + COLUMNS + c, 2 * COLUMNS);
       if (t == 0)
       {
-        x = step.patch(x, 0.0);
-        y = step.patch(y, 0.0);
+        x = patch(layout, x, 0.0);
+        y = patch(layout, y, 0.0);
       }
       x += px[c];
       y += py[c];
@@ -305,7 +287,6 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
   {
     --f;
     row -= 2 * COLUMNS;
-    const int* tooth = layout.tooth + COUNT * t;
     for (int c = 0; c < COLUMNS; ++c)
     {
       const Lanes rx = row[2 * c];
@@ -327,9 +308,9 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
       py[c] = vy;
       for (int k = 0; k < COUNT; ++k)
       {
-        if (t > 0 || tooth[k] >= 0)
+        if (t > 0 || !layout.idle[k])
         {
-          double* at = x + 2 * COLUMNS * tooth[k] + c;
+          double* at = x + 2 * COLUMNS * (layout.first[k] + t) + c;
           at[0] = vx[k];
           at[COLUMNS] = vy[k];
         }

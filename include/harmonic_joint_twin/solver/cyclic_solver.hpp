@@ -50,12 +50,10 @@ private:
   using Entries = std::vector<Entry>;
 
   void solve(double* b, int columns) noexcept;
-  arcs::Layout layout() const noexcept { return { steps_, tooth_.data(), separator_.data() }; }
 
   const arcs::Kernels& kernels_;
-  int steps_;
-  std::vector<int> tooth_;
-  std::array<int, arcs::COUNT> separator_;
+  arcs::Layout layout_;
+  std::array<int, arcs::COUNT> separator_;  // first tooth of each
   Entries factors_;
   Entries rows_;
   Eigen::PartialPivLU<Corner> corner_;
