@@ -14,6 +14,8 @@ namespace
 /// One number for each arc; the compiler takes as many instructions as the processor's vectors need.
 typedef double Lanes __attribute__((vector_size(32), may_alias));
 
+typedef long long Choice __attribute__((vector_size(32)));
+
 inline Lanes* lanes(double* values)
 {
   return reinterpret_cast<Lanes*>(values);
@@ -35,11 +37,8 @@ inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 /// The same with `value` in the lanes that idle at the first step.
 inline Lanes patch(const Layout& layout, Lanes values, double value)
 {
-  for (int k = 0; k < COUNT; ++k)
-  {
-    values[k] = layout.idle[k] ? value : values[k];
-  }
-  return values;
+  const Choice idle{ -layout.idle[0], -layout.idle[1], -layout.idle[2], -layout.idle[3] };
+  return idle ? value + Lanes{} : values;
 }
 
 /// What a tooth leaves: the inverse of its block, and that times its couplings.
