@@ -33,8 +33,7 @@ HJT_VECTOR_CLONES void RingDamping::add(const RingShape& shape, const RingForces
   const double* normal = forces.contact_normal.data();
   const double* depth = forces.contact_depth.data();
   const double smoothing = smoothing_;
-  const auto stretch = [&](const double* rate, int i, int j)
-  {
+  const auto stretch = [&](const double* rate, int i, int j) {
     return direction[2 * i] * (rate[2 * j] - rate[2 * i]) + direction[2 * i + 1] * (rate[2 * j + 1] - rate[2 * i + 1]);
   };
   const auto inward = [&](const double* rate, int i)

@@ -97,8 +97,8 @@ void CyclicSolver::solve(double* b, int columns) noexcept
       const int previous = (k + COUNT - 1) % COUNT;
       for (int r = 0; r < 4; ++r)
       {
-        x[4 * k + r] = b[(2 * separator_[k] + r) * columns + c] + before[BORDER * c + r].lane[k] +
-                       after[4 * c + r].lane[previous];
+        x[4 * k + r] =
+            b[(2 * separator_[k] + r) * columns + c] + before[BORDER * c + r].lane[k] + after[4 * c + r].lane[previous];
       }
       x[SEPARATORS] += before[BORDER * c + 4].lane[k];
     }

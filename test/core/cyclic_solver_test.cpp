@@ -42,12 +42,12 @@ RingTangent randomTangent(int teeth, std::mt19937& random)
 }
 
 /// Against a dense solver with pivoting, within what the condition of the matrix lets any solver know.
-void expectSolution(const RingTangent& tangent, std::mt19937& random)
+void expectSolution(const RingTangent& tangent, const arcs::Kernels& kernels, std::mt19937& random)
 {
   constexpr double ROUNDINGS = 200.0;  // that may add up; the elimination pivots within blocks only
   const int teeth = tangent.teeth();
   const Eigen::MatrixXd dense = denseTangent(tangent);
-  CyclicSolver solver(teeth);
+  CyclicSolver solver(teeth, kernels);
   ASSERT_TRUE(solver.factor(tangent));
   const Eigen::PartialPivLU<Eigen::MatrixXd> lu(dense);
   const Eigen::MatrixXd inverse = lu.inverse();
@@ -66,6 +66,13 @@ void expectSolution(const RingTangent& tangent, std::mt19937& random)
   TwoColumns y = loads;
   solver.solve<2>(y);
   EXPECT_LT((y - both).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
+}
+
+/// The same for the code of every kind of processor.
+void expectSolution(const RingTangent& tangent, std::mt19937& random)
+{
+  expectSolution(tangent, arcs::BASELINE, random);
+  expectSolution(tangent, arcs::fastest(), random);
 }
 
 class CyclicSolverOfSize : public testing::TestWithParam<int>

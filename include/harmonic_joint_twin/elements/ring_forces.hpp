@@ -60,8 +60,8 @@ struct RingForces
   Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
   std::vector<char> meshed;           ///< N, tooth touches a flank [-]
   Eigen::VectorXd
-      bending_moment;     ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
-  double cup_rotation{};  ///< mean rotation of the tooth points [rad]
+      bending_moment;       ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
+  double cup_rotation{};    ///< mean rotation of the tooth points [rad]
   Eigen::VectorXd segment;  ///< 2 N, what an element does along the rim, before `addSegmentForces` [N]
 };
 
@@ -150,16 +150,16 @@ struct RingTangent
     addSpring(segment.yy, diagonal.yy, next.yy);
   }
 
-  ToothBlocks diagonal;            ///< at (i, i); symmetric
-  ToothBlocks next;                ///< at (i, i+1), cyclic
-  ToothBlocks second;              ///< at (i, i+2), cyclic
-  Eigen::VectorXd cup_direction;   ///< 2 N, gradient of the mean rotation [rad/m]
-  double cup_stiffness{};          ///< [N.m/rad]
-  Eigen::VectorXd wave_generator;  ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
-  Eigen::VectorXd output;          ///< 2 N, the same by output angle [N/rad]
+  ToothBlocks diagonal;               ///< at (i, i); symmetric
+  ToothBlocks next;                   ///< at (i, i+1), cyclic
+  ToothBlocks second;                 ///< at (i, i+2), cyclic
+  Eigen::VectorXd cup_direction;      ///< 2 N, gradient of the mean rotation [rad/m]
+  double cup_stiffness{};             ///< [N.m/rad]
+  Eigen::VectorXd wave_generator;     ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
+  Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
-  ToothBlocks segment;  ///< what an element does between teeth i and i+1, before `addSegments`
+  ToothBlocks segment;                ///< what an element does between teeth i and i+1, before `addSegments`
 
 private:
   static void addSpring(const Eigen::VectorXd& spring, Eigen::VectorXd& at_tooth, Eigen::VectorXd& to_next) noexcept

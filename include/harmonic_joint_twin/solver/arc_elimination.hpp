@@ -38,8 +38,9 @@ struct Tangent
 
 struct Sums
 {
-  double* before;   ///< BEFORE_ENTRIES: upper triangle by columns, to add
-  double* after;    ///< AFTER_ENTRIES: first tooth xx, xy, yy; first with second xx, xy, yx, yy; second xx, xy, yy; to add
+  double* before;  ///< BEFORE_ENTRIES: upper triangle by columns, to add
+  double*
+      after;  ///< AFTER_ENTRIES: first tooth xx, xy, yy; first with second xx, xy, yx, yy; second xx, xy, yy; to add
   double* between;  ///< BETWEEN_ENTRIES: four rows of the separator after the arc by BORDER columns
 };
 

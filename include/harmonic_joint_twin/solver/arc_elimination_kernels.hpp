@@ -318,9 +318,7 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
   }
 }
 
-constexpr Kernels KERNELS{ factor,
-                           { forward<1>, forward<2>, forward<3> },
-                           { backward<1>, backward<2>, backward<3> } };
+constexpr Kernels KERNELS{ factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> } };
 }  // namespace
 }  // namespace arcs
 }  // namespace hjt

@@ -31,8 +31,8 @@ public:
 
   /// Solves K x = b in place for the columns of `b` (2 N rows, row-major): 1 to 3 of them.
   template <int COLUMNS>
-  void solve(Eigen::Matrix<double, Eigen::Dynamic, COLUMNS, COLUMNS == 1 ? Eigen::ColMajor : Eigen::RowMajor>& b)
-      noexcept
+  void solve(
+      Eigen::Matrix<double, Eigen::Dynamic, COLUMNS, COLUMNS == 1 ? Eigen::ColMajor : Eigen::RowMajor>& b) noexcept
   {
     static_assert(COLUMNS <= MAX_COLUMNS, "no kernel for so many columns");
     solve(b.data(), COLUMNS);
