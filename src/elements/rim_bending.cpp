@@ -91,7 +91,7 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces&
   const double* moment = forces.bending_moment.data();
   double* segment = forces.segment.data();
   const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
-  const auto turnBack = [&](int i, int j)
+  const auto turn_back = [&](int i, int j)
   {
     const double scale = (moment[i] - shared * moment[j]) / length[i];
     segment[2 * i] = -scale * direction[2 * i + 1];
@@ -100,9 +100,9 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces&
 #pragma omp simd
   for (int i = 0; i < n - 1; ++i)
   {
-    turnBack(i, i + 1);
+    turn_back(i, i + 1);
   }
-  turnBack(n - 1, 0);
+  turn_back(n - 1, 0);
   forces.addSegmentForces();
 }
 

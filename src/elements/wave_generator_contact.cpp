@@ -69,13 +69,13 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
     depth[i] = foot.depth;
     curvature[i] = foot.curvature;
   };
-  const auto ownX = [&](int i) { return c * point[2 * i] + s * point[2 * i + 1] - centre_x; };
-  const auto ownY = [&](int i) { return c * point[2 * i + 1] - s * point[2 * i] - centre_y; };
+  const auto own_x = [&](int i) { return c * point[2 * i] + s * point[2 * i + 1] - centre_x; };
+  const auto own_y = [&](int i) { return c * point[2 * i + 1] - s * point[2 * i] - centre_y; };
   if (law_ == ContactLaw::POLAR)
   {
     for (int i = 0; i < n; ++i)
     {
-      store(i, polarPoint(a, b, ownX(i), ownY(i)));
+      store(i, polarPoint(a, b, own_x(i), own_y(i)));
     }
     return;
   }
@@ -83,8 +83,8 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
 #pragma omp simd reduction(+ : far)
   for (int i = 0; i < n; ++i)
   {
-    const double x = ownX(i);
-    const double y = ownY(i);
+    const double x = own_x(i);
+    const double y = own_y(i);
     store(i, closestPointNear(a, b, x, y));
     far += isNear(a, b, x, y) ? 0.0 : 1.0;
   }
@@ -92,7 +92,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   {
     for (int i = 0; i < n; ++i)
     {
-      store(i, closestPoint(a, b, ownX(i), ownY(i)));
+      store(i, closestPoint(a, b, own_x(i), own_y(i)));
     }
   }
 }

@@ -5,6 +5,6 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels AVX2 = KERNELS;
+const Kernels AVX2 = kernels();
 }  // namespace arcs
 }  // namespace hjt

@@ -5,7 +5,7 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels BASELINE = KERNELS;
+const Kernels BASELINE = kernels();
 
 const Kernels& fastest() noexcept
 {

@@ -80,7 +80,7 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
-void factor(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums)
+inline void factor(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums)
 {
   const Seeds seeds(layout, tangent);
   // What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
@@ -318,7 +318,10 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
   }
 }
 
-constexpr Kernels KERNELS{ factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> } };
+constexpr Kernels kernels()
+{
+  return { factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> } };
+}
 }  // namespace
 }  // namespace arcs
 }  // namespace hjt
