@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of the parts of a cycle, to see where it goes. Options are Google Benchmark's.
 #include <cstdint>
+#include <string>
 
 #include <benchmark/benchmark.h>
 
@@ -63,6 +64,86 @@ void ringForces(benchmark::State& state)
   }
 }
 BENCHMARK(ringForces);
+
+/// A ring of state.range(0) teeth, pressed round on the wave generator: what one Newton iteration starts from.
+struct RingOf
+{
+  explicit RingOf(const benchmark::State& state)
+    : parameters(shippedParameters({ "gear.teeth_flexspline=" + std::to_string(state.range(0)),
+                                     "gear.teeth_circular_spline=" + std::to_string(state.range(0) + 2) }))
+    , model(parameters)
+    , position{ 0.3, 0.003, parameters.gear.wave_amplitude }
+    , shape(model.restShape(position))
+    , forces(shape.teeth())
+    , tangent(shape.teeth())
+    , solver(shape.teeth())
+  {
+    model.forces(shape, position, forces);
+    model.tangent(shape, position, forces, tangent);
+  }
+
+  Parameters parameters;
+  RingModel model;
+  DrivePosition position;
+  RingShape shape;
+  RingForces forces;
+  RingTangent tangent;
+  CyclicSolver solver;
+};
+
+/// One Newton iteration, geometry and forces included, against the number of teeth.
+void newtonIteration(benchmark::State& state)
+{
+  RingOf ring(state);
+  Eigen::VectorXd step(ring.forces.teeth.size());
+  for (auto _ : state)
+  {
+    ring.shape.updateGeometry();
+    ring.model.forces(ring.shape, ring.position, ring.forces);
+    ring.model.tangent(ring.shape, ring.position, ring.forces, ring.tangent);
+    benchmark::DoNotOptimize(ring.solver.factor(ring.tangent));
+    step = ring.forces.teeth;
+    ring.solver.solve<1>(step);
+    benchmark::ClobberMemory();
+  }
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(newtonIteration)->RangeMultiplier(2)->Range(100, 3200)->Complexity(benchmark::oN);
+
+void ringTangent(benchmark::State& state)
+{
+  RingOf ring(state);
+  for (auto _ : state)
+  {
+    ring.model.tangent(ring.shape, ring.position, ring.forces, ring.tangent);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(ringTangent)->Arg(200);
+
+void ringFactor(benchmark::State& state)
+{
+  RingOf ring(state);
+  for (auto _ : state)
+  {
+    benchmark::DoNotOptimize(ring.solver.factor(ring.tangent));
+  }
+}
+BENCHMARK(ringFactor)->Arg(200);
+
+void ringSubstitution(benchmark::State& state)
+{
+  RingOf ring(state);
+  benchmark::DoNotOptimize(ring.solver.factor(ring.tangent));
+  Eigen::VectorXd step(ring.forces.teeth.size());
+  for (auto _ : state)
+  {
+    step = ring.forces.teeth;
+    ring.solver.solve<1>(step);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(ringSubstitution)->Arg(200);
 
 /// A twin that has run for a quarter of a second under load.
 Twin runningTwin()

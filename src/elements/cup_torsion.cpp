@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
 
 namespace hjt
 {
@@ -14,30 +15,46 @@ CupTorsion::CupTorsion(const CupParameters& parameters, const ToothRing& rest)
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
 }
 
-double CupTorsion::meanRotation(const RingShape& shape) const noexcept
+HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const noexcept
 {
+  const int n = shape.teeth();
+  const double* __restrict__ rest = rest_radial_.data();
+  const double* __restrict__ point = shape.points.data();
+  const auto along = [&](int i) { return rest[2 * i] * point[2 * i] + rest[2 * i + 1] * point[2 * i + 1]; };
+  const auto across = [&](int i) { return rest[2 * i] * point[2 * i + 1] - rest[2 * i + 1] * point[2 * i]; };
   double sum = 0.0;
-  for (int i = 0; i < shape.teeth(); ++i)
+  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
+#pragma omp simd reduction(+ : sum, large)
+  for (int i = 0; i < n; ++i)
   {
-    const double rx = rest_radial_[2 * i];
-    const double ry = rest_radial_[2 * i + 1];
-    const double x = shape.points[2 * i];
-    const double y = shape.points[2 * i + 1];
-    sum += smallAngle(rx * y - ry * x, rx * x + ry * y);
+    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
+    sum += smallAngle(across(i) / along(i));
   }
-  return sum / shape.teeth();
+  if (large > 0.0)
+  {
+    sum = 0.0;
+    for (int i = 0; i < n; ++i)
+    {
+      sum += smallAngle(across(i), along(i));
+    }
+  }
+  return sum / n;
 }
 
-double CupTorsion::meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept
+HJT_VECTOR_CLONES double CupTorsion::meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept
 {
+  const int n = shape.teeth();
+  const double* __restrict__ point = shape.points.data();
+  const double* __restrict__ speed = speeds.data();
   double sum = 0.0;
-  for (int i = 0; i < shape.teeth(); ++i)
+#pragma omp simd reduction(+ : sum)
+  for (int i = 0; i < n; ++i)
   {
-    const double x = shape.points[2 * i];
-    const double y = shape.points[2 * i + 1];
-    sum += (x * speeds[2 * i + 1] - y * speeds[2 * i]) / (x * x + y * y);
+    const double x = point[2 * i];
+    const double y = point[2 * i + 1];
+    sum += (x * speed[2 * i + 1] - y * speed[2 * i]) / (x * x + y * y);
   }
-  return sum / shape.teeth();
+  return sum / n;
 }
 
 double CupTorsion::torque(double rotation) const noexcept
@@ -78,39 +95,55 @@ double CupTorsion::stiffness(double rotation) const noexcept
   return size > rotations_[1] ? slopes_[2] : size > rotations_[0] ? slopes_[1] : slopes_[0];
 }
 
-void CupTorsion::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
   const double rotation = meanRotation(shape);
   forces.cup_rotation = rotation;
-  const double share = torque(rotation) / shape.teeth();
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double share = torque(rotation) / n;
+  const double* __restrict__ point = shape.points.data();
+  double* __restrict__ force = forces.teeth.data();
+#pragma omp simd
+  for (int i = 0; i < n; ++i)
   {
-    const double x = shape.points[2 * i];
-    const double y = shape.points[2 * i + 1];
+    const double x = point[2 * i];
+    const double y = point[2 * i + 1];
     const double scale = share / (x * x + y * y);
-    forces.teeth[2 * i] += scale * y;
-    forces.teeth[2 * i + 1] -= scale * x;
+    force[2 * i] += scale * y;
+    force[2 * i + 1] -= scale * x;
   }
   forces.energy += storedEnergy(rotation);
 }
 
-void CupTorsion::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
+HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const RingForces& forces,
+                                              RingTangent& tangent) const noexcept
 {
+  const int n = shape.teeth();
   const double rotation = forces.cup_rotation;
-  const double share = torque(rotation) / shape.teeth();
-  const double part = 1.0 / shape.teeth();
+  const double share = torque(rotation) / n;
+  const double part = 1.0 / n;
+  const double* __restrict__ point = shape.points.data();
+  double* __restrict__ cup = tangent.cup_direction.data();
+  double* __restrict__ xx = tangent.diagonal.xx.data();
+  double* __restrict__ xy = tangent.diagonal.xy.data();
+  double* __restrict__ yx = tangent.diagonal.yx.data();
+  double* __restrict__ yy = tangent.diagonal.yy.data();
   tangent.cup_stiffness = stiffness(rotation);
-  for (int i = 0; i < shape.teeth(); ++i)
+#pragma omp simd
+  for (int i = 0; i < n; ++i)
   {
-    const double x = shape.points[2 * i];
-    const double y = shape.points[2 * i + 1];
+    const double x = point[2 * i];
+    const double y = point[2 * i + 1];
     const double inverse = 1.0 / (x * x + y * y);
-    tangent.cup_direction[2 * i] = -part * y * inverse;
-    tangent.cup_direction[2 * i + 1] = part * x * inverse;
+    cup[2 * i] = -part * y * inverse;
+    cup[2 * i + 1] = part * x * inverse;
     const double scale = share * inverse * inverse;
-    Block2 block;
-    block << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
-    tangent.addDiagonal(i, scale * block);
+    const double product = scale * 2.0 * x * y;
+    const double difference = scale * (y * y - x * x);
+    xx[i] += product;
+    xy[i] += difference;
+    yx[i] += difference;
+    yy[i] -= product;
   }
 }
 }  // namespace hjt

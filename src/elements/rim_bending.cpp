@@ -4,29 +4,10 @@
 #include <cmath>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
 
 namespace hjt
 {
-namespace
-{
-/// Gradient of a segment's rotation by the position of its far end: across / length. [rad/m]
-Eigen::Vector2d turnGradient(const RingShape& shape, int i) noexcept
-{
-  return Eigen::Vector2d(-shape.directions[2 * i + 1], shape.directions[2 * i]) / shape.lengths[i];
-}
-
-/// Second derivative of a segment's rotation by the position of its far end. [rad/m^2]
-Block2 turnHessian(const RingShape& shape, int i) noexcept
-{
-  const double x = shape.directions[2 * i];
-  const double y = shape.directions[2 * i + 1];
-  const double scale = 1.0 / (shape.lengths[i] * shape.lengths[i]);
-  Block2 block;
-  block << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
-  return scale * block;
-}
-}  // namespace
-
 RimBending::RimBending(const RingParameters& parameters, const ToothRing& rest)
   : law_(parameters.bending_law)
   , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.bending_stiffness))
@@ -36,23 +17,57 @@ RimBending::RimBending(const RingParameters& parameters, const ToothRing& rest)
 {
 }
 
-/// The angle that stiffness_[i] resists [rad].
-double RimBending::bend(const RingShape& shape, int i) const noexcept
+/// Moments at the teeth: the angles that stiffness_[i] resists, times it. Adds the energy.
+HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces& forces) const noexcept
 {
-  const double x = shape.directions[2 * i];
-  const double y = shape.directions[2 * i + 1];
+  const int n = shape.teeth();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ stiffness = stiffness_.data();
+  double* reference = forces.segment.data();
+  double* moment = forces.bending_moment.data();
   if (law_ == BendingLaw::ABSOLUTE)
   {
-    const double rx = rest_directions_[2 * i];
-    const double ry = rest_directions_[2 * i + 1];
-    return smallAngle(rx * y - ry * x, rx * x + ry * y);
+    forces.segment = rest_directions_;
   }
-  const int h = shape.previous(i);
-  const double px = shape.directions[2 * h];
-  const double py = shape.directions[2 * h + 1];
-  const double rx = rest_cos_ * px - rest_sin_ * py;
-  const double ry = rest_sin_ * px + rest_cos_ * py;
-  return smallAngle(rx * y - ry * x, rx * x + ry * y);
+  else
+  {
+    // Where each segment would point if the rim were bent there as at rest: the one before, turned by a pitch.
+    const double c = rest_cos_;
+    const double s = rest_sin_;
+    reference[0] = c * direction[2 * n - 2] - s * direction[2 * n - 1];
+    reference[1] = s * direction[2 * n - 2] + c * direction[2 * n - 1];
+#pragma omp simd
+    for (int i = 1; i < n; ++i)
+    {
+      reference[2 * i] = c * direction[2 * i - 2] - s * direction[2 * i - 1];
+      reference[2 * i + 1] = s * direction[2 * i - 2] + c * direction[2 * i - 1];
+    }
+  }
+  const auto along = [&](int i)
+  { return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1]; };
+  const auto across = [&](int i)
+  { return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i]; };
+  double energy = 0.0;
+  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
+#pragma omp simd reduction(+ : energy, large)
+  for (int i = 0; i < n; ++i)
+  {
+    const double angle = smallAngle(across(i) / along(i));
+    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
+    moment[i] = stiffness[i] * angle;
+    energy += 0.5 * stiffness[i] * angle * angle;
+  }
+  if (large > 0.0)
+  {
+    energy = 0.0;
+    for (int i = 0; i < n; ++i)
+    {
+      const double angle = smallAngle(across(i), along(i));
+      moment[i] = stiffness[i] * angle;
+      energy += 0.5 * stiffness[i] * angle * angle;
+    }
+  }
+  forces.energy += energy;
 }
 
 /// Couple that turns segment i back [N.m].
@@ -67,74 +82,127 @@ double RimBending::bendingForce(const RingShape& shape, const RingForces& forces
   return couple(forces, i, shape.next(i)) / shape.lengths[i];
 }
 
-void RimBending::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
-  for (int i = 0; i < shape.teeth(); ++i)
+  addMoments(shape, forces);
+  const int n = shape.teeth();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ length = shape.lengths.data();
+  const double* moment = forces.bending_moment.data();
+  double* segment = forces.segment.data();
+  const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
+  const auto turn_back = [&](int i, int j)
   {
-    const double angle = bend(shape, i);
-    forces.bending_moment[i] = stiffness_[i] * angle;
-    forces.energy += 0.5 * forces.bending_moment[i] * angle;
-  }
-  for (int i = 0; i < shape.teeth(); ++i)
+    const double scale = (moment[i] - shared * moment[j]) / length[i];
+    segment[2 * i] = -scale * direction[2 * i + 1];
+    segment[2 * i + 1] = scale * direction[2 * i];
+  };
+#pragma omp simd
+  for (int i = 0; i < n - 1; ++i)
   {
-    const int j = shape.next(i);
-    const double scale = couple(forces, i, j) / shape.lengths[i];
-    const double fx = -scale * shape.directions[2 * i + 1];
-    const double fy = scale * shape.directions[2 * i];
-    forces.teeth[2 * i] += fx;
-    forces.teeth[2 * i + 1] += fy;
-    forces.teeth[2 * j] -= fx;
-    forces.teeth[2 * j + 1] -= fy;
+    turn_back(i, i + 1);
   }
+  turn_back(n - 1, 0);
+  forces.addSegmentForces();
 }
 
 void RimBending::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
-  if (law_ == BendingLaw::ABSOLUTE)
+  addTurnTangent(shape, forces, tangent);
+  if (law_ == BendingLaw::CURVATURE)
   {
-    addAbsoluteTangent(shape, forces, tangent);
-  }
-  else
-  {
-    addCurvatureTangent(shape, forces, tangent);
+    addCurvatureTangent(shape, tangent);
   }
 }
 
-void RimBending::addAbsoluteTangent(const RingShape& shape, const RingForces& forces,
-                                    RingTangent& tangent) const noexcept
-{
-  for (int i = 0; i < shape.teeth(); ++i)
-  {
-    const int j = shape.next(i);
-    const Eigen::Vector2d g = turnGradient(shape, i);
-    const Block2 block = stiffness_[i] * g * g.transpose() + forces.bending_moment[i] * turnHessian(shape, i);
-    tangent.addDiagonal(i, block);
-    tangent.addDiagonal(j, block);
-    tangent.addPair(i, j, -block);
-  }
-}
-
-void RimBending::addCurvatureTangent(const RingShape& shape, const RingForces& forces,
-                                     RingTangent& tangent) const noexcept
+/// The part that acts between the ends of a segment: its couple as it turns, and with the absolute law its stiffness.
+HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const RingForces& forces,
+                                                  RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
-  Eigen::Vector2d g_before = turnGradient(shape, n - 1);
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ length = shape.lengths.data();
+  const double* moment = forces.bending_moment.data();
+  const double* __restrict__ stiffness = stiffness_.data();
+  double* __restrict__ xx = tangent.segment.xx.data();
+  double* __restrict__ xy = tangent.segment.xy.data();
+  double* __restrict__ yy = tangent.segment.yy.data();
+  const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
+  const auto turn = [&](int i, int j)
+  {
+    const double x = direction[2 * i];
+    const double y = direction[2 * i + 1];
+    const double scale = 1.0 / (length[i] * length[i]);
+    const double couple = scale * (moment[i] - shared * moment[j]);
+    const double across = scale * (1.0 - shared) * stiffness[i];
+    xx[i] = couple * 2.0 * x * y + across * y * y;
+    xy[i] = couple * (y * y - x * x) - across * x * y;
+    yy[i] = -couple * 2.0 * x * y + across * x * x;
+  };
+#pragma omp simd
+  for (int i = 0; i < n - 1; ++i)
+  {
+    turn(i, i + 1);
+  }
+  turn(n - 1, 0);
+  tangent.addSegments();
+}
+
+/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is g_i
+/// at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
+HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+{
+  const int n = shape.teeth();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ length = shape.lengths.data();
+  const double* __restrict__ k = stiffness_.data();
+  double* __restrict__ gx = tangent.segment.xx.data();
+  double* __restrict__ gy = tangent.segment.xy.data();
+#pragma omp simd
   for (int i = 0; i < n; ++i)
   {
-    const int h = shape.previous(i);
-    const int j = shape.next(i);
-    const Eigen::Vector2d g = turnGradient(shape, i);
-    // Gradient of the bend at tooth i: g at j, g_before at h, minus both at i.
-    const Eigen::Vector2d at_tooth = -(g + g_before);
-    const double k = stiffness_[i];
-    const Block2 turn = couple(forces, i, j) * turnHessian(shape, i);
-    tangent.addDiagonal(h, k * g_before * g_before.transpose());
-    tangent.addDiagonal(i, k * at_tooth * at_tooth.transpose() + turn);
-    tangent.addDiagonal(j, k * g * g.transpose() + turn);
-    tangent.addPair(h, i, k * g_before * at_tooth.transpose());
-    tangent.addPair(i, j, k * at_tooth * g.transpose() - turn);
-    tangent.addPair(h, j, k * g_before * g.transpose());
-    g_before = g;
+    const double inverse = 1.0 / length[i];
+    gx[i] = -direction[2 * i + 1] * inverse;
+    gy[i] = direction[2 * i] * inverse;
   }
+  double* __restrict__ d_xx = tangent.diagonal.xx.data();
+  double* __restrict__ d_xy = tangent.diagonal.xy.data();
+  double* __restrict__ d_yx = tangent.diagonal.yx.data();
+  double* __restrict__ d_yy = tangent.diagonal.yy.data();
+  double* __restrict__ n_xx = tangent.next.xx.data();
+  double* __restrict__ n_xy = tangent.next.xy.data();
+  double* __restrict__ n_yx = tangent.next.yx.data();
+  double* __restrict__ n_yy = tangent.next.yy.data();
+  double* __restrict__ s_xx = tangent.second.xx.data();
+  double* __restrict__ s_xy = tangent.second.xy.data();
+  double* __restrict__ s_yx = tangent.second.yx.data();
+  double* __restrict__ s_yy = tangent.second.yy.data();
+  const auto row = [&](int h, int i, int j)
+  {
+    const double before_x = gx[i] + gx[h];
+    const double before_y = gy[i] + gy[h];
+    const double after_x = gx[i] + gx[j];
+    const double after_y = gy[i] + gy[j];
+    const double mixed = k[h] * gx[h] * gy[h] + k[i] * before_x * before_y + k[j] * gx[i] * gy[i];
+    d_xx[i] += k[h] * gx[h] * gx[h] + k[i] * before_x * before_x + k[j] * gx[i] * gx[i];
+    d_xy[i] += mixed;
+    d_yx[i] += mixed;
+    d_yy[i] += k[h] * gy[h] * gy[h] + k[i] * before_y * before_y + k[j] * gy[i] * gy[i];
+    n_xx[i] -= k[i] * before_x * gx[i] + k[j] * gx[i] * after_x;
+    n_xy[i] -= k[i] * before_x * gy[i] + k[j] * gx[i] * after_y;
+    n_yx[i] -= k[i] * before_y * gx[i] + k[j] * gy[i] * after_x;
+    n_yy[i] -= k[i] * before_y * gy[i] + k[j] * gy[i] * after_y;
+    s_xx[i] += k[j] * gx[i] * gx[j];
+    s_xy[i] += k[j] * gx[i] * gy[j];
+    s_yx[i] += k[j] * gy[i] * gx[j];
+    s_yy[i] += k[j] * gy[i] * gy[j];
+  };
+  row(n - 1, 0, 1);
+#pragma omp simd
+  for (int i = 1; i < n - 1; ++i)
+  {
+    row(i - 1, i, i + 1);
+  }
+  row(n - 2, n - 1, 0);
 }
 }  // namespace hjt

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/elements/rim_tension.hpp"
 
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
+
 namespace hjt
 {
 RimTension::RimTension(const RingParameters& parameters, const ToothRing& rest)
@@ -9,35 +11,50 @@ RimTension::RimTension(const RingParameters& parameters, const ToothRing& rest)
 {
 }
 
-void RimTension::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double* __restrict__ length = shape.lengths.data();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ stiffness = stiffness_.data();
+  double* __restrict__ segment = forces.segment.data();
+  const double rest = rest_length_;
+  double energy = 0.0;
+#pragma omp simd reduction(+ : energy)
+  for (int i = 0; i < n; ++i)
   {
-    const int j = shape.next(i);
-    const double stretch = shape.lengths[i] - rest_length_;
-    const double pull = stiffness_[i] * stretch;
-    const Eigen::Vector2d force = pull * shape.directions.segment<2>(2 * i);
-    forces.teeth.segment<2>(2 * i) += force;
-    forces.teeth.segment<2>(2 * j) -= force;
-    forces.energy += 0.5 * pull * stretch;
+    const double stretch = length[i] - rest;
+    const double pull = stiffness[i] * stretch;
+    segment[2 * i] = pull * direction[2 * i];
+    segment[2 * i + 1] = pull * direction[2 * i + 1];
+    energy += 0.5 * pull * stretch;
   }
+  forces.energy += energy;
+  forces.addSegmentForces();
 }
 
-void RimTension::addTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double* __restrict__ length = shape.lengths.data();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ stiffness = stiffness_.data();
+  double* __restrict__ xx = tangent.segment.xx.data();
+  double* __restrict__ xy = tangent.segment.xy.data();
+  double* __restrict__ yy = tangent.segment.yy.data();
+  const double rest = rest_length_;
+#pragma omp simd
+  for (int i = 0; i < n; ++i)
   {
-    const int j = shape.next(i);
     // k u u^T along the segment, tension / length across it.
-    const double across = tension(shape, i) / shape.lengths[i];
-    const double x = shape.directions[2 * i];
-    const double y = shape.directions[2 * i + 1];
-    const double along = stiffness_[i] - across;
-    Block2 block;
-    block << across + along * x * x, along * x * y, along * x * y, across + along * y * y;
-    tangent.addDiagonal(i, block);
-    tangent.addDiagonal(j, block);
-    tangent.addPair(i, j, -block);
+    const double across = stiffness[i] * (length[i] - rest) / length[i];
+    const double x = direction[2 * i];
+    const double y = direction[2 * i + 1];
+    const double along = stiffness[i] - across;
+    xx[i] = across + along * x * x;
+    xy[i] = along * x * y;
+    yy[i] = across + along * y * y;
   }
+  tangent.addSegments();
 }
 }  // namespace hjt

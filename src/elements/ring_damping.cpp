@@ -2,6 +2,7 @@
 #include "harmonic_joint_twin/elements/ring_damping.hpp"
 
 #include "harmonic_joint_twin/elements/contact_ramp.hpp"
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
 
 namespace hjt
 {
@@ -21,29 +22,46 @@ double RingDamping::contactStrength(const RingForces& forces, int i) const noexc
   return forces.contact_force[i] > 0.0 ? contact_ * ContactRamp(forces.contact_depth[i], smoothing_).tangent : 0.0;
 }
 
-void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
-                      JointFriction& friction) const noexcept
+HJT_VECTOR_CLONES void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
+                                        JointFriction& friction) const noexcept
 {
+  const int n = shape.teeth();
   const double* m = rates.by_motor.data();
   const double* o = rates.by_output.data();
-  double mm = tooth_ * rates.by_motor.squaredNorm();
-  double mo = tooth_ * rates.by_motor.dot(rates.by_output);
-  double oo = tooth_ * rates.by_output.squaredNorm();
-  for (int i = 0; i < shape.teeth(); ++i)
+  const double* direction = shape.directions.data();
+  const double* point = shape.points.data();
+  const double* normal = forces.contact_normal.data();
+  const double* depth = forces.contact_depth.data();
+  const double smoothing = smoothing_;
+  const auto stretch = [&](const double* rate, int i, int j) {
+    return direction[2 * i] * (rate[2 * j] - rate[2 * i]) + direction[2 * i + 1] * (rate[2 * j + 1] - rate[2 * i + 1]);
+  };
+  const auto inward = [&](const double* rate, int i)
+  { return normal[2 * i] * rate[2 * i] + normal[2 * i + 1] * rate[2 * i + 1]; };
+  const double last_m = stretch(m, n - 1, 0);
+  const double last_o = stretch(o, n - 1, 0);
+  double mm = tension_ * last_m * last_m;
+  double mo = tension_ * last_m * last_o;
+  double oo = tension_ * last_o * last_o;
+#pragma omp simd reduction(+ : mm, mo, oo)
+  for (int i = 0; i < n - 1; ++i)
   {
-    const int j = shape.next(i);
-    const double dx = shape.directions[2 * i];
-    const double dy = shape.directions[2 * i + 1];
-    const double stretch_m = dx * (m[2 * j] - m[2 * i]) + dy * (m[2 * j + 1] - m[2 * i + 1]);
-    const double stretch_o = dx * (o[2 * j] - o[2 * i]) + dy * (o[2 * j + 1] - o[2 * i + 1]);
-    const double nx = forces.contact_normal[2 * i];
-    const double ny = forces.contact_normal[2 * i + 1];
-    const double contact = contactStrength(forces, i);
-    const double depth_m = surfaceLever(shape, forces, i) - nx * m[2 * i] - ny * m[2 * i + 1];
-    const double depth_o = -nx * o[2 * i] - ny * o[2 * i + 1];
-    mm += tension_ * stretch_m * stretch_m + contact * depth_m * depth_m;
-    mo += tension_ * stretch_m * stretch_o + contact * depth_m * depth_o;
-    oo += tension_ * stretch_o * stretch_o + contact * depth_o * depth_o;
+    const double stretch_m = stretch(m, i, i + 1);
+    const double stretch_o = stretch(o, i, i + 1);
+    mm += tension_ * stretch_m * stretch_m;
+    mo += tension_ * stretch_m * stretch_o;
+    oo += tension_ * stretch_o * stretch_o;
+  }
+#pragma omp simd reduction(+ : mm, mo, oo)
+  for (int i = 0; i < n; ++i)
+  {
+    const double dashpot = contact_ * ContactRamp(depth[i], smoothing).tangent;
+    const double surface = point[2 * i] * normal[2 * i + 1] - point[2 * i + 1] * normal[2 * i];
+    const double depth_m = surface - inward(m, i);
+    const double depth_o = -inward(o, i);
+    mm += dashpot * depth_m * depth_m + tooth_ * (m[2 * i] * m[2 * i] + m[2 * i + 1] * m[2 * i + 1]);
+    mo += dashpot * depth_m * depth_o + tooth_ * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
+    oo += dashpot * depth_o * depth_o + tooth_ * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
   }
   friction.viscous(0, 0) += mm;
   friction.viscous(0, 1) += mo;

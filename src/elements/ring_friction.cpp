@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
+
 namespace hjt
 {
 void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const DrivePosition& position,
@@ -23,19 +25,25 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const
   }
 }
 
-double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces,
-                                 const Eigen::VectorXd& rates) const noexcept
+HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces,
+                                                   const Eigen::VectorXd& rates) const noexcept
 {
-  double sum = 0.0;
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double* point = shape.points.data();
+  const double* force = forces.contact_force.data();
+  const double* rate = rates.data();
+  const auto lost = [&](int h, int i, int j)
   {
-    const int j = shape.next(i);
-    const int h = shape.previous(i);
-    const Chord chord = shape.chord(i);
-    const double tilt =
-        (chord.normal.x() * (rates[2 * j] - rates[2 * h]) + chord.normal.y() * (rates[2 * j + 1] - rates[2 * h + 1])) /
-        chord.length;
-    sum += forces.contact_force[i] * std::abs(tilt);
+    const double x = point[2 * j] - point[2 * h];
+    const double y = point[2 * j + 1] - point[2 * h + 1];
+    const double across = y * (rate[2 * j] - rate[2 * h]) - x * (rate[2 * j + 1] - rate[2 * h + 1]);
+    return force[i] * std::abs(across) / (x * x + y * y);  // by the rate at which the chord tilts
+  };
+  double sum = lost(n - 1, 0, 1) + lost(n - 2, n - 1, 0);
+#pragma omp simd reduction(+ : sum)
+  for (int i = 1; i < n - 1; ++i)
+  {
+    sum += lost(i - 1, i, i + 1);
   }
   return parameters_.friction_coefficient * parameters_.slip_lever * sum;
 }

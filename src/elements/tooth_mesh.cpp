@@ -30,7 +30,6 @@ struct ToothMesh::Law
   double by_xi_zeta{};
   double by_zeta_zeta{};
   double cosine{};  // of the flank's angle where the tooth touches
-  bool contact{};
 };
 
 ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors)
@@ -54,8 +53,8 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   }
 }
 
-ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output,
-                                        int i) const noexcept
+[[gnu::always_inline]] inline ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output,
+                                                                      double sin_output, int i) const noexcept
 {
   const Space& space = space_[shape.space[i]];
   const double rx = cos_output * space.axis_x - sin_output * space.axis_y;
@@ -73,6 +72,15 @@ bool ToothMesh::outOfReach(const RingShape& shape, int i) const noexcept
   return shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_;
 }
 
+/// Whether the tooth touches a flank: most that reach the circular spline do not.
+[[gnu::always_inline]] inline bool ToothMesh::touches(const Engagement& tooth, int i) const noexcept
+{
+  const double zeta = tooth.zeta - tooth.space_out;
+  return !(zeta + tip_offset_ <= 0.0 ||
+           std::abs(tooth.xi + tooth.tooth_ahead) <= profile_.at(zeta).value + clearance_[i]);
+}
+
+/// Of a tooth that touches.
 ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
 {
   Law law;
@@ -81,11 +89,6 @@ ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
   const double depth = zeta + tip_offset_;
   const HalfClearance flank = profile_.at(zeta);
   const double clearance = flank.value + clearance_[i];
-  if (depth <= 0.0 || std::abs(xi) <= clearance)
-  {
-    return law;
-  }
-  law.contact = true;
   const ContactRamp leading(xi - clearance, smoothing_);
   const ContactRamp trailing(-xi - clearance, smoothing_);
   const double energy = leading.energy + trailing.energy;
@@ -127,11 +130,11 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
       continue;
     }
     const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    const Law at = law(tooth, i);
-    if (!at.contact)
+    if (!touches(tooth, i))
     {
       continue;
     }
+    const Law at = law(tooth, i);
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
     // The tooth tilts with the chord: its couple acts on the two neighbours, along the chord's normal.
     const Eigen::Vector2d& normal = tooth.chord.normal;
@@ -238,7 +241,7 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
       continue;
     }
     const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    if (std::abs(tooth.xi) <= half_space_ * tooth.zeta || law(tooth, i).contact)
+    if (std::abs(tooth.xi) <= half_space_ * tooth.zeta || touches(tooth, i))
     {
       continue;
     }

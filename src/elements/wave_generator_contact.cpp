@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "harmonic_joint_twin/elements/contact_ramp.hpp"
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
 
 namespace hjt
 {
@@ -46,8 +47,8 @@ Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) cons
 }
 
 /// Feet of the normals from all tooth points, in the housing's axes.
-void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position,
-                                    RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position,
+                                                      RingForces& forces) const noexcept
 {
   const double c = std::cos(position.wave_generator_angle);
   const double s = std::sin(position.wave_generator_angle);
@@ -57,10 +58,10 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
   const double centre_x = centre_x_;
   const double centre_y = centre_y_;
   const int n = shape.teeth();
-  const double* point = shape.points.data();
-  double* normal = forces.contact_normal.data();
-  double* depth = forces.contact_depth.data();
-  double* curvature = forces.contact_curvature.data();
+  const double* __restrict__ point = shape.points.data();
+  double* __restrict__ normal = forces.contact_normal.data();
+  double* __restrict__ depth = forces.contact_depth.data();
+  double* __restrict__ curvature = forces.contact_curvature.data();
   const auto store = [&](int i, const EllipseFoot& foot)
   {
     normal[2 * i] = c * foot.normal_x - s * foot.normal_y;
@@ -68,82 +69,110 @@ void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition&
     depth[i] = foot.depth;
     curvature[i] = foot.curvature;
   };
-  const auto own = [&](int i, double& x, double& y)
-  {
-    x = c * point[2 * i] + s * point[2 * i + 1] - centre_x;
-    y = c * point[2 * i + 1] - s * point[2 * i] - centre_y;
-  };
-  double x = 0.0;
-  double y = 0.0;
+  const auto own_x = [&](int i) { return c * point[2 * i] + s * point[2 * i + 1] - centre_x; };
+  const auto own_y = [&](int i) { return c * point[2 * i + 1] - s * point[2 * i] - centre_y; };
   if (law_ == ContactLaw::POLAR)
   {
     for (int i = 0; i < n; ++i)
     {
-      own(i, x, y);
-      store(i, polarPoint(a, b, x, y));
+      store(i, polarPoint(a, b, own_x(i), own_y(i)));
     }
     return;
   }
-  double farthest = 0.0;
+  double far = 0.0;  // teeth; as wide as the other numbers, for the vectors
+#pragma omp simd reduction(+ : far)
   for (int i = 0; i < n; ++i)
   {
-    double nearness = 0.0;
-    own(i, x, y);
-    store(i, closestPointNear(a, b, x, y, nearness));
-    farthest = std::max(farthest, nearness);
+    const double x = own_x(i);
+    const double y = own_y(i);
+    store(i, closestPointNear(a, b, x, y));
+    far += isNear(a, b, x, y) ? 0.0 : 1.0;
   }
-  if (!(farthest < NEAR_POINT))
+  if (far > 0.0)
   {
     for (int i = 0; i < n; ++i)
     {
-      own(i, x, y);
-      store(i, closestPoint(a, b, x, y));
+      store(i, closestPoint(a, b, own_x(i), own_y(i)));
     }
   }
 }
 
-void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
-                                     RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
+                                                       RingForces& forces) const noexcept
 {
   findFeet(shape, position, forces);
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double* __restrict__ point = shape.points.data();
+  const double* __restrict__ stiffness = stiffness_.data();
+  const double* __restrict__ depth = forces.contact_depth.data();
+  const double* __restrict__ normal = forces.contact_normal.data();
+  double* __restrict__ contact_force = forces.contact_force.data();
+  double* __restrict__ teeth = forces.teeth.data();
+  const double smoothing = smoothing_;
+  double torque = 0.0;
+  double energy = 0.0;
+#pragma omp simd reduction(+ : torque, energy)
+  for (int i = 0; i < n; ++i)
   {
-    const ContactRamp ramp(forces.contact_depth[i], smoothing_);
-    const double force = stiffness_[i] * ramp.force;
-    const double nx = forces.contact_normal[2 * i];
-    const double ny = forces.contact_normal[2 * i + 1];
-    forces.contact_force[i] = force;
-    forces.teeth[2 * i] += force * nx;
-    forces.teeth[2 * i + 1] += force * ny;
-    forces.wave_generator_torque -= force * (shape.points[2 * i] * ny - shape.points[2 * i + 1] * nx);
-    forces.energy += stiffness_[i] * ramp.energy;
+    const ContactRamp ramp(depth[i], smoothing);
+    const double force = stiffness[i] * ramp.force;
+    const double nx = normal[2 * i];
+    const double ny = normal[2 * i + 1];
+    contact_force[i] = force;
+    teeth[2 * i] += force * nx;
+    teeth[2 * i + 1] += force * ny;
+    torque -= force * (point[2 * i] * ny - point[2 * i + 1] * nx);
+    energy += stiffness[i] * ramp.energy;
   }
+  forces.wave_generator_torque += torque;
+  forces.energy += energy;
 }
 
-void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces,
-                                      RingTangent& tangent) const noexcept
+/// A tooth out of contact has neither force nor stiffness and adds nothing.
+HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces,
+                                                        RingTangent& tangent) const noexcept
 {
-  for (int i = 0; i < shape.teeth(); ++i)
+  const int n = shape.teeth();
+  const double* __restrict__ point = shape.points.data();
+  const double* __restrict__ tooth_stiffness = stiffness_.data();
+  const double* __restrict__ depth = forces.contact_depth.data();
+  const double* __restrict__ normal = forces.contact_normal.data();
+  const double* __restrict__ curvature = forces.contact_curvature.data();
+  const double* __restrict__ contact_force = forces.contact_force.data();
+  double* __restrict__ xx = tangent.diagonal.xx.data();
+  double* __restrict__ xy = tangent.diagonal.xy.data();
+  double* __restrict__ yx = tangent.diagonal.yx.data();
+  double* __restrict__ yy = tangent.diagonal.yy.data();
+  double* __restrict__ by_angle = tangent.wave_generator.data();
+  const double smoothing = smoothing_;
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (int i = 0; i < n; ++i)
   {
-    const double depth = forces.contact_depth[i];
-    if (depth <= 0.0)
-    {
-      continue;
-    }
-    const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
-    const double force = forces.contact_force[i];
-    const double stiffness = stiffness_[i] * ContactRamp(depth, smoothing_).tangent;
-    const Eigen::Vector2d n = forces.contact_normal.segment<2>(2 * i);
-    const Eigen::Vector2d t(-n.y(), n.x());
+    const double x = point[2 * i];
+    const double y = point[2 * i + 1];
+    const double nx = normal[2 * i];
+    const double ny = normal[2 * i + 1];
+    const double force = contact_force[i];
+    const double stiffness = tooth_stiffness[i] * ContactRamp(depth[i], smoothing).tangent;
     // The normal turns with the point at this rate; the force follows it.
-    const double turn = forces.contact_curvature[i] / (1.0 - forces.contact_curvature[i] * depth);
-    tangent.addDiagonal(i, stiffness * n * n.transpose() - force * turn * t * t.transpose());
+    const double turn = curvature[i] / (1.0 - curvature[i] * depth[i]);
+    const double across = -force * turn;
+    const double mixed = (stiffness - across) * nx * ny;
+    xx[i] += stiffness * nx * nx + across * ny * ny;
+    xy[i] += mixed;
+    yx[i] += mixed;
+    yy[i] += stiffness * ny * ny + across * nx * nx;
 
-    const double lever = point.x() * n.y() - point.y() * n.x();
-    const double reach = point.dot(n);
-    tangent.wave_generator.segment<2>(2 * i) -= stiffness * lever * n + force * (1.0 - turn * reach) * t;
-    tangent.wave_generator_stiffness += stiffness * lever * lever + force * (1.0 - turn * reach) * reach;
+    const double lever = x * ny - y * nx;
+    const double reach = x * nx + y * ny;
+    const double along = stiffness * lever;
+    const double sideways = force * (1.0 - turn * reach);
+    by_angle[2 * i] -= along * nx - sideways * ny;
+    by_angle[2 * i + 1] -= along * ny + sideways * nx;
+    sum += along * lever + sideways * reach;
   }
+  tangent.wave_generator_stiffness += sum;
 }
 
 void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,

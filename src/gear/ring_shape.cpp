@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/gear/ring_shape.hpp"
 
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
+
 namespace hjt
 {
-void RingShape::updateGeometry() noexcept
+HJT_VECTOR_CLONES void RingShape::updateGeometry() noexcept
 {
-  const int n = teeth();
-  const double* p = points.data();
-  double* direction = directions.data();
-  for (int i = 0; i < n; ++i)
+  const int last = teeth() - 1;
+  const double* __restrict__ p = points.data();
+  double* __restrict__ direction = directions.data();
+  double* __restrict__ length = lengths.data();
+  const auto update = [&](int i, int j)
   {
-    const int j = next(i);
     const double dx = p[2 * j] - p[2 * i];
     const double dy = p[2 * j + 1] - p[2 * i + 1];
-    const double length = std::sqrt(dx * dx + dy * dy);
-    const double inverse = 1.0 / length;
-    lengths[i] = length;
+    const double distance = std::sqrt(dx * dx + dy * dy);
+    const double inverse = 1.0 / distance;
+    length[i] = distance;
     direction[2 * i] = dx * inverse;
     direction[2 * i + 1] = dy * inverse;
+  };
+#pragma omp simd
+  for (int i = 0; i < last; ++i)
+  {
+    update(i, i + 1);
   }
+  update(last, 0);
 }
 }  // namespace hjt

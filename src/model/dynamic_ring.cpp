@@ -11,25 +11,29 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 template <class Visitor>
 void visitEntries(const RingTangent& tangent, Visitor&& visit)
 {
-  const auto block = [&](int row, int column, const Block4& values)
+  const auto block = [&](int row_tooth, int column_tooth, const Block2& values)
   {
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 2; ++i)
     {
-      for (int j = 0; j < 4; ++j)
+      for (int j = 0; j < 2; ++j)
       {
-        visit(row + i, column + j, values(i, j));
+        visit(2 * row_tooth + i, 2 * column_tooth + j, values(i, j));
       }
     }
   };
-  const int pairs = tangent.pairs();
-  const int wave_generator = 4 * pairs;
-  const int output = wave_generator + 1;
-  for (int p = 0; p < pairs; ++p)
+  const auto couple = [&](int i, int j, const Block2& values)
   {
-    const int next = (p + 1) % pairs;
-    block(4 * p, 4 * p, tangent.diagonal[p]);
-    block(4 * p, 4 * next, tangent.upper[p]);
-    block(4 * next, 4 * p, tangent.upper[p].transpose());
+    block(i, j, values);
+    block(j, i, values.transpose());
+  };
+  const int teeth = tangent.teeth();
+  const int wave_generator = 2 * teeth;
+  const int output = wave_generator + 1;
+  for (int i = 0; i < teeth; ++i)
+  {
+    block(i, i, tangent.diagonal.at(i));
+    couple(i, (i + 1) % teeth, tangent.next.at(i));
+    couple(i, (i + 2) % teeth, tangent.second.at(i));
   }
   for (int k = 0; k < wave_generator; ++k)
   {

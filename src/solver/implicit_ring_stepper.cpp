@@ -141,9 +141,9 @@ bool ImplicitRingStepper::factor() noexcept
   ring_.tangent(1.0 / stage_step_, tangent_);
   const double inverse_square = 1.0 / (stage_step_ * stage_step_);
   const Eigen::VectorXd& mass = ring_.mass();
-  for (int p = 0; p < tangent_.pairs(); ++p)
+  for (int i = 0; i < tangent_.teeth(); ++i)
   {
-    tangent_.diagonal[p].diagonal() += inverse_square * mass.segment<4>(4 * p);
+    tangent_.addDiagonal(i, Block2((inverse_square * mass.segment<2>(2 * i)).asDiagonal()));
   }
   tangent_.wave_generator_stiffness += inverse_square * mass[ring_.waveGenerator()];
   tangent_.output_stiffness += inverse_square * mass[ring_.output()];

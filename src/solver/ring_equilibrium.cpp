@@ -27,12 +27,7 @@ char contactsOf(const RingForces& forces, int i) noexcept
 /// Largest entry on the tangent's diagonal [N/m].
 double stiffest(const RingTangent& tangent) noexcept
 {
-  double entry = 0.0;
-  for (const Block4& block : tangent.diagonal)
-  {
-    entry = std::max(entry, block.diagonal().maxCoeff());
-  }
-  return entry;
+  return std::max(tangent.diagonal.xx.maxCoeff(), tangent.diagonal.yy.maxCoeff());
 }
 
 /// One attempt after another: the second's outcome, the effort of both.
@@ -508,10 +503,8 @@ bool RingEquilibrium::downhill() noexcept
       return true;
     }
     const double add = shift > 0.0 ? 3.0 * shift : FIRST_SHIFT * stiffest(tangent_);
-    for (Block4& block : tangent_.diagonal)
-    {
-      block.diagonal().array() += add;
-    }
+    tangent_.diagonal.xx.array() += add;
+    tangent_.diagonal.yy.array() += add;
     shift += add;
     if (!solver_.factor(tangent_))
     {

@@ -24,16 +24,17 @@ Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index columns, std::mt199
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index, Eigen::Index) { return value(random); });
 }
 
-/// Symmetric, cyclic block-tridiagonal, positive definite by dominance; with a cup.
+/// Symmetric, cyclic, five blocks a row, positive definite by dominance; with a cup.
 RingTangent randomTangent(int teeth, std::mt19937& random)
 {
   RingTangent tangent(teeth);
   tangent.setZero();
-  for (int p = 0; p < tangent.pairs(); ++p)
+  for (int i = 0; i < teeth; ++i)
   {
-    const Block4 block = randomMatrix(4, 4, random);
-    tangent.diagonal[p] = block * block.transpose() + 9.0 * Block4::Identity();
-    tangent.upper[p] = randomMatrix(4, 4, random);
+    const Block2 block = randomMatrix(2, 2, random);
+    tangent.addDiagonal(i, block * block.transpose() + 9.0 * Block2::Identity());
+    tangent.next.add(i, randomMatrix(2, 2, random));
+    tangent.second.add(i, randomMatrix(2, 2, random));
   }
   tangent.cup_direction = randomMatrix(2 * teeth, 1, random);
   tangent.cup_stiffness = 3.0;
@@ -41,12 +42,12 @@ RingTangent randomTangent(int teeth, std::mt19937& random)
 }
 
 /// Against a dense solver with pivoting, within what the condition of the matrix lets any solver know.
-void expectSolution(const RingTangent& tangent, std::mt19937& random)
+void expectSolution(const RingTangent& tangent, const arcs::Kernels& kernels, std::mt19937& random)
 {
   constexpr double ROUNDINGS = 200.0;  // that may add up; the elimination pivots within blocks only
-  const int teeth = 2 * tangent.pairs();
+  const int teeth = tangent.teeth();
   const Eigen::MatrixXd dense = denseTangent(tangent);
-  CyclicSolver solver(teeth);
+  CyclicSolver solver(teeth, kernels);
   ASSERT_TRUE(solver.factor(tangent));
   const Eigen::PartialPivLU<Eigen::MatrixXd> lu(dense);
   const Eigen::MatrixXd inverse = lu.inverse();
@@ -67,10 +68,17 @@ void expectSolution(const RingTangent& tangent, std::mt19937& random)
   EXPECT_LT((y - both).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
 }
 
+/// The same for the code of every kind of processor.
+void expectSolution(const RingTangent& tangent, std::mt19937& random)
+{
+  expectSolution(tangent, arcs::BASELINE, random);
+  expectSolution(tangent, arcs::fastest(), random);
+}
+
 class CyclicSolverOfSize : public testing::TestWithParam<int>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Teeth, CyclicSolverOfSize, testing::Values(8, 10, 12, 50, 102, 200, 400));
+INSTANTIATE_TEST_SUITE_P(Teeth, CyclicSolverOfSize, testing::Values(8, 10, 12, 14, 16, 50, 102, 200, 400));
 
 TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRandomTangents)
 {
@@ -130,23 +138,27 @@ TEST(CyclicSolver, SaysWhenThereIsNoSolution)
   RingTangent zero(20);
   zero.setZero();
   EXPECT_FALSE(solver.factor(zero));
-  for (const int pair : { 0, 4, 8, 9 })
+  for (const int tooth : { 0, 1, 3, 9, 18, 19 })
   {
     // A tooth nothing holds.
     RingTangent loose = good;
-    loose.diagonal[pair].setZero();
-    loose.upper[pair].setZero();
-    loose.upper[(pair + 9) % 10].setZero();
-    loose.cup_direction.segment<4>(4 * pair).setZero();
-    EXPECT_FALSE(solver.factor(loose)) << pair;
+    loose.diagonal.add(tooth, -loose.diagonal.at(tooth));
+    for (const int before : { 0, 1, 2 })
+    {
+      const int i = (tooth + 20 - before) % 20;
+      loose.next.add(i, before < 2 ? Block2(-loose.next.at(i)) : Block2::Zero());
+      loose.second.add(i, before != 1 ? Block2(-loose.second.at(i)) : Block2::Zero());
+    }
+    loose.cup_direction.segment<2>(2 * tooth).setZero();
+    EXPECT_FALSE(solver.factor(loose)) << tooth;
     for (const double bad : { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
     {
       RingTangent spoilt = good;
-      spoilt.diagonal[pair](1, 2) = bad;
-      EXPECT_FALSE(solver.factor(spoilt)) << pair;
+      spoilt.diagonal.xy[tooth] = bad;
+      EXPECT_FALSE(solver.factor(spoilt)) << tooth;
       spoilt = good;
-      spoilt.upper[pair](3, 0) = bad;
-      EXPECT_FALSE(solver.factor(spoilt)) << pair;
+      spoilt.second.yx[tooth] = bad;
+      EXPECT_FALSE(solver.factor(spoilt)) << tooth;
     }
   }
   // The failures have left nothing behind.

@@ -152,7 +152,7 @@ struct RandomMotion
 
 Eigen::MatrixXd denseOver(const RingTangent& tangent)
 {
-  const Eigen::Index n = 4 * tangent.pairs();
+  const Eigen::Index n = 2 * tangent.teeth();
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n + 2, n + 2);
   dense.topLeftCorner(n, n) = denseTangent(tangent);
   dense.col(n).head(n) = tangent.wave_generator;
@@ -301,9 +301,9 @@ TEST(BorderedRingSolver, AgreesWithADenseSolver)
   {
     RingTangent tangent(ring.teeth());
     ring.tangent(1.0 / g, tangent);
-    for (int p = 0; p < tangent.pairs(); ++p)
+    for (int i = 0; i < tangent.teeth(); ++i)
     {
-      tangent.diagonal[p].diagonal() += ring.mass().segment<4>(4 * p) / (g * g);
+      tangent.addDiagonal(i, Block2((ring.mass().segment<2>(2 * i) / (g * g)).asDiagonal()));
     }
     tangent.wave_generator_stiffness += ring.mass()[ring.waveGenerator()] / (g * g);
     tangent.output_stiffness += ring.mass()[ring.output()] / (g * g);

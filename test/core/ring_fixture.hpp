@@ -42,14 +42,18 @@ inline void shake(double amplitude, std::mt19937& random, RingShape& shape)
 /// The tooth part of a tangent, the cup's included, as a full matrix.
 inline Eigen::MatrixXd denseTangent(const RingTangent& tangent)
 {
-  const int pairs = tangent.pairs();
+  const int teeth = tangent.teeth();
   Eigen::MatrixXd dense = tangent.cup_stiffness * tangent.cup_direction * tangent.cup_direction.transpose();
-  for (int p = 0; p < pairs; ++p)
+  const auto couple = [&](int i, int j, const Block2& block)
   {
-    const int q = (p + 1) % pairs;
-    dense.block<4, 4>(4 * p, 4 * p) += tangent.diagonal[p];
-    dense.block<4, 4>(4 * p, 4 * q) += tangent.upper[p];
-    dense.block<4, 4>(4 * q, 4 * p) += tangent.upper[p].transpose();
+    dense.block<2, 2>(2 * i, 2 * j) += block;
+    dense.block<2, 2>(2 * j, 2 * i) += block.transpose();
+  };
+  for (int i = 0; i < teeth; ++i)
+  {
+    dense.block<2, 2>(2 * i, 2 * i) += tangent.diagonal.at(i);
+    couple(i, (i + 1) % teeth, tangent.next.at(i));
+    couple(i, (i + 2) % teeth, tangent.second.at(i));
   }
   return dense;
 }

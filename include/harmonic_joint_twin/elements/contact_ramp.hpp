@@ -15,22 +15,17 @@ struct ContactRamp
 
   ContactRamp(double depth, double width) noexcept
   {
-    if (depth <= 0.0)
-    {
-      return;
-    }
-    if (depth >= width)
-    {
-      force = depth - 0.5 * width;
-      energy = 0.5 * force * force + width * width / 24.0;
-      tangent = 1.0;
-    }
-    else
-    {
-      force = 0.5 * depth * depth / width;
-      energy = depth * depth * depth / (6.0 * width);
-      tangent = depth / width;
-    }
+    // Both branches are computed and one is taken: loops over the teeth then vectorise.
+    const double part = depth / width;
+    const double full_force = depth - 0.5 * width;
+    const double full_energy = 0.5 * full_force * full_force + width * width / 24.0;
+    const double part_force = 0.5 * depth * part;
+    const double part_energy = depth * depth * part / 6.0;
+    const bool touching = depth > 0.0;
+    const bool full = depth >= width;
+    force = touching ? (full ? full_force : part_force) : 0.0;
+    energy = touching ? (full ? full_energy : part_energy) : 0.0;
+    tangent = touching ? (full ? 1.0 : part) : 0.0;
   }
 };
 }  // namespace hjt

@@ -30,10 +30,10 @@ public:
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
 
 private:
-  double bend(const RingShape& shape, int i) const noexcept;
+  void addMoments(const RingShape& shape, RingForces& forces) const noexcept;
   double couple(const RingForces& forces, int i, int next) const noexcept;
-  void addAbsoluteTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
-  void addCurvatureTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  void addTurnTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  void addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;

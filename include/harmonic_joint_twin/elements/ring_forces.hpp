@@ -21,7 +21,22 @@ struct RingForces
     , flank_force(teeth)
     , meshed(teeth)
     , bending_moment(teeth)
+    , segment(2 * teeth)
   {
+  }
+
+  /// Pulls tooth i with the force of segment i and pushes tooth i+1 with it, for all segments.
+  void addSegmentForces() noexcept
+  {
+    const int n = static_cast<int>(flank_force.size());
+    const double* pull = segment.data();
+    double* force = teeth.data();
+    force[0] += pull[0] - pull[2 * n - 2];
+    force[1] += pull[1] - pull[2 * n - 1];
+    for (int k = 2; k < 2 * n; ++k)
+    {
+      force[k] += pull[k] - pull[k - 2];
+    }
   }
 
   void setZero() noexcept
@@ -45,33 +60,71 @@ struct RingForces
   Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
   std::vector<char> meshed;           ///< N, tooth touches a flank [-]
   Eigen::VectorXd
-      bending_moment;     ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
-  double cup_rotation{};  ///< mean rotation of the tooth points [rad]
+      bending_moment;       ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
+  double cup_rotation{};    ///< mean rotation of the tooth points [rad]
+  Eigen::VectorXd segment;  ///< 2 N, what an element does along the rim, before `addSegmentForces` [N]
 };
 
 using Block2 = Eigen::Matrix2d;
-using Block4 = Eigen::Matrix4d;
 
-/// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
-///
-/// The tooth part couples a tooth with two neighbours on each side. Teeth in pairs make it cyclic block-tridiagonal
-/// with 4x4 blocks, symmetric; the cup adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
-struct RingTangent
+/// A 2x2 block for every tooth, each entry in an array of its own: loops over the teeth then vectorise. [N/m]
+struct ToothBlocks
 {
-  explicit RingTangent(int teeth)
-    : diagonal(teeth / 2), upper(teeth / 2), cup_direction(2 * teeth), wave_generator(2 * teeth), output(2 * teeth)
-  {
-  }
-
-  int pairs() const noexcept { return static_cast<int>(diagonal.size()); }
+  explicit ToothBlocks(int teeth) : xx(teeth), xy(teeth), yx(teeth), yy(teeth) {}
 
   void setZero() noexcept
   {
-    for (int p = 0; p < pairs(); ++p)
-    {
-      diagonal[p].setZero();
-      upper[p].setZero();
-    }
+    xx.setZero();
+    xy.setZero();
+    yx.setZero();
+    yy.setZero();
+  }
+
+  void add(int i, const Block2& block) noexcept
+  {
+    xx[i] += block(0, 0);
+    xy[i] += block(0, 1);
+    yx[i] += block(1, 0);
+    yy[i] += block(1, 1);
+  }
+
+  Block2 at(int i) const noexcept
+  {
+    Block2 block;
+    block << xx[i], xy[i], yx[i], yy[i];
+    return block;
+  }
+
+  Eigen::VectorXd xx;
+  Eigen::VectorXd xy;
+  Eigen::VectorXd yx;
+  Eigen::VectorXd yy;
+};
+
+/// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
+///
+/// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup adds
+/// `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
+struct RingTangent
+{
+  explicit RingTangent(int teeth)
+    : diagonal(teeth)
+    , next(teeth)
+    , second(teeth)
+    , cup_direction(2 * teeth)
+    , wave_generator(2 * teeth)
+    , output(2 * teeth)
+    , segment(teeth)
+  {
+  }
+
+  int teeth() const noexcept { return static_cast<int>(diagonal.xx.size()); }
+
+  void setZero() noexcept
+  {
+    diagonal.setZero();
+    next.setZero();
+    second.setZero();
     cup_direction.setZero();
     cup_stiffness = 0.0;
     wave_generator.setZero();
@@ -80,32 +133,42 @@ struct RingTangent
     output_stiffness = 0.0;
   }
 
-  void addDiagonal(int i, const Block2& block) noexcept
-  {
-    diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (i & 1)) += block;
-  }
+  void addDiagonal(int i, const Block2& block) noexcept { diagonal.add(i, block); }
 
   /// Adds `block` at (i, j) and its transpose at (j, i); j is i+1 or i+2, cyclic.
   void addPair(int i, int j, const Block2& block) noexcept
   {
-    if (i / 2 == j / 2)
-    {
-      diagonal[i / 2].block<2, 2>(2 * (i & 1), 2 * (j & 1)) += block;
-      diagonal[i / 2].block<2, 2>(2 * (j & 1), 2 * (i & 1)) += block.transpose();
-    }
-    else
-    {
-      upper[i / 2].block<2, 2>(2 * (i & 1), 2 * (j & 1)) += block;
-    }
+    (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  std::vector<Block4, Eigen::aligned_allocator<Block4>> diagonal;  ///< N/2 [N/m]
-  std::vector<Block4, Eigen::aligned_allocator<Block4>> upper;     ///< N/2, pair p to p+1, cyclic [N/m]
-  Eigen::VectorXd cup_direction;                                   ///< 2 N, gradient of the mean rotation [rad/m]
-  double cup_stiffness{};                                          ///< [N.m/rad]
+  /// Adds the symmetric blocks of `segment` (xx, xy, yy): springs between teeth i and i+1.
+  void addSegments() noexcept
+  {
+    addSpring(segment.xx, diagonal.xx, next.xx);
+    addSpring(segment.xy, diagonal.xy, next.xy);
+    addSpring(segment.xy, diagonal.yx, next.yx);
+    addSpring(segment.yy, diagonal.yy, next.yy);
+  }
+
+  ToothBlocks diagonal;               ///< at (i, i); symmetric
+  ToothBlocks next;                   ///< at (i, i+1), cyclic
+  ToothBlocks second;                 ///< at (i, i+2), cyclic
+  Eigen::VectorXd cup_direction;      ///< 2 N, gradient of the mean rotation [rad/m]
+  double cup_stiffness{};             ///< [N.m/rad]
   Eigen::VectorXd wave_generator;     ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
   Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
+  ToothBlocks segment;                ///< what an element does between teeth i and i+1, before `addSegments`
+
+private:
+  static void addSpring(const Eigen::VectorXd& spring, Eigen::VectorXd& at_tooth, Eigen::VectorXd& to_next) noexcept
+  {
+    const Eigen::Index n = spring.size();
+    at_tooth[0] += spring[n - 1];
+    at_tooth.tail(n - 1) += spring.head(n - 1);
+    at_tooth += spring;
+    to_next -= spring;
+  }
 };
 }  // namespace hjt

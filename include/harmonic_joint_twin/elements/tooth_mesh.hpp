@@ -71,6 +71,7 @@ private:
     double along;
   };
   Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
+  bool touches(const Engagement& tooth, int i) const noexcept;
   Law law(const Engagement& tooth, int i) const noexcept;
   bool outOfReach(const RingShape& shape, int i) const noexcept;
   double firstSpace(double output_angle) const noexcept;

@@ -37,16 +37,22 @@ inline double closestPointStep(double a, double b, double x, double y, double c,
   return -slope / bend;
 }
 
-/// How far a point may be from the ellipse for `closestPointNear`: relative to the semi-axes, twice the depth [-].
-constexpr double NEAR_POINT = 0.04;
+/// Whether `closestPointNear` holds: relative to the semi-axes a point may lie half of this from the ellipse [-].
+inline bool isNear(double a, double b, double x, double y) noexcept
+{
+  constexpr double NEAR_POINT = 0.04;
+  const double c = x * (1.0 / a);
+  const double s = y * (1.0 / b);
+  return std::abs(c * c + s * s - 1.0) < NEAR_POINT;
+}
 
 /// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
 /// approximated). Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
 ///
 /// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
 /// step of size e leaves an error of 0.02 e^2, so one step reaches 1e-10 rad. Straight-line code with few divisions, for
-/// the compiler to vectorise; `nearness` is to be compared with NEAR_POINT.
-inline EllipseFoot closestPointNear(double a, double b, double x, double y, double& nearness) noexcept
+/// the compiler to vectorise.
+inline EllipseFoot closestPointNear(double a, double b, double x, double y) noexcept
 {
   const double c0 = x * (1.0 / a);
   const double s0 = y * (1.0 / b);
@@ -57,7 +63,6 @@ inline EllipseFoot closestPointNear(double a, double b, double x, double y, doub
   const double s = s0 * inverse;
   const double step = closestPointStep(a, b, x, y, c, s);
   const double scale = 1.0 - 0.5 * step * step;
-  nearness = std::abs(q);
   return footAt(a, b, x, y, scale * (c - step * s), scale * (s + step * c));
 }
 

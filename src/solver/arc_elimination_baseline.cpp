@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/arc_elimination_kernels.hpp"
+
+namespace hjt
+{
+namespace arcs
+{
+const Kernels BASELINE = kernels();
+
+const Kernels& fastest() noexcept
+{
+#ifdef HJT_AVX2
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  {
+    return AVX2;
+  }
+#endif
+  return BASELINE;
+}
+}  // namespace arcs
+}  // namespace hjt
