@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -217,12 +218,17 @@ int main(int argc, char** argv)
   std::vector<std::string> assignments;
   double duration = 5.0;
   double least_speed = 0.0;
+  std::vector<Watch> watches{ Watch::TEETH, Watch::ENCODERS };
   bool processor = false;
   bool json = false;
   app.add_option("--set", assignments, "one parameter over the default configuration: section.key=value; repeatable");
   app.add_option("--duration", duration, "simulated time measured, per scene [s]")->check(CLI::Range(1e-3, 1e4));
   app.add_option("--least-speed", least_speed, "times real time that every scene must reach, by processor time")
       ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--watch", watches, "what is asked of the twin [both]")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Watch>{ { "teeth", Watch::TEETH }, { "encoders", Watch::ENCODERS } }));
   app.add_flag("--processor-time", processor,
                "time cycles by processor time: on a busy machine the wall clock times others too");
   app.add_flag("--json", json, "one JSON document on stdout and nothing else there");
@@ -234,7 +240,7 @@ int main(int argc, char** argv)
     const hjt::Parameters parameters = hjt::shippedParameters(assignments);
     for (const Scene& scene : SCENES)
     {
-      for (const Watch watch : { Watch::TEETH, Watch::ENCODERS })
+      for (const Watch watch : watches)
       {
         hjt::Parameters given = parameters;
         given.solver.scene = watch == Watch::TEETH ? hjt::SceneKind::FULL_RING : hjt::SceneKind::AUTO;

@@ -39,7 +39,7 @@ def count(benchmark):
     with tempfile.TemporaryDirectory() as folder:
         profile = pathlib.Path(folder) / "callgrind.out"
         command = ["valgrind", "--tool=callgrind", f"--toggle-collect={STEP}", f"--callgrind-out-file={profile}",
-                   benchmark, "--duration", "0.01"]
+                   benchmark, "--duration", "0.01", "--watch", "teeth"]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
             sys.exit(f"{' '.join(command)} failed:\n{run.stdout}{run.stderr}")
