@@ -314,7 +314,7 @@ private:
       Line line;
       for (int i = 0; i <= columns; ++i)
       {
-        line.push_back(finest[static_cast<std::size_t>(i * stride)]);
+        line.push_back(finest[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride)]);
       }
       const ResponseSurface surface = between(v, line, v + 1.0, line, columns);
       bool fine = true;
