@@ -117,9 +117,9 @@ bool StructuredSystem::factor(double gamma)
   ring_.tangent(0.0, stiffness_);
   ring_.tangent(1.0 / gamma, whole_);
   const double inverse_square = 1.0 / (gamma * gamma);
-  for (int p = 0; p < whole_.pairs(); ++p)
+  for (int i = 0; i < whole_.teeth(); ++i)
   {
-    whole_.diagonal[p].diagonal() += inverse_square * ring_.mass().segment<4>(4 * p);
+    whole_.addDiagonal(i, Block2((inverse_square * ring_.mass().segment<2>(2 * i)).asDiagonal()));
   }
   whole_.wave_generator_stiffness += inverse_square * ring_.mass()[ring_.waveGenerator()];
   whole_.output_stiffness += inverse_square * ring_.mass()[ring_.output()];

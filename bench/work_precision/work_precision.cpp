@@ -85,9 +85,11 @@ void compete(const Problem& problem, const std::string& file, int runs, double l
   for (const Contender& contender : contenders)
   {
     std::cerr << problem.name << ": " << contender.solver << ", " << contender.setting << std::endl;
-    // A solver that was given up takes longer still at the tighter tolerances that follow.
-    const bool hopeless = !results.empty() && contenders[results.size() - 1].solver == contender.solver &&
-                          results.back().failure.rfind("gave up", 0) == 0;
+    // Twice given up at looser tolerances: it takes longer still at those that follow.
+    const std::size_t i = results.size();
+    const auto lost = [&](std::size_t k)
+    { return contenders[k].solver == contender.solver && results[k].failure.rfind("gave up", 0) == 0; };
+    const bool hopeless = i >= 2 && lost(i - 1) && lost(i - 2);
     results.push_back(hopeless ? results.back() : contender.run(problem, limit));
     times.push_back({ results.back().time });
   }
