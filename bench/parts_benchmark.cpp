@@ -50,6 +50,23 @@ void solveRing(benchmark::State& state)
 }
 BENCHMARK(solveRing)->Arg(1)->Arg(10)->Arg(30);
 
+/// Cold start: the wave generator inserted into the round ring inside the circular spline.
+void insertFromCold(benchmark::State& state)
+{
+  const RingModel model(parameters());
+  bool good = true;
+  for (auto _ : state)
+  {
+    RingEquilibrium ring(model, parameters().solver);
+    good = ring.insert(positionAt(0.0)).ok() && good;
+  }
+  if (!good)
+  {
+    state.SkipWithError("the ring did not converge");
+  }
+}
+BENCHMARK(insertFromCold)->Unit(benchmark::kMillisecond);
+
 void ringForces(benchmark::State& state)
 {
   const RingModel model(parameters());

@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/gear/ratio.hpp"
 #include "harmonic_joint_twin/solver/output_balance.hpp"
 #include "harmonic_joint_twin/twin/static_solver.hpp"
+#include "harmonic_joint_twin/twin/travelling_ring.hpp"
 
 namespace hjt
 {
@@ -109,22 +110,6 @@ private:
   ErrorSum output_torque_;
   ErrorSum torsion_;
 };
-
-/// Positions and speeds of a ring that travels in equilibrium. The output, too heavy to follow the drive within a tooth
-/// pitch, turns at its mean speed over one. @returns false if an equilibrium was not found.
-bool travel(const RingEquilibrium& ring, const QuasiStaticSetup& setup, RingMotion& motion)
-{
-  const double pitch = ring.model().rest.pitchAngle();
-  RingEquilibrium ahead = ring;
-  if (!balanceOutput(ahead, ring.position().wave_generator_angle + pitch, setup.load).ok())
-  {
-    return false;
-  }
-  const double output_speed = setup.speed * (ahead.position().output_angle - ring.position().output_angle) / pitch;
-  motion.q << ring.shape().points, ring.position().wave_generator_angle, ring.position().output_angle;
-  motion.v << setup.speed * ring.byWaveGenerator() + output_speed * ring.byOutput(), setup.speed, output_speed;
-  return true;
-}
 }  // namespace
 
 QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStaticSetup& setup,
@@ -148,7 +133,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   ring.setSpaces(balanced.shape().space);
   const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver);
   RingMotion motion(ring.coordinates());
-  if (!travel(balanced, setup, motion))
+  if (!travelInEquilibrium(balanced, setup.speed, setup.load, motion))
   {
     return result;
   }
