@@ -188,7 +188,7 @@ sweep hides it among its transmission error (up to 1.4 mrad), one sweep does not
 """)
 
     def draw(figure):
-        left, right = figure.subplots(1, 2, width_ratios=(2, 1))
+        left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [2.0, 1.0]})
         left.plot(torque - friction, 1e3 * (torsion - origin), ".", ms=2, color=GREY, label="recording")
         left.plot(loads, 1e3 * twist, color=BLUE, label="twin, catalogue gear")
         left.set_xlim(-90.0, 130.0)

@@ -87,8 +87,9 @@ void JointDynamics::takeRing() noexcept
 {
   const Eigen::Matrix2d& k = ring_.stiffness();
   response_ = JointModel::summary(ring_.forces());
-  response_.follow = k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0;
+  response_.follow = ring_.follow();
   response_.output_stiffness = k(1, 1);
+  response_.motor_stiffness = k(0, 0);
   motor_angle_ = ring_.position().wave_generator_angle;
   output_angle_ = ring_.position().output_angle;
 }

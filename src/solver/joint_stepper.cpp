@@ -117,12 +117,13 @@ bool JointStepper::stepRungeKutta() noexcept
 
 double JointStepper::swingPhase() const noexcept
 {
-  const Eigen::Matrix2d& k = dynamics_.ring().stiffness();
+  const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
-  const double motor = k(0, 0) / inertia[0];
-  const double output = k(1, 1) / inertia[1];
+  const double motor = ring.motor_stiffness / inertia[0];
+  const double output = ring.output_stiffness / inertia[1];
+  const double cross = ring.follow * ring.output_stiffness;
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
-                                                            k(0, 1) * k(1, 0) / (inertia[0] * inertia[1]));
+                                                            cross * cross / (inertia[0] * inertia[1]));
   return step_ * std::sqrt(std::max(fastest, 0.0));
 }
 

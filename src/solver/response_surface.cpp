@@ -129,6 +129,7 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   response.wave_generator_torque = slope_v * inverse_ratio_ - slope_u;
   response.follow = value(place, Table::FOLLOW);
   response.output_stiffness = value(place, Table::OUTPUT_STIFFNESS);
+  response.motor_stiffness = k_uu - inverse_ratio_ * (2.0 * k_uv - inverse_ratio_ * k_vv);
   // The housing holds what wave generator and output bring: (1 - 1/ratio) dU/dv + dU/du.
   const double by_output = (1.0 - inverse_ratio_) * k_vv + k_uv;
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;

@@ -200,7 +200,7 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
   double damping = FIRST_DAMPING;
   while (status.iterations < MAX_STEPS && damping < MOST_DAMPING)
   {
-    model_.forces(now_.shape, now_.position, forces_);
+    updateForces();
     status.residual = largest(forces_.teeth);
     if (status.residual > parameters_.force_tolerance)
     {
@@ -228,7 +228,7 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = start_;
-    model_.forces(now_.shape, now_.position, forces_);
+    updateForces();
     return status;
   }
   updateSensitivities();
@@ -256,7 +256,7 @@ bool RingEquilibrium::descend(double damping) noexcept
   start_points_ = now_.shape.points;
   now_.shape.points += step_;
   now_.shape.updateGeometry();
-  model_.forces(now_.shape, now_.position, forces_);
+  updateForces();
   if (forces_.energy < energy * (1.0 - ROUNDING) ||
       (forces_.energy < energy * (1.0 + ROUNDING) && largest(forces_.teeth) < residual))
   {
@@ -519,7 +519,7 @@ double RingEquilibrium::slopeAt(double length) noexcept
 {
   now_.shape.points = start_points_ + length * step_;
   now_.shape.updateGeometry();
-  model_.forces(now_.shape, now_.position, forces_);
+  updateForces();
   return forces_.teeth.dot(step_);
 }
 

@@ -38,10 +38,9 @@ public:
     for (int i = 0; i < positions_ && status_.ok(); ++i)
     {
       status_ = balanceOutput(ring_, pitch_ * i / positions_, load);
-      const Eigen::Matrix2d& k = ring_.stiffness();
       if (status_.ok())
       {
-        visit(k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0);
+        visit(ring_.follow());
       }
     }
   }
@@ -60,30 +59,18 @@ public:
     friction_.setZero();
     model_.mesh_friction.addTerms(model_.ring.mesh, ring_.shape(), ring_.position(), ring_.forces(), by_angle,
                                   speed * rates, friction_);
-    shares.mesh = dryTorque(rates);
+    shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
     model_.cup_friction.addTerm(ring_.shape(), by_angle, friction_);
-    shares.cup = dryTorque(rates);
+    shares.cup = friction_.dryPower(rates);
     model_.damping.add(ring_.shape(), ring_.forces(), by_angle, friction_);
     shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
     return shares;
   }
 
-  int positions() const { return positions_; }
   const SolveStatus& status() const { return status_; }
 
 private:
-  /// Of all dry terms at hand, per motor speed [N.m].
-  double dryTorque(const Eigen::Vector2d& rates) const
-  {
-    double torque = 0.0;
-    for (const FrictionTerm& term : friction_.terms)
-    {
-      torque += term.strength * std::abs(term.slip.dot(rates));
-    }
-    return torque;
-  }
-
   JointModel model_;
   RingEquilibrium ring_;
   JointFriction friction_;

@@ -197,7 +197,7 @@ private:
     Node node{};
     const RingForces& forces = ring_.forces();
     const Eigen::Matrix2d& k = ring_.stiffness();
-    const double follow = k(1, 1) > 0.0 ? -k(1, 0) / k(1, 1) : 0.0;
+    const double follow = ring_.follow();
     const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
     node[SurfaceTable::ENERGY] = forces.energy;
     node[SurfaceTable::ENERGY_BY_U] =

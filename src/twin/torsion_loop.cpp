@@ -51,11 +51,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.position(), ring.forces(), rates,
                                  Eigen::Vector2d::Zero(), friction);
     model.cup_friction.addTerm(ring.shape(), rates, friction);
-    double drag = 0.0;
-    for (const FrictionTerm& term : friction.terms)
-    {
-      drag += term.strength * std::abs(term.slip[1]);
-    }
+    const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;
     up.push_back({ elastic + drag, angle });
     down.push_back({ elastic - drag, angle });

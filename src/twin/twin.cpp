@@ -162,8 +162,8 @@ void Twin::Impl::step() noexcept
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += stepper.status().cuts > 0 ? 1 : 0;
   counters.jumps += stepper.status().jumps > 0 ? 1 : 0;
-  counters.coarse_steps += stepper.isCoarse() || overshoots(drive) ? 1 : 0;
   fillOutputs(drive.torque, converged);
+  counters.coarse_steps += outputs.swing_phase > JointStepper::MAX_SWING_PHASE || overshoots(drive) ? 1 : 0;
   observe();
 }
 

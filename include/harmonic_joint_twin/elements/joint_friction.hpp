@@ -31,6 +31,17 @@ struct JointFriction
     viscous.setZero();
   }
 
+  /// Power that the dry terms take at these speeds of motor and output [W], or torque by unit speed.
+  double dryPower(const Eigen::Vector2d& speeds) const noexcept
+  {
+    double power = 0.0;
+    for (const FrictionTerm& term : terms)
+    {
+      power += term.strength * std::abs(term.slip.dot(speeds));
+    }
+    return power;
+  }
+
   std::vector<FrictionTerm> terms;
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
 };

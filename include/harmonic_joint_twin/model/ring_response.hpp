@@ -13,6 +13,7 @@ struct RingResponse
   double output_torque{};          ///< on the circular spline [N.m]
   double follow{};                 ///< output speed over motor speed at constant load [-]
   double output_stiffness{};       ///< of the output, the wave generator held [N.m/rad]
+  double motor_stiffness{};        ///< of the wave generator, the output held [N.m/rad]
 };
 
 /// Friction of the ring in equilibrium, as it acts on the joint's two speeds.

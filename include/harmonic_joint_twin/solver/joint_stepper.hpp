@@ -38,8 +38,6 @@ public:
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
   double swingPhase() const noexcept;
-  /// Whether the last step was too long for what the joint does: its fastest swing is more than MAX_SWING_PHASE of it.
-  bool isCoarse() const noexcept { return swingPhase() > MAX_SWING_PHASE; }
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -72,6 +72,13 @@ public:
   /// Second derivatives of the stored energy by (wave generator, output) angle, the ring following [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
+  /// Output speed over wave generator speed at constant load: from the stiffness, not from the tooth numbers; 0 where the
+  /// output hangs free [-].
+  double follow() const noexcept
+  {
+    return now_.stiffness(1, 1) > 0.0 ? -now_.stiffness(1, 0) / now_.stiffness(1, 1) : 0.0;
+  }
+
 private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
