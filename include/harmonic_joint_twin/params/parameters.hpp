@@ -207,6 +207,14 @@ struct PublishParameters
   double health_rate{};
 };
 
+struct RealtimeParameters
+{
+  double deadline{};
+  int priority{};
+  bool lock_memory{};
+  int processor{};
+};
+
 struct JointParameters
 {
   std::string name{};
@@ -232,5 +240,6 @@ struct Parameters
   HealthParameters health;
   InputParameters input;
   PublishParameters publish;
+  RealtimeParameters realtime;
 };
 }  // namespace hjt
