@@ -12,10 +12,10 @@ class Transient(tool.ToolTest):
         static = self.succeed_json("insert", *THESIS)["wave_generator_force_max"]
         result = self.succeed_json("transient", "--method", "implicit_euler", "--step", "1e-5", *THESIS)
         self.assertEqual(set(result),
-                         {"method", "step", "tolerance", "window_start", "force_max_lowest", "force_max_highest", "force_max_mean",
-                          "energy_supplied", "energy_stored", "energy_kinetic", "energy_dissipated", "energy_lost",
-                          "steps", "force_evaluations", "factorisations", "halvings", "rejections", "solve_time", "series", "tooth_x",
-                          "tooth_y"})
+                         {"method", "step", "tolerance", "window_start", "force_max_lowest", "force_max_highest",
+                          "force_max_mean", "energy_supplied", "energy_stored", "energy_kinetic", "energy_dissipated",
+                          "energy_lost", "steps", "force_evaluations", "factorisations", "halvings", "rejections",
+                          "solve_time", "series", "tooth_x", "tooth_y"})
         self.assertAlmostEqual(result["force_max_mean"], static, delta=0.01)
         self.assertEqual((result["steps"], len(result["tooth_x"])), (5000, 200))
         self.assertGreater(result["energy_lost"], 100 * result["energy_dissipated"])
