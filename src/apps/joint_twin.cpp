@@ -26,6 +26,8 @@ int main(int argc, char** argv)
   hjt::addDynamicsCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);
   hjt::addTrialCommand(app, exit_code);
+  hjt::addFollowCommand(app, exit_code);
+  hjt::addIdentifyCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);
   hjt::addSweepCommand(app, exit_code);

@@ -196,6 +196,15 @@ void visitFields(P& p, Visitor&& visit)
         "true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant");
   visit("input.temperature", "degC", p.input.temperature, Range{ -40.0, 150.0 }, "temperature of the drive");
 
+  visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
+        "torque at the joint per measured motor current");
+  visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
+        "current measured where there is none");
+  visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
+        "motor angle over which friction builds up after a reversal");
+  visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
+        "of the motor's inertia, what a recorded load torque holds already");
+
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },

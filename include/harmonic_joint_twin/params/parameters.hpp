@@ -207,6 +207,14 @@ struct InputParameters
   double temperature{};
 };
 
+struct TelemetryParameters
+{
+  double torque_per_current{};
+  double current_offset{};
+  double presliding_angle{};
+  double inertia_in_load{};
+};
+
 struct PublishParameters
 {
   double joint_states_rate{};
@@ -247,6 +255,7 @@ struct Parameters
   SensorParameters sensors;
   HealthParameters health;
   InputParameters input;
+  TelemetryParameters telemetry;
   PublishParameters publish;
   RealtimeParameters realtime;
 };

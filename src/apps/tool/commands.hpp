@@ -29,6 +29,8 @@ void addTransientCommand(CLI::App& app, int& exit_code);
 void addDynamicsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addTrialCommand(CLI::App& app, int& exit_code);
+void addFollowCommand(CLI::App& app, int& exit_code);
+void addIdentifyCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addSweepCommand(CLI::App& app, int& exit_code);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "harmonic_joint_twin/elements/load.hpp"
+#include "harmonic_joint_twin/elements/motor.hpp"
+#include "harmonic_joint_twin/twin/friction_map.hpp"
+#include "harmonic_joint_twin/twin/motion_smoother.hpp"
+
+namespace hjt
+{
+/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over the presliding angle.
+///
+///   ds/dx = (1 - s sgn(dx)) / x_p     (Dahl), x the motor's angle, x_p the presliding angle [rad]
+/// While the joint stands s keeps its value: what holds it is then known only to lie within the whole of the friction.
+class Presliding
+{
+public:
+  explicit Presliding(double angle) : angle_(angle) {}
+
+  double move(double motor_step) noexcept;  ///< the share after the motor turned by this much [rad]
+  double share() const noexcept { return share_; }
+  void reset() noexcept { share_ = 0.0; }
+
+private:
+  double angle_;
+  double share_{};
+};
+
+/// What a healthy joint takes to make a motion.
+struct MotionPrediction
+{
+  double motor_torque{};     ///< at the shaft [N.m]
+  double current{};          ///< [A]
+  double friction_torque{};  ///< of the whole, at the joint, with its sign [N.m]
+  double band{};             ///< half width of the current's band that the motion leaves open [A]
+};
+
+/// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table of it.
+///
+///   current = (load + J_m n^2 a + n s T_f(n |v|, load)) / gain + offset
+/// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
+///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
+/// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred nanoseconds;
+/// nothing allocates.
+class MotionDriven
+{
+public:
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit MotionDriven(const Parameters& parameters);
+
+  MotionPrediction step(const MotionSample& sample) noexcept;
+
+  /// Weight and inertia of what the joint is configured to carry, where a recording does not tell the load [N.m].
+  double modelledLoad(const MotionSample& sample) const noexcept
+  {
+    return load_.inertia() * sample.acceleration - load_.gravityTorque(sample.position);
+  }
+
+private:
+  FrictionMap friction_;
+  Presliding presliding_;
+  Load load_;
+  TelemetryParameters telemetry_;
+  double inertia_;  // of motor and wave generator, less what the load holds [kg.m^2]
+  double ratio_;
+  double temperature_;
+  double last_position_{};
+  bool started_{};
+};
+}  // namespace hjt

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace hjt
+{
+/// One row of a robot's telemetry, of one joint.
+struct MotionRow
+{
+  double time{};      ///< [s]
+  double position{};  ///< of the joint [rad]
+  double current{};   ///< of the motor [A]
+  double load{};      ///< at the output, > 0 resists positive motion [N.m]
+};
+
+/// The same with its rates.
+struct MotionSample : MotionRow
+{
+  double velocity{};      ///< [rad/s]
+  double acceleration{};  ///< [rad/s^2]
+  bool after_gap{};       ///< first after a gap: what was before is forgotten
+};
+
+/// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
+///
+/// A parabola is laid through the rows within HALF_WIDTH of each by least squares, their own stamps counting. A sample comes
+/// out when the rows after it are known, so at most HALF_WIDTH late. Memory is fixed; nothing allocates.
+class MotionSmoother
+{
+public:
+  static constexpr double HALF_WIDTH = 0.05;       ///< [s]
+  static constexpr double LONGEST_GAP = 0.1;       ///< longer ones cut the stream [s]
+  static constexpr double SMALLEST_STEP = 0.5e-3;  ///< rows that follow sooner tell nothing new [s]
+
+  /// False: the row is not later than the one before, or not finite, and is left out.
+  bool push(const MotionRow& row) noexcept;
+
+  /// The next sample that is ready; with `at_end` also those that wait for later rows. Call it until it has none.
+  std::optional<MotionSample> pop(bool at_end = false) noexcept;
+
+  std::uint64_t refused() const noexcept { return refused_; }  ///< rows left out by `push`
+  std::uint64_t gaps() const noexcept { return segment_; }
+
+private:
+  struct Held
+  {
+    MotionRow row;
+    std::uint64_t segment;  // number of gaps before it
+  };
+  static constexpr std::size_t ROOM = 512;  // more than two windows of rows at SMALLEST_STEP
+  static constexpr int FEWEST = 4;          // rows for a parabola that does not only pass through them
+
+  const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
+  MotionSample fit(std::uint64_t index) const noexcept;
+
+  std::array<Held, ROOM> rows_{};
+  std::uint64_t next_{};  // next to come out
+  std::uint64_t end_{};   // one past the last
+  std::uint64_t segment_{};
+  std::uint64_t refused_{};
+};
+}  // namespace hjt

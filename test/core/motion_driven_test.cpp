@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The twin driven by a measured motion, and what is identified from one. The robot measured is the twin itself, driven by a
+// servo, with parameters that the identification does not know and with the noise of real sensors.
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "test_parameters.hpp"
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/twin/identification.hpp"
+#include "harmonic_joint_twin/twin/motion_driven.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double TELEMETRY_PERIOD = 0.008;  // [s]
+
+struct SensorNoise
+{
+  double position{};  // at the joint, rms [rad]
+  double current{};   // rms [A]
+};
+
+struct RobotRow
+{
+  MotionRow row;
+  double motor_torque{};  // true [N.m]
+};
+
+/// The twin as a robot: a servo leads the motor through two sines, telemetry at 125 Hz.
+std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, const SensorNoise& noise)
+{
+  std::mt19937 engine(7);
+  std::normal_distribution<double> unit;
+  const double ratio = nominalRatio(parameters.gear);
+  Twin twin(parameters);
+  twin.reset(0);
+  std::vector<RobotRow> rows;
+  double next = 0.0;
+  for (double time = 0.0; time < duration; time = static_cast<double>(twin.stamp()) / 1e9)
+  {
+    const JointOutputs& now = twin.outputs();
+    // Begins at rest.
+    const double target = ratio * (0.8 * (1.0 - std::cos(TWO_PI * 0.17 * time)) + 0.1 * (1.0 - std::cos(TWO_PI * 0.6 * time)));
+    const double target_speed = ratio * TWO_PI * (0.136 * std::sin(TWO_PI * 0.17 * time) + 0.06 * std::sin(TWO_PI * 0.6 * time));
+    const double torque = 0.5 * (target - now.motor_angle) + 0.02 * (target_speed - now.motor_velocity);
+    twin.commandMotorTorque(twin.stamp(), torque);
+    if (!twin.step(twin.stamp() + twin.stepLength()))
+    {
+      ADD_FAILURE() << "the twin does not step";
+      break;
+    }
+    if (time >= next)
+    {
+      next += TELEMETRY_PERIOD;
+      RobotRow row;
+      row.row.time = static_cast<double>(twin.stamp()) / 1e9;
+      row.row.position = twin.outputs().motor_angle / ratio + noise.position * unit(engine);
+      row.motor_torque = twin.outputs().motor_torque;
+      row.row.current = ratio * row.motor_torque / parameters.telemetry.torque_per_current + noise.current * unit(engine);
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const MotionDriven& twin)
+{
+  MotionSmoother smoother;
+  std::vector<MotionSample> samples;
+  for (const RobotRow& row : rows)
+  {
+    smoother.push(row.row);
+    while (auto sample = smoother.pop())
+    {
+      sample->load = twin.modelledLoad(*sample);
+      samples.push_back(*sample);
+    }
+  }
+  while (auto sample = smoother.pop(true))
+  {
+    sample->load = twin.modelledLoad(*sample);
+    samples.push_back(*sample);
+  }
+  return samples;
+}
+
+std::vector<std::string> hiddenParameters()
+{
+  return { "bearing.race_preload=750.0",    "bearing.viscosity=220.0e-6",   "motor.rotor_inertia=1.2e-4",
+           "telemetry.torque_per_current=9.84", "motor.viscous_friction=0.0", "output.gravity_torque=40.0",
+           "output.load_inertia=1.5",       "solver.rate=5000" };
+}
+
+Parameters knownParameters()
+{
+  return shippedParameters({ "motor.viscous_friction=0.0", "output.gravity_torque=40.0", "output.load_inertia=1.5" });
+}
+
+const IdentifiedValue& valueOf(const Identification& found, const std::string& key)
+{
+  for (const IdentifiedValue& value : found.values)
+  {
+    if (value.key == key)
+    {
+      return value;
+    }
+  }
+  ADD_FAILURE() << key << " was not looked for";
+  return found.values.front();
+}
+
+TEST(MotionDriven, TakesTheTorqueThatMadeTheMotion)
+{
+  const Parameters parameters = shippedParameters(hiddenParameters());
+  const std::vector<RobotRow> rows = runRobot(parameters, 6.0, {});
+  MotionDriven twin(parameters);
+  const std::vector<MotionSample> samples = smoothed(rows, twin);
+  ASSERT_EQ(samples.size(), rows.size());
+  double error = 0.0;
+  double signal = 0.0;
+  int counted = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    const double predicted = twin.step(samples[i]).motor_torque;
+    if (samples[i].time > 0.5)  // the servo's first jolt is faster than telemetry shows
+    {
+      error += std::pow(predicted - rows[i].motor_torque, 2);
+      signal += std::pow(rows[i].motor_torque, 2);
+      ++counted;
+    }
+  }
+  ASSERT_GT(counted, 500);
+  // Left: what torsion and swing of the output add, which the motion of the motor alone does not tell.
+  EXPECT_LT(std::sqrt(error / signal), 0.04);
+}
+
+TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
+{
+  const Parameters robot = shippedParameters(hiddenParameters());
+  const std::vector<RobotRow> rows = runRobot(robot, 18.0, { 3e-6, 0.02 });
+  const std::vector<MotionSample> samples = smoothed(rows, MotionDriven(knownParameters()));
+  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
+  const Identification found = identify(knownParameters(), { samples.begin(), middle }, { middle, samples.end() }, false);
+
+  const auto expect_within = [&](const char* key, double truth)
+  {
+    const IdentifiedValue& value = valueOf(found, key);
+    ASSERT_EQ(value.refusal, "") << key;
+    EXPECT_NEAR(value.value, truth, value.half_width) << key;
+    EXPECT_LT(value.half_width, 0.5 * truth) << key;
+  };
+  expect_within("telemetry.torque_per_current", robot.telemetry.torque_per_current);
+  expect_within("bearing.race_preload", robot.bearing.race_preload);
+  expect_within("bearing.viscosity", robot.bearing.viscosity);
+  expect_within("motor.rotor_inertia", robot.motor.rotor_inertia);
+  EXPECT_NE(valueOf(found, "bearing.viscosity_slope").refusal, "");
+  EXPECT_NE(valueOf(found, "cup.torsion_stiffness").refusal, "");
+  EXPECT_LT(found.after.moving, 0.3 * found.before.moving);
+  EXPECT_LT(found.after.moving, found.gain_coulomb_viscous.moving);
+}
+
+TEST(Identification, RefusesTheGainWhereNoLoadTellsIt)
+{
+  // A joint at constant speed, turning on without load: current and friction scale alike.
+  const Parameters parameters = shippedParameters();
+  MotionDriven twin(parameters);
+  std::mt19937 engine(3);
+  std::normal_distribution<double> unit;
+  std::vector<MotionSample> samples;
+  for (int i = 0; i < 2000; ++i)
+  {
+    MotionSample sample;
+    sample.time = 0.008 * i;
+    sample.velocity = i < 1000 ? 0.5 : -0.5;
+    sample.position = i < 1000 ? 0.004 * i : 0.004 * (2000 - i);
+    sample.current = twin.step(sample).current + 0.01 * unit(engine);
+    samples.push_back(sample);
+  }
+  const Identification found = identify(parameters, samples, samples, false);
+  EXPECT_NE(valueOf(found, "telemetry.torque_per_current").refusal, "");
+  EXPECT_NE(valueOf(found, "motor.rotor_inertia").refusal, "");
+  EXPECT_EQ(found.parameters.telemetry.torque_per_current, parameters.telemetry.torque_per_current);
+}
+
+TEST(Identification, SaysThatAJointAtRestTellsNothing)
+{
+  std::vector<MotionSample> samples(500);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    samples[i].time = 0.008 * static_cast<double>(i);
+  }
+  EXPECT_THROW(identify(shippedParameters(), samples, samples, false), InputError);
+}
+
+TEST(MotionSmoother, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
+{
+  MotionSmoother smoother;
+  std::mt19937 engine(11);
+  std::vector<MotionSample> samples;
+  const auto collect = [&](bool at_end)
+  {
+    while (const auto sample = smoother.pop(at_end))
+    {
+      samples.push_back(*sample);
+    }
+  };
+  const auto angle = [](double time) { return 0.3 + 0.7 * time - 0.9 * time * time; };
+  for (int i = 0; i < 500; ++i)
+  {
+    if (engine() % 100 == 0)
+    {
+      continue;  // dropped
+    }
+    const double time = 0.008 * i + 0.003 * static_cast<double>(engine() % 1000) / 1000.0 + (i >= 250 ? 1.0 : 0.0);
+    EXPECT_TRUE(smoother.push({ time, angle(time), 0.0, 0.0 }));
+    EXPECT_FALSE(smoother.push({ time, 1.0, 0.0, 0.0 }));  // its stamp repeated
+    collect(false);
+  }
+  EXPECT_FALSE(smoother.push({ 1e3, std::nan(""), 0.0, 0.0 }));
+  collect(true);
+  EXPECT_EQ(smoother.gaps(), 1u);
+  EXPECT_GT(samples.size(), 480u);
+  int cuts = 0;
+  for (const MotionSample& sample : samples)
+  {
+    cuts += sample.after_gap ? 1 : 0;
+    EXPECT_NEAR(sample.velocity, 0.7 - 1.8 * sample.time, 1e-6);
+    EXPECT_NEAR(sample.acceleration, -1.8, 1e-4);
+  }
+  EXPECT_EQ(cuts, 1);
+}
+
+TEST(Presliding, BuildsUpAfterAReversalAndKeepsItsShareAtRest)
+{
+  Presliding presliding(1e-3);
+  EXPECT_EQ(presliding.share(), 0.0);
+  for (int i = 0; i < 100; ++i)
+  {
+    presliding.move(1e-4);
+  }
+  EXPECT_NEAR(presliding.share(), 1.0, 1e-4);
+  EXPECT_EQ(presliding.move(0.0), presliding.share());
+  presliding.move(-1e-3);
+  EXPECT_NEAR(presliding.share(), 2.0 * std::exp(-1.0) - 1.0, 1e-4);
+}
+}  // namespace
+}  // namespace hjt
