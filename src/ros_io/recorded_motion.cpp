@@ -172,8 +172,8 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
     {
       found += (found.empty() ? "" : ", ") + name;
     }
-    throw InputError(source.topic + " never tells angle and effort of joint '" + source.joint + "'; joints found: " +
-                     (found.empty() ? "none" : found));
+    throw InputError(source.topic + " never tells angle and effort of joint '" + source.joint +
+                     "'; joints found: " + (found.empty() ? "none" : found));
   }
   return rows.count();
 }

@@ -7,9 +7,9 @@
 #include <complex>
 #include <optional>
 
+#include <ceres/ceres.h>
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <ceres/ceres.h>
 
 #include "harmonic_joint_twin/elements/motor.hpp"
 #include "harmonic_joint_twin/gear/angle.hpp"
@@ -22,13 +22,13 @@ namespace hjt
 {
 namespace
 {
-constexpr double MOVING = 0.01;               // joint speed from which a row counts as moving [rad/s]
-constexpr double WIDEST = 0.5;                // half width of an interval over its value
-constexpr double SMALLEST_TOLERANCE = 1e-3;   // share of a column's square that the others do not explain
-constexpr double NORMAL_95 = 1.96;            // half width of the 95 % interval of a normal distribution
-constexpr std::size_t MOST_ROWS = 20000;      // in one fit; a longer recording is thinned out
-constexpr std::size_t FEWEST_ROWS = 100;      // that move
-constexpr double STRIBECK_SPEED = 5.0;        // of the motor, where the static rise has faded [rad/s]
+constexpr double MOVING = 0.01;              // joint speed from which a row counts as moving [rad/s]
+constexpr double WIDEST = 0.5;               // half width of an interval over its value
+constexpr double SMALLEST_TOLERANCE = 1e-3;  // share of a column's square that the others do not explain
+constexpr double NORMAL_95 = 1.96;           // half width of the 95 % interval of a normal distribution
+constexpr std::size_t MOST_ROWS = 20000;     // in one fit; a longer recording is thinned out
+constexpr std::size_t FEWEST_ROWS = 100;     // that move
+constexpr double STRIBECK_SPEED = 5.0;       // of the motor, where the static rise has faded [rad/s]
 
 /// Quantities in the order of their columns.
 enum Quantity
@@ -45,6 +45,7 @@ enum Quantity
 };
 
 constexpr std::size_t LINES = 7;
+constexpr std::size_t FIRST_COGGING_LINE = 5;
 constexpr std::size_t LOOP = QUANTITIES + 2 * LINES;  // frequency, damping, lag
 constexpr std::size_t PARAMETERS = LOOP + 3;
 using Values = std::array<double, PARAMETERS>;
@@ -152,16 +153,16 @@ std::vector<Row> makeRows(const Parameters& parameters, const FrictionMap& frict
   Presliding presliding(parameters.telemetry.presliding_angle);
   std::vector<Row> rows;
   rows.reserve(samples.size());
-  double last = samples.empty() ? 0.0 : samples.front().position;
+  MotionSample last = samples.empty() ? MotionSample() : samples.front();
   for (const MotionSample& sample : samples)
   {
     if (sample.after_gap)
     {
       presliding.reset();
-      last = sample.position;
+      last = sample;
     }
-    const double share = presliding.move(ratio * (sample.position - last));
-    last = sample.position;
+    const double share = presliding.move(ratio * (sample.position - last.position), sample.time - last.time);
+    last = sample;
     const double motor_speed = ratio * sample.velocity;
     const FrictionShares shares = friction.at(motor_speed, sample.load, parameters.input.temperature);
     Row row{};
@@ -632,8 +633,13 @@ std::vector<Row> movingRows(std::vector<Row> rows)
 IdentifiedValue identifyPresliding(Parameters& parameters, const std::vector<MotionSample>& train,
                                    double correlation_rows)
 {
-  IdentifiedValue value{ "presliding angle", "telemetry.presliding_angle", "rad", parameters.telemetry.presliding_angle,
-                         parameters.telemetry.presliding_angle, 0.0, "" };
+  IdentifiedValue value{ "presliding angle",
+                         "telemetry.presliding_angle",
+                         "rad",
+                         parameters.telemetry.presliding_angle,
+                         parameters.telemetry.presliding_angle,
+                         0.0,
+                         "" };
   const auto squares = [&](double log_angle)
   {
     Parameters trial = parameters;
@@ -743,14 +749,18 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   p.motor.viscous_friction = found[VISCOUS];
   add(STRIBECK, "Stribeck rise at the motor", "", "N.m", 0.0, found[STRIBECK], hw(STRIBECK));
 
+  // A joint at rest does not show its transmission error, since the output settles; cogging it does.
+  std::array<bool, LINES> at_rest = fit.present();
+  std::fill(at_rest.begin(), at_rest.begin() + FIRST_COGGING_LINE, false);
+  Values ripple_only = found;
+  ripple_only[OFFSET] = 0.0;
   const auto ripple = [&](const MotionSample& sample)
   {
     Row row{};
     row.position = sample.position;
     row.velocity = sample.velocity;
-    Values only = found;
-    only[OFFSET] = 0.0;
-    return predictedCurrent(row, fit.orders(), fit.present(), only);
+    const bool moving = std::abs(sample.velocity) > MOVING;
+    return predictedCurrent(row, fit.orders(), moving ? fit.present() : at_rest, ripple_only);
   };
   result.values.push_back(identifyPresliding(p, train, result.correlation_rows));
   result.values.push_back({ "temperature of the friction", "bearing.viscosity_slope", "-", p.bearing.viscosity_slope,

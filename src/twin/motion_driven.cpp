@@ -7,8 +7,9 @@
 
 namespace hjt
 {
-double Presliding::move(double motor_step) noexcept
+double Presliding::move(double motor_step, double duration) noexcept
 {
+  share_ *= std::exp(-duration / RELAXATION);
   if (motor_step != 0.0)
   {
     const double end = motor_step > 0.0 ? 1.0 : -1.0;
@@ -33,11 +34,11 @@ MotionPrediction MotionDriven::step(const MotionSample& sample) noexcept
   if (!started_ || sample.after_gap)
   {
     presliding_.reset();
-    last_position_ = sample.position;
+    last_ = sample;
     started_ = true;
   }
-  const double share = presliding_.move(ratio_ * (sample.position - last_position_));
-  last_position_ = sample.position;
+  const double share = presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
+  last_ = sample;
 
   const double friction = friction_.at(ratio_ * sample.velocity, sample.load, temperature_).sum();
   MotionPrediction prediction;

@@ -10,8 +10,8 @@ namespace hjt
 {
 bool MotionSmoother::push(const MotionRow& row) noexcept
 {
-  const bool finite = std::isfinite(row.time) && std::isfinite(row.position) && std::isfinite(row.current) &&
-                      std::isfinite(row.load);
+  const bool finite =
+      std::isfinite(row.time) && std::isfinite(row.position) && std::isfinite(row.current) && std::isfinite(row.load);
   if (!finite || (end_ > 0 && row.time < at(end_ - 1).row.time + SMALLEST_STEP))
   {
     ++refused_;

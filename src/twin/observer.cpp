@@ -95,11 +95,9 @@ ObserverDesign designObserver(const Eigen::Vector2d& inertia, double ratio, doub
   const Matrix to = unit.cwiseInverse().asDiagonal();
   const Matrix from = unit.asDiagonal();
   const Matrix information = from * outputs.transpose() * noise_power.inverse() * outputs * from;
-  const Matrix before =
-      from * steadyCovariance(to * design.transition * from, to * process * to, information) * from;
+  const Matrix before = from * steadyCovariance(to * design.transition * from, to * process * to, information) * from;
 
-  design.gain =
-      before * outputs.transpose() * (outputs * before * outputs.transpose() + noise_power).inverse();
+  design.gain = before * outputs.transpose() * (outputs * before * outputs.transpose() + noise_power).inverse();
   const Matrix left = Matrix::Identity() - design.gain * outputs;
   design.disturbance_deviation = std::sqrt(std::max(0.0, (left * before)(4, 4)));
   design.spectral_radius = (to * left * design.transition * from).eigenvalues().cwiseAbs().maxCoeff();
@@ -169,7 +167,8 @@ Observation Observer::step(double motor_torque, double load_torque, double motor
   const double beyond = gear - design.stiffness * torsion;
   const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
   const ObserverDesign::Vector free =
-      design.transition * state_ + design.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
+      design.transition * state_ +
+      design.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
 
   const double most = friction_.at(state_[1], gear, temperature_).sum();
   const double by_friction = design.input(1, 0);

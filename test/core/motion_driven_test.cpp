@@ -48,8 +48,10 @@ std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, co
   {
     const JointOutputs& now = twin.outputs();
     // Begins at rest.
-    const double target = ratio * (0.8 * (1.0 - std::cos(TWO_PI * 0.17 * time)) + 0.1 * (1.0 - std::cos(TWO_PI * 0.6 * time)));
-    const double target_speed = ratio * TWO_PI * (0.136 * std::sin(TWO_PI * 0.17 * time) + 0.06 * std::sin(TWO_PI * 0.6 * time));
+    const double target =
+        ratio * (0.8 * (1.0 - std::cos(TWO_PI * 0.17 * time)) + 0.1 * (1.0 - std::cos(TWO_PI * 0.6 * time)));
+    const double target_speed =
+        ratio * TWO_PI * (0.136 * std::sin(TWO_PI * 0.17 * time) + 0.06 * std::sin(TWO_PI * 0.6 * time));
     const double torque = 0.5 * (target - now.motor_angle) + 0.02 * (target_speed - now.motor_velocity);
     twin.commandMotorTorque(twin.stamp(), torque);
     if (!twin.step(twin.stamp() + twin.stepLength()))
@@ -64,7 +66,8 @@ std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, co
       row.row.time = static_cast<double>(twin.stamp()) / 1e9;
       row.row.position = twin.outputs().motor_angle / ratio + noise.position * unit(engine);
       row.motor_torque = twin.outputs().motor_torque;
-      row.row.current = ratio * row.motor_torque / parameters.telemetry.torque_per_current + noise.current * unit(engine);
+      row.row.current =
+          ratio * row.motor_torque / parameters.telemetry.torque_per_current + noise.current * unit(engine);
       rows.push_back(row);
     }
   }
@@ -94,9 +97,10 @@ std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const Moti
 
 std::vector<std::string> hiddenParameters()
 {
-  return { "bearing.race_preload=750.0",    "bearing.viscosity=220.0e-6",   "motor.rotor_inertia=1.2e-4",
-           "telemetry.torque_per_current=9.84", "motor.viscous_friction=0.0", "output.gravity_torque=40.0",
-           "output.load_inertia=1.5",       "solver.rate=5000" };
+  return { "bearing.race_preload=750.0", "bearing.viscosity=220.0e-6",
+           "motor.rotor_inertia=1.2e-4", "telemetry.torque_per_current=9.84",
+           "motor.viscous_friction=0.0", "output.gravity_torque=40.0",
+           "output.load_inertia=1.5",    "solver.rate=5000" };
 }
 
 Parameters knownParameters()
@@ -119,7 +123,9 @@ const IdentifiedValue& valueOf(const Identification& found, const std::string& k
 
 TEST(MotionDriven, TakesTheTorqueThatMadeTheMotion)
 {
-  const Parameters parameters = shippedParameters(hiddenParameters());
+  std::vector<std::string> assignments = hiddenParameters();
+  assignments.emplace_back("telemetry.presliding_angle=1.0e-4");  // the twin's own stiction has no presliding
+  const Parameters parameters = shippedParameters(assignments);
   const std::vector<RobotRow> rows = runRobot(parameters, 6.0, {});
   MotionDriven twin(parameters);
   const std::vector<MotionSample> samples = smoothed(rows, twin);
@@ -148,7 +154,8 @@ TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
   const std::vector<RobotRow> rows = runRobot(robot, 18.0, { 3e-6, 0.02 });
   const std::vector<MotionSample> samples = smoothed(rows, MotionDriven(knownParameters()));
   const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
-  const Identification found = identify(knownParameters(), { samples.begin(), middle }, { middle, samples.end() }, false);
+  const Identification found =
+      identify(knownParameters(), { samples.begin(), middle }, { middle, samples.end() }, false);
 
   const auto expect_within = [&](const char* key, double truth)
   {
@@ -238,18 +245,20 @@ TEST(MotionSmoother, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
   EXPECT_EQ(cuts, 1);
 }
 
-TEST(Presliding, BuildsUpAfterAReversalAndKeepsItsShareAtRest)
+TEST(Presliding, BuildsUpAfterAReversalAndFadesAtRest)
 {
   Presliding presliding(1e-3);
   EXPECT_EQ(presliding.share(), 0.0);
   for (int i = 0; i < 100; ++i)
   {
-    presliding.move(1e-4);
+    presliding.move(1e-4, 0.0);
   }
   EXPECT_NEAR(presliding.share(), 1.0, 1e-4);
-  EXPECT_EQ(presliding.move(0.0), presliding.share());
-  presliding.move(-1e-3);
-  EXPECT_NEAR(presliding.share(), 2.0 * std::exp(-1.0) - 1.0, 1e-4);
+  EXPECT_EQ(presliding.move(0.0, 0.0), presliding.share());
+  presliding.move(-1e-3, 0.0);
+  const double share = 2.0 * std::exp(-1.0) - 1.0;
+  EXPECT_NEAR(presliding.share(), share, 1e-4);
+  EXPECT_NEAR(presliding.move(0.0, Presliding::RELAXATION), share * std::exp(-1.0), 1e-4);
 }
 }  // namespace
 }  // namespace hjt

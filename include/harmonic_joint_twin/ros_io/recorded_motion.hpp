@@ -12,11 +12,11 @@ namespace hjt
 /// Which joint of which recording.
 struct MotionSource
 {
-  std::string path;                          ///< .bag or .csv
-  std::string joint;                         ///< its name in the messages
-  int csv_joint{};                           ///< its number in the columns of a CSV file
-  std::string topic{ "/joint_states" };      ///< sensor_msgs/JointState, effort the motor current [A]
-  std::string load_topic;                    ///< sensor_msgs/JointState, effort the load [N.m]
+  std::string path;                      ///< .bag or .csv
+  std::string joint;                     ///< its name in the messages
+  int csv_joint{};                       ///< its number in the columns of a CSV file
+  std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState, effort the motor current [A]
+  std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
 };
 
 /// What a reading found.

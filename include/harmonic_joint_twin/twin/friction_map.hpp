@@ -38,9 +38,9 @@ private:
   static constexpr std::size_t SPEEDS = 7;
   struct Line  // at one load
   {
-    double load;                       // [N.m]
-    double rest;                       // [N.m]
-    std::array<double, SPEEDS> flanks; // [N.m]
+    double load;                        // [N.m]
+    double rest;                        // [N.m]
+    std::array<double, SPEEDS> flanks;  // [N.m]
   };
 
   BearingFriction bearing_;

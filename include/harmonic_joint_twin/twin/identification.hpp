@@ -13,7 +13,7 @@ namespace hjt
 struct IdentifiedValue
 {
   std::string name;
-  std::string key;        ///< of the parameter it is; empty: the twin has none for it
+  std::string key;  ///< of the parameter it is; empty: the twin has none for it
   std::string unit;
   double configured{};    ///< before
   double value{};         ///< identified, or the configured one where `refusal` says why
@@ -45,14 +45,14 @@ struct Identification
 {
   std::vector<IdentifiedValue> values;
   std::vector<RippleLine> lines;
-  double loop_frequency{};  ///< of the drive's speed loop, through which the ripple is seen [Hz]
-  double loop_damping{};    ///< [-]
-  double lag{};             ///< of the current behind the angle [s]
+  double loop_frequency{};    ///< of the drive's speed loop, through which the ripple is seen [Hz]
+  double loop_damping{};      ///< [-]
+  double lag{};               ///< of the current behind the angle [s]
   double correlation_rows{};  ///< rows after which the residual forgets itself, widens every interval [-]
 
-  CurrentError before;      ///< judging part, as configured
-  CurrentError after;       ///< with the identified parameters, which is what the overlay gives
-  CurrentError with_lines;  ///< and with the ripple
+  CurrentError before;                ///< judging part, as configured
+  CurrentError after;                 ///< with the identified parameters, which is what the overlay gives
+  CurrentError with_lines;            ///< and with the ripple
   CurrentError gain_coulomb_viscous;  ///< for comparison: three numbers fitted to the same training part
 
   Parameters parameters;  ///< with the identified values

@@ -11,13 +11,17 @@ namespace hjt
 /// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over the presliding angle.
 ///
 ///   ds/dx = (1 - s sgn(dx)) / x_p     (Dahl), x the motor's angle, x_p the presliding angle [rad]
-/// While the joint stands s keeps its value: what holds it is then known only to lie within the whole of the friction.
+/// While the joint stands the motion does not tell s. It forgets the last one within RELAXATION, as the current of standing
+/// joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s); what holds the joint lies within the whole of the friction.
 class Presliding
 {
 public:
+  static constexpr double RELAXATION = 5.0;  ///< [s]
+
   explicit Presliding(double angle) : angle_(angle) {}
 
-  double move(double motor_step) noexcept;  ///< the share after the motor turned by this much [rad]
+  double move(double motor_step,
+              double duration) noexcept;  ///< the share after the motor turned by this much [rad], [s]
   double share() const noexcept { return share_; }
   void reset() noexcept { share_ = 0.0; }
 
@@ -64,7 +68,7 @@ private:
   double inertia_;  // of motor and wave generator, less what the load holds [kg.m^2]
   double ratio_;
   double temperature_;
-  double last_position_{};
+  MotionSample last_;
   bool started_{};
 };
 }  // namespace hjt

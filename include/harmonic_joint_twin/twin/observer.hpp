@@ -28,12 +28,12 @@ struct ObserverDesign
   using Vector = Eigen::Matrix<double, 5, 1>;
   using Matrix = Eigen::Matrix<double, 5, 5>;
 
-  double stiffness{};                  ///< [N.m/rad] at the output
+  double stiffness{};  ///< [N.m/rad] at the output
   Matrix transition;
   Eigen::Matrix<double, 5, 2> input;
-  Eigen::Matrix<double, 5, 2> gain;    ///< correction by the innovations of both angles
-  double disturbance_deviation{};      ///< of the estimated disturbance, rms, if the noise is as stated [N.m]
-  double spectral_radius{};            ///< of the error's transition; below 1 it dies out
+  Eigen::Matrix<double, 5, 2> gain;  ///< correction by the innovations of both angles
+  double disturbance_deviation{};    ///< of the estimated disturbance, rms, if the noise is as stated [N.m]
+  double spectral_radius{};          ///< of the error's transition; below 1 it dies out
 };
 
 /// Steady-state Kalman gain of the joint at one stiffness. `inertia`: of motor and output [kg.m^2].
@@ -44,15 +44,15 @@ ObserverDesign designObserver(const Eigen::Vector2d& inertia, double ratio, doub
 /// What the observer knows after a measurement.
 struct Observation
 {
-  double motor_angle{};       ///< [rad]
-  double motor_velocity{};    ///< [rad/s]
-  double output_angle{};      ///< [rad]
-  double output_velocity{};   ///< [rad/s]
-  double joint_torque{};      ///< in the gear, at the output [N.m]
-  double friction_torque{};   ///< a healthy joint's, at the motor, with its sign [N.m]
-  double residual_torque{};   ///< at the motor: what the measurement needs beyond the healthy joint [N.m]
-  double residual_band{};     ///< of it, three deviations, if the noise is as stated and the joint healthy [N.m]
-  bool sticking{};            ///< friction holds the motor: within it any torque fits, so the residual says nothing new
+  double motor_angle{};      ///< [rad]
+  double motor_velocity{};   ///< [rad/s]
+  double output_angle{};     ///< [rad]
+  double output_velocity{};  ///< [rad/s]
+  double joint_torque{};     ///< in the gear, at the output [N.m]
+  double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
+  double residual_torque{};  ///< at the motor: what the measurement needs beyond the healthy joint [N.m]
+  double residual_band{};    ///< of it, three deviations, if the noise is as stated and the joint healthy [N.m]
+  bool sticking{};           ///< friction holds the motor: within it any torque fits, so the residual says nothing new
 };
 
 /// The joint of four states, driven by the measured torque and corrected towards both encoders.

@@ -36,20 +36,20 @@ int follow(const FollowOptions& options)
   }
   double squares = 0.0;
   double samples = 0.0;
-  const MotionCount count = visitMotion(options, twin,
-                                        [&](const MotionSample& sample)
-                                        {
-                                          const MotionPrediction predicted = twin.step(sample);
-                                          const double residual = sample.current - predicted.current;
-                                          squares += residual * residual;
-                                          ++samples;
-                                          if (csv)
-                                          {
-                                            csv->writeRow({ sample.time, sample.position, sample.velocity, sample.load,
-                                                            sample.current, predicted.current, residual, predicted.band,
-                                                            predicted.motor_torque, predicted.friction_torque });
-                                          }
-                                        });
+  const MotionCount count = visitMotion(
+      options, twin,
+      [&](const MotionSample& sample)
+      {
+        const MotionPrediction predicted = twin.step(sample);
+        const double residual = sample.current - predicted.current;
+        squares += residual * residual;
+        ++samples;
+        if (csv)
+        {
+          csv->writeRow({ sample.time, sample.position, sample.velocity, sample.load, sample.current, predicted.current,
+                          residual, predicted.band, predicted.motor_torque, predicted.friction_torque });
+        }
+      });
   if (csv)
   {
     csv->close();
@@ -57,12 +57,12 @@ int follow(const FollowOptions& options)
   const double rms = samples > 0.0 ? std::sqrt(squares / samples) : 0.0;
   if (options.json)
   {
-    std::cout << nlohmann::ordered_json{ { "rows", count.rows },
-                                         { "unreadable", count.corrupt },
-                                         { "duration", count.duration },
-                                         { "current_residual_rms", rms } }
-                     .dump(2)
-              << '\n';
+    std::cout << nlohmann::ordered_json{
+      { "rows", count.rows },
+      { "unreadable", count.corrupt },
+      { "duration", count.duration },
+      { "current_residual_rms", rms }
+    }.dump(2) << '\n';
   }
   else
   {
@@ -77,7 +77,8 @@ int follow(const FollowOptions& options)
 void addFollowCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<FollowOptions>();
-  auto* command = app.add_subcommand("follow", "motion-driven: the motor torque and current that a recorded motion takes");
+  auto* command =
+      app.add_subcommand("follow", "motion-driven: the motor torque and current that a recorded motion takes");
   addMotionOptions(*command, *options);
   command->add_option("--out", options->out, "every row, measured beside predicted")->type_name("FILE.csv");
   command->callback([options, &exit_code] { exit_code = follow(*options); });

@@ -124,26 +124,26 @@ void printJson(const Identification& found)
                       { "phase", line.phase },
                       { "refusal", line.refusal } });
   }
-  std::cout << Json{ { "values", values },
-                     { "lines", lines },
-                     { "loop_frequency", found.loop_frequency },
-                     { "loop_damping", found.loop_damping },
-                     { "lag", found.lag },
-                     { "correlation_rows", found.correlation_rows },
-                     { "judged",
-                       { { "configured", errorJson(found.before) },
-                         { "identified", errorJson(found.after) },
-                         { "identified_with_lines", errorJson(found.with_lines) },
-                         { "gain_coulomb_viscous", errorJson(found.gain_coulomb_viscous) } } } }
-                   .dump(2)
-            << '\n';
+  std::cout << Json{
+    { "values", values },
+    { "lines", lines },
+    { "loop_frequency", found.loop_frequency },
+    { "loop_damping", found.loop_damping },
+    { "lag", found.lag },
+    { "correlation_rows", found.correlation_rows },
+    { "judged",
+      { { "configured", errorJson(found.before) },
+        { "identified", errorJson(found.after) },
+        { "identified_with_lines", errorJson(found.with_lines) },
+        { "gain_coulomb_viscous", errorJson(found.gain_coulomb_viscous) } } }
+  }.dump(2) << '\n';
 }
 
 void printText(const Identification& found)
 {
   std::vector<NamedValue> values;
-  const auto tell = [&](const std::string& name, double value, double half_width, const std::string& unit,
-                        const std::string& refusal)
+  const auto tell =
+      [&](const std::string& name, double value, double half_width, const std::string& unit, const std::string& refusal)
   {
     if (refusal.empty())
     {
@@ -186,8 +186,8 @@ int identifyJoint(const IdentifyOptions& options)
   }
   std::vector<MotionSample> samples;
   const bool load_recorded = recordsLoad(motionSource(options));
-  const MotionCount count = visitMotion(options, MotionDriven(parameters),
-                                        [&](const MotionSample& sample) { samples.push_back(sample); });
+  const MotionCount count =
+      visitMotion(options, MotionDriven(parameters), [&](const MotionSample& sample) { samples.push_back(sample); });
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();

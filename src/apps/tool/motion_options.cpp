@@ -33,9 +33,9 @@ MotionSource motionSource(const MotionOptions& options)
   source.topic = options.topic;
   source.load_topic = options.joint_namespace + "/" + topics::LOAD;
   source.joint = options.joint;
-  const auto* known = std::find_if(UR_JOINTS.begin(), UR_JOINTS.end(),
-                                   [&](const auto& names)
-                                   { return names[0] == options.joint || names[1] == options.joint; });
+  const auto* known =
+      std::find_if(UR_JOINTS.begin(), UR_JOINTS.end(),
+                   [&](const auto& names) { return names[0] == options.joint || names[1] == options.joint; });
   if (known != UR_JOINTS.end())
   {
     source.joint = (*known)[1];

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin follow` and `joint_twin identify`: a robot's telemetry with the faults of real recordings."""
+import io
+import math
+import os
+import random
+import subprocess
+import time
+
+import genpy
+import rosbag
+from sensor_msgs.msg import JointState
+
+import tool
+
+RATIO, GAIN = 101.0, 9.5  # [-], [N.m/A]
+COULOMB, VISCOUS = 12.0, 4.0  # [N.m], [N.m.s/rad] at the joint
+NOISE = 0.02  # [A]
+OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
+
+
+def telemetry(seconds, generator):
+    """Elbow under a weight, swinging: angle, current and load as a robot would tell them."""
+    angle = 0.7 * math.sin(0.9 * seconds) + 0.2 * math.sin(2.3 * seconds)
+    speed = 0.63 * math.cos(0.9 * seconds) + 0.46 * math.cos(2.3 * seconds)
+    load = 20.0 * math.sin(angle + 0.4)
+    torque = load + math.copysign(COULOMB, speed) + VISCOUS * speed
+    return angle, torque / GAIN + generator.gauss(0.0, NOISE), load
+
+
+def message(names, positions, efforts, stamp):
+    state = JointState(name=names, position=positions, effort=efforts)
+    state.header.stamp = stamp
+    return state
+
+
+def write_telemetry(path, duration, faults=True, joint="elbow_joint"):
+    generator = random.Random(4)
+    with rosbag.Bag(path, "w") as bag:
+        for row in range(int(duration * 125)):
+            seconds = row * 0.008
+            stamp = genpy.Time(tool.START) + genpy.Duration.from_sec(seconds + 0.001 * generator.random())
+            if faults and generator.random() < 0.01:
+                continue  # dropped
+            angle, current, load = telemetry(seconds, generator)
+            state = message(["wrist_1_joint", joint], [0.0, angle], [0.0, current], stamp)
+            bag.write("/joint_twin/load", message([joint], [], [load], stamp), stamp)
+            if faults and row % 1000 == 500:
+                data = io.BytesIO()
+                state.serialize(data)
+                half = data.getvalue()[:len(data.getvalue()) // 2]
+                bag.write("/joint_states", (state._type, half, state._md5sum, JointState), stamp, raw=True)
+            elif faults and row % 1000 == 700:
+                state.effort[1] = float("nan")
+                bag.write("/joint_states", state, stamp)
+            else:
+                bag.write("/joint_states", state, stamp)
+                if faults and row % 50 == 0:
+                    bag.write("/joint_states", state, stamp)  # its stamp repeated
+
+
+class Identify(tool.ToolTest):
+    def test_a_bag_with_faults_gives_gain_and_friction_and_an_overlay_that_loads(self):
+        write_telemetry(self.path("a.bag"), 60.0)
+        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml")
+        values = {value["key"]: value for value in found["values"]}
+        gain = values["telemetry.torque_per_current"]
+        self.assertEqual(gain["refusal"], "")
+        self.assertLess(abs(gain["value"] - GAIN), gain["half_width"] + 0.01 * GAIN)
+        self.assertIn("temperature", values["bearing.viscosity_slope"]["refusal"])
+        judged = found["judged"]
+        self.assertLess(judged["identified"]["all"], 0.5 * judged["configured"]["all"])
+        loaded = self.succeed_json("parameters", "--config", "joints/elbow.yaml", "--config", self.path("found.yaml"))
+        self.assertIn(str(gain["value"])[:8], str(loaded))
+        before = self.succeed_json("follow", "a.bag", *OPTIONS)
+        after = self.succeed_json("follow", "a.bag", *OPTIONS, "--config", self.path("found.yaml"), "--out", "a.csv")
+        self.assertLess(after["current_residual_rms"], 0.5 * before["current_residual_rms"])
+        self.assertIn(after["unreadable"], range(10, 15))  # of 14 some may have been dropped
+        with open(self.path("a.csv")) as file:
+            self.assertIn("current_predicted", file.readline())
+
+    def test_what_is_missing_is_named(self):
+        write_telemetry(self.path("a.bag"), 2.0, faults=False, joint="other_joint")
+        self.fail_with(1, ["elbow_joint", "joints found: other_joint, wrist_1_joint"], "follow", "a.bag", *OPTIONS)
+        self.fail_with(1, ["no messages on /arm/joint_states", "/joint_states (sensor_msgs/JointState)"],
+                       "follow", "a.bag", *OPTIONS, "--topic", "/arm/joint_states")
+        self.write("broken.bag", "not a bag")
+        self.fail_with(1, ["broken.bag cannot be read as a bag"], "follow", "broken.bag", *OPTIONS)
+        self.fail_with(1, ["nowhere.bag"], "identify", "nowhere.bag", *OPTIONS)
+
+    def test_a_joint_at_rest_tells_nothing(self):
+        rows = ["timestamp,actual_q_0,actual_current_0,target_moment_0"]
+        rows += [f"{0.008 * row:.3f},0.5,0.1,1.0" for row in range(400)]
+        self.write("a.csv", "\n".join(rows) + "\n")
+        self.fail_with(1, ["the joint hardly moves"], "identify", "a.csv", "--joint", "base")
+
+    def test_a_long_bag_costs_no_more_memory_and_a_small_part_of_its_time(self):
+        peaks = []
+        for duration in (30.0, 240.0):
+            write_telemetry(self.path("long.bag"), duration, faults=False)
+            started = time.monotonic()
+            process = subprocess.Popen([self.executable, "follow", self.path("long.bag"), *OPTIONS],
+                                       stdout=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.WEXITSTATUS(status)
+            self.assertEqual(process.returncode, 0)
+            self.assertLess(time.monotonic() - started, 5.0 + duration / 20.0)
+            peaks.append(usage.ru_maxrss)
+        # The bag's own index grows, by some hundred bytes a message.
+        self.assertLess(peaks[1] - peaks[0], 20 * 1024, peaks)
+
+
+if __name__ == "__main__":
+    tool.main()
