@@ -130,7 +130,8 @@ private:
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
-  std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
+  std::vector<char> factored_meshed_;  // when the tangent was factored
+  Eigen::VectorXd factored_depth_;     // of the wave generator's contact then
   Eigen::VectorXd step_;
   Eigen::VectorXd start_forces_;
   // Of the last factored tangent, once known.
