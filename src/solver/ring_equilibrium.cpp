@@ -66,6 +66,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , old_space_(now_.shape.space)
   , factored_meshed_(forces_.meshed)
   , factored_depth_(forces_.contact_depth)
+  , guess_(now_.shape.points)
+  , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , step_(now_.shape.points)
   , start_forces_(now_.shape.points)
   , by_wave_generator_(now_.by_wave_generator)
@@ -144,6 +146,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.position = position;
   now_.shape.points = points;
   now_.shape.updateGeometry();
+  forgetGuess();
   model_.mesh.pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
@@ -164,6 +167,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = kept_;
+    forgetGuess();
     updateForces();
   }
   return status;
@@ -182,6 +186,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = start_;
+    forgetGuess();
     updateForces();
     status.residual = std::isfinite(status.residual) ? status.residual : now_.residual;
   }
@@ -195,6 +200,7 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
   constexpr double LEAST_DAMPING = 1e-3;
   constexpr double MOST_DAMPING = 1e16;
   start_ = now_;
+  forgetGuess();
   now_.position = target;
   SolveStatus status;
   double damping = FIRST_DAMPING;
@@ -296,6 +302,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
       break;
     }
     now_ = done > 0.0 ? halfway_ : start_;
+    forgetGuess();
     stride *= 0.5;
   }
   return total;
@@ -338,10 +345,39 @@ void RingEquilibrium::shift(int pitches) noexcept
   now_.position.output_angle += pitches * pitch_output_angle_;
 }
 
+/// What the last guess was off by is what the next one will be, as far as the one before was off alike: errors of single
+/// teeth stay where they are, while the guess takes them for turning with the wave generator.
+void RingEquilibrium::predict(const DrivePosition& target) noexcept
+{
+  double share = 0.0;
+  if (guessed_)
+  {
+    ring_vectors::addScaled(now_.shape.points, -1.0, guess_, scratch_);
+    const double size = ring_vectors::dot(guess_error_, guess_error_);
+    share = size > 0.0 ? std::min(1.0, std::max(0.0, ring_vectors::dot(scratch_, guess_error_) / size)) : 0.0;
+    guess_error_.swap(scratch_);
+  }
+  guess(target);
+  guess_ = now_.shape.points;
+  guessed_ = true;
+  if (share > 0.0)
+  {
+    ring_vectors::addScaled(guess_, share, guess_error_, now_.shape.points);
+  }
+  now_.shape.updateGeometry();
+  now_.position = target;
+}
+
+void RingEquilibrium::forgetGuess() noexcept
+{
+  guessed_ = false;
+  guess_error_.setZero();
+}
+
 /// First guess at the target. Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is
 /// a cubic between the state and its copy one pitch on, forwards or back, with the tangents at both ends; the rest of the
 /// output's angle goes along its own tangent.
-void RingEquilibrium::predict(const DrivePosition& target) noexcept
+void RingEquilibrium::guess(const DrivePosition& target) noexcept
 {
   constexpr double SMALL = 0.02;        // of a pitch; below it the tangent alone is as good
   constexpr double MOST_PITCHES = 1e9;  // counted as an int
@@ -375,8 +411,6 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
     now_.shape.points += (target.wave_generator_angle - now_.position.wave_generator_angle) * now_.by_wave_generator +
                          (target.output_angle - now_.position.output_angle) * now_.by_output;
   }
-  now_.shape.updateGeometry();
-  now_.position = target;
 }
 
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
@@ -563,9 +597,10 @@ void RingEquilibrium::updateSensitivities() noexcept
   now_.by_wave_generator.swap(by_wave_generator_);
   now_.by_output.swap(by_output_);
   rates_known_ = false;
-  const double cross = tangent_.wave_generator.dot(now_.by_output);
-  now_.stiffness(0, 0) = tangent_.wave_generator_stiffness + tangent_.wave_generator.dot(now_.by_wave_generator);
-  now_.stiffness(1, 1) = tangent_.output_stiffness + tangent_.output.dot(now_.by_output);
+  const double cross = ring_vectors::dot(tangent_.wave_generator, now_.by_output);
+  now_.stiffness(0, 0) =
+      tangent_.wave_generator_stiffness + ring_vectors::dot(tangent_.wave_generator, now_.by_wave_generator);
+  now_.stiffness(1, 1) = tangent_.output_stiffness + ring_vectors::dot(tangent_.output, now_.by_output);
   now_.stiffness(0, 1) = now_.stiffness(1, 0) = cross;
 }
 }  // namespace hjt

@@ -40,6 +40,20 @@ HJT_VECTOR_CLONES void addScaled(const Eigen::VectorXd& start, double length, co
   }
 }
 
+HJT_VECTOR_CLONES double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
+{
+  const Eigen::Index n = a.size();
+  const double* first = a.data();
+  const double* second = b.data();
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    sum += first[i] * second[i];
+  }
+  return sum;
+}
+
 HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
 {
   const Eigen::Index n = a.size();

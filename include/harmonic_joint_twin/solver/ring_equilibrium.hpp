@@ -103,6 +103,8 @@ private:
   void turnSpaces(int pitches) noexcept;
   void shift(int pitches) noexcept;
   void predict(const DrivePosition& target) noexcept;
+  void guess(const DrivePosition& target) noexcept;
+  void forgetGuess() noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
   bool slopesChanged() const noexcept;
@@ -126,6 +128,10 @@ private:
   Equilibrium halfway_;  // the farthest point of the present move
   Equilibrium kept_;     // before inserting anew
   bool circular_spline_in_{ true };
+  // Of the last move, where it has led to the present state.
+  bool guessed_{ false };
+  Eigen::VectorXd guess_;        // without what the guess before was off by
+  Eigen::VectorXd guess_error_;  // of the guess before
   // Scratch, sized once.
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;

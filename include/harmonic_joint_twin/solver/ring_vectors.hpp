@@ -16,6 +16,8 @@ double largest(const Eigen::VectorXd& values) noexcept;
 void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step,
                Eigen::VectorXd& result) noexcept;
 
+double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
+
 /// How many signs differ: positive in one, not in the other.
 int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
 
