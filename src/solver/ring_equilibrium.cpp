@@ -349,18 +349,19 @@ void RingEquilibrium::shift(int pitches) noexcept
 /// teeth stay where they are, while the guess takes them for turning with the wave generator.
 void RingEquilibrium::predict(const DrivePosition& target) noexcept
 {
+  constexpr double ALIKE = 0.5;  // less has come about by chance
   double share = 0.0;
   if (guessed_)
   {
     ring_vectors::addScaled(now_.shape.points, -1.0, guess_, scratch_);
     const double size = ring_vectors::dot(guess_error_, guess_error_);
-    share = size > 0.0 ? std::min(1.0, std::max(0.0, ring_vectors::dot(scratch_, guess_error_) / size)) : 0.0;
+    share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_) / size) : 0.0;
     guess_error_.swap(scratch_);
   }
   guess(target);
   guess_ = now_.shape.points;
   guessed_ = true;
-  if (share > 0.0)
+  if (share > ALIKE)
   {
     ring_vectors::addScaled(guess_, share, guess_error_, now_.shape.points);
   }

@@ -128,16 +128,16 @@ private:
   Equilibrium halfway_;  // the farthest point of the present move
   Equilibrium kept_;     // before inserting anew
   bool circular_spline_in_{ true };
-  // Of the last move, where it has led to the present state.
-  bool guessed_{ false };
-  Eigen::VectorXd guess_;        // without what the guess before was off by
-  Eigen::VectorXd guess_error_;  // of the guess before
   // Scratch, sized once.
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
   std::vector<char> factored_meshed_;  // when the tangent was factored
   Eigen::VectorXd factored_depth_;     // of the wave generator's contact then
+  // Of the last move, where it has led to the present state.
+  bool guessed_{ false };
+  Eigen::VectorXd guess_;        // without what the guess before was off by
+  Eigen::VectorXd guess_error_;  // of the guess before
   Eigen::VectorXd step_;
   Eigen::VectorXd start_forces_;
   // Of the last factored tangent, once known.
