@@ -349,7 +349,7 @@ void RingEquilibrium::shift(int pitches) noexcept
 /// teeth stay where they are, while the guess takes them for turning with the wave generator.
 void RingEquilibrium::predict(const DrivePosition& target) noexcept
 {
-  constexpr double ALIKE = 0.5;  // less has come about by chance
+  constexpr double ALIKE = 0.8;  // less has come about by chance
   double share = 0.0;
   if (guessed_)
   {
