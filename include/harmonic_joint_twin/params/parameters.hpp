@@ -185,6 +185,14 @@ struct SensorParameters
   int motor_counts_per_turn{};
   int output_bits{};
   double velocity_window{};
+  double motor_eccentricity{};
+  double motor_noise{};
+  double output_eccentricity{};
+  double output_noise{};
+  double torque_noise{};
+  double torque_resolution{};
+  double delay{};
+  int noise_seed{};
 };
 
 /// Health indicators out of the drive's own signals, and what is made of them.
