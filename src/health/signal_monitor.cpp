@@ -20,6 +20,7 @@ constexpr double FRICTION_WINDOWS = 10.0;     // memory of the friction estimate
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
   : ratio_(nominalRatio(parameters.gear))
+  , output_(parameters.output)
   , parameters_(parameters.indicators)
   , tracker_(trackedOrders(parameters.gear, parameters.bearing))
   , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
@@ -61,8 +62,13 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
   torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
 }
 
-bool SignalMonitor::update(const SignalSample& sample) noexcept
+bool SignalMonitor::update(const SignalSample& given) noexcept
 {
+  SignalSample sample = given;
+  if (output_.gravity_torque != 0.0)
+  {
+    sample.load_torque += output_.gravity_torque * std::sin(given.output_angle - output_.gravity_angle);
+  }
   // One encoder is enough to know where the motor stands.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;

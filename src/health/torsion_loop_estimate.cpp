@@ -9,8 +9,8 @@ namespace hjt
 namespace
 {
 constexpr int COLUMNS = 3;
-constexpr int SLOPE = 2;                 // column of the torque
-constexpr double LARGEST_ERROR = 0.1;    // of the slope, standard, as a share of it [-]
+constexpr int SLOPE = 2;               // column of the torque
+constexpr double LARGEST_ERROR = 0.1;  // of the slope, standard, as a share of it [-]
 constexpr std::size_t RISING = 0;
 constexpr std::size_t FALLING = 1;
 }  // namespace
@@ -39,6 +39,7 @@ void TorsionLoopEstimate::reset() noexcept
 
 void TorsionLoopEstimate::add(double torsion, double joint_torque, double direction) noexcept
 {
+  followTorque(torsion, joint_torque);
   if (std::abs(joint_torque) < torque_range_)
   {
     const bool first = regression_.weight() == 0.0;
@@ -46,7 +47,6 @@ void TorsionLoopEstimate::add(double torsion, double joint_torque, double direct
     highest_ = first ? joint_torque : std::max(highest_, joint_torque);
     regression_.add(Eigen::Vector3d(1.0, direction, joint_torque), Eigen::Matrix<double, 1, 1>(torsion));
   }
-  followTorque(torsion, joint_torque);
 }
 
 void TorsionLoopEstimate::followTorque(double torsion, double joint_torque) noexcept

@@ -111,6 +111,7 @@ void checkRates(const Parameters& p, Contradictions& check)
   check_rate("publish.encoders_rate", p.publish.encoders_rate);
   check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
   check_rate("publish.health_rate", p.publish.health_rate);
+  check_rate("publish.indicators_rate", p.publish.indicators_rate);
 }
 }  // namespace
 

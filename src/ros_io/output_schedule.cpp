@@ -32,7 +32,9 @@ OutputSchedule::OutputSchedule(const Parameters& parameters)
   : periods_{ makePeriod("publish.joint_states_rate", parameters.publish.joint_states_rate, parameters.solver.rate),
               makePeriod("publish.encoders_rate", parameters.publish.encoders_rate, parameters.solver.rate),
               makePeriod("publish.contact_forces_rate", parameters.publish.contact_forces_rate, parameters.solver.rate),
-              makePeriod("publish.health_rate", parameters.publish.health_rate, parameters.solver.rate) }
+              makePeriod("publish.health_rate", parameters.publish.health_rate, parameters.solver.rate),
+              makePeriod("publish.indicators_rate", parameters.publish.indicators_rate, parameters.solver.rate),
+              makePeriod("publish.indicators_rate", parameters.publish.indicators_rate, parameters.solver.rate) }
 {
 }
 }  // namespace hjt

@@ -23,10 +23,17 @@ SurfaceSource surfaceSource()
            [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
            [](const std::string& what) { ROS_WARN_STREAM(what); } };
 }
+
+Twin watchedTwin(const Parameters& parameters)
+{
+  Twin twin(parameters, {}, surfaceSource());
+  twin.watchSignals(true);
+  return twin;
+}
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters, {}, surfaceSource())
+  : twin_(watchedTwin(parameters))
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
   , subscribers_(node, JointNames(parameters.joint.name), inbox_)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -143,7 +144,7 @@ TEST(SignalMonitor, RecoversLinesFromAMotionBackAndForth)
 
 TEST(SignalMonitor, LeavesOutLinesTheTravelCannotTellApart)
 {
-  Synthetic joint(shippedParameters({ "indicators.window_turns=15.0" }));
+  Synthetic joint(shippedParameters({ "indicators.window_turns=12.0" }));
   const SignalIndicators& found = joint.nextWindow();
   EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_2)));
   EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2)));
@@ -231,7 +232,8 @@ TEST_F(WithLoop, StiffnessLostMotionAndAreaAreFound)
 {
   swing();
   const SignalIndicators& found = joint_.nextWindow();
-  EXPECT_NEAR(found[ScalarIndicator::TORSIONAL_STIFFNESS], STIFFNESS, 0.01 * STIFFNESS);
+  // The window holds no whole number of loops: what is over leans on the slope.
+  EXPECT_NEAR(found[ScalarIndicator::TORSIONAL_STIFFNESS], STIFFNESS, 0.02 * STIFFNESS);
   EXPECT_NEAR(found[ScalarIndicator::LOST_MOTION], LOST, 0.05 * LOST);
   EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS_AREA], LOST * 2.0 * SWING, 0.05 * LOST * 2.0 * SWING);
 }
@@ -417,7 +419,7 @@ TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
     {
       const Move move = expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature));
       scores[feature].compared = true;
-      scores[feature].score = move == Move::UP ? 8.0 : move == Move::DOWN ? -8.0 : move == Move::ANY ? 4.0 : 0.0;
+      scores[feature].score = move == Move::UP ? 8.0 : move == Move::DOWN ? -8.0 : 0.0;
     }
     const auto probabilities = causeProbabilities(scores);
     const auto best = std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin();

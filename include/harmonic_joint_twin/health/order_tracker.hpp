@@ -39,7 +39,7 @@ struct LineFit
 /// fast it is passed, and the motion may go back and forth. Lines fitted at once do not leak into each other.
 ///
 /// Not valid: a line above 0.8 of half the samples a turn, and one that the travel cannot tell from another (variance
-/// inflated more than tenfold: orders o1, o2 need about 1 / |o1 - o2| turns in all, 50 for 1.98 beside 2).
+/// inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15 for 1.98 beside 2).
 class OrderTracker
 {
 public:

@@ -17,7 +17,7 @@ namespace hjt
 /// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
 ///
 /// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
-/// indicators.window_time. Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed
+/// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says. Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed
 /// itself within indicators.speed_change of it.
 class SignalMonitor
 {
@@ -27,7 +27,7 @@ public:
   void reset() noexcept;
 
   /// True: this sample completed a window. A sample without stamp progress, angle or torque is passed over and counted.
-  bool update(const SignalSample& sample) noexcept;
+  bool update(const SignalSample& given) noexcept;
 
   /// Of the last window that was completed.
   const SignalIndicators& indicators() const noexcept { return indicators_; }
@@ -78,6 +78,7 @@ private:
   void set(ScalarIndicator indicator, const Indicator& value) noexcept;
 
   const double ratio_;
+  const OutputParameters output_;
   const IndicatorParameters parameters_;
   OrderTracker tracker_;
   FrictionEstimate friction_;

@@ -229,5 +229,6 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         "must divide solver.rate");
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
 }
 }  // namespace hjt

@@ -232,6 +232,7 @@ struct PublishParameters
   double encoders_rate{};
   double contact_forces_rate{};
   double health_rate{};
+  double indicators_rate{};
 };
 
 struct JointParameters

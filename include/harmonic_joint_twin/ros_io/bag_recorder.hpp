@@ -13,8 +13,8 @@ namespace hjt
 class BagRecorder
 {
 public:
-  /// `joint_namespace`: of the node, e.g. "/joint_twin".
-  BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
+  /// Has the twin watch its signals. `joint_namespace`: of the node, e.g. "/joint_twin".
+  BagRecorder(Twin& twin, const std::string& joint_namespace, BagWriter& bag);
 
   /// To be called after every step of the twin.
   void record(Twin& twin);
@@ -28,5 +28,7 @@ private:
   harmonic_joint_twin::Encoders encoders_;
   harmonic_joint_twin::ContactForces contact_forces_;
   harmonic_joint_twin::Health health_;
+  harmonic_joint_twin::Indicators indicators_;
+  harmonic_joint_twin::Assessment assessment_;
 };
 }  // namespace hjt

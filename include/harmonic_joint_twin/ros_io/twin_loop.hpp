@@ -37,6 +37,7 @@ struct LoopStatus
   Stamp last_command{};              ///< latest stamp of one [ns]
   JointOutputs outputs;
   TwinCounters counters;
+  Assessment assessment;
 };
 
 /// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
