@@ -17,6 +17,8 @@ constexpr double LOAD_STEP = 25.0;         // [N.m]
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
 constexpr double COUNT_SHARE = 0.1;        // of an encoder count that a window's mean may wander by
+constexpr double KURTOSIS_FLOOR = 0.3;     // moments of the residual are no normal quantities: these are not looked into
+constexpr double CREST_FLOOR = 0.5;
 constexpr int LEAST_COUNT = 3;             // windows before a spread means anything
 
 int stepOf(double value, double step) noexcept
@@ -81,6 +83,8 @@ Baseline::Baseline(const Parameters& parameters)
   {
     floor_[indexOf(indicator)] = COUNT_SHARE * count;
   }
+  floor_[indexOf(ScalarIndicator::RESIDUAL_KURTOSIS)] = KURTOSIS_FLOOR;
+  floor_[indexOf(ScalarIndicator::RESIDUAL_CREST)] = CREST_FLOOR;
   bins_.reserve(MOST_BINS);
 }
 

@@ -20,24 +20,114 @@ struct Signature
 // Features: ratio, kinematic error, stiffness, lost motion, loop | running torque, Coulomb, viscous, efficiency
 //           | residual, impulses | orders 1, 2, 4, circular spline | cage, ball, outer, inner, tooth pass
 constexpr std::array<Signature, CAUSE_COUNT> SIGNATURES{ {
-    { "none", "....." "...." ".." "...." "....." },
-    { "interface_wear", ".*-*." "++*-" "*." ".**." "....." },
-    { "rear_section_crack", ".*-.*" "...." "*." "**.." "....." },
-    { "lubricant_degradation", "....." "+++-" ".." "...." "....." },
-    { "tooth_wear", ".*-++" "***." "**" ".**." "....*" },
-    { "tooth_root_crack", ".+*.." "...." "**" ".+**" "....*" },
-    { "flange_crack", ".*-*." "...." "*." "+*.." "....." },
-    { "tooth_tip_crack", ".+..." "...." "++" ".+**" "....*" },
-    { "pitting", ".**.." "**.*" "++" ".***" "....+" },
-    { "wave_generator_wear", ".+-+." "--*+" "*." ".++." "....." },
-    { "flexspline_crack", ".+-.." "...." "*." ".++." "....." },
-    { "buckling", "++-++" "**.-" "+*" "*++*" "....." },
-    { "ratcheting", "++.+*" "*..*" "++" "****" "....*" },
-    { "bearing_inner_race", ".*..." "*..." "*+" "...." "...+." },
-    { "bearing_outer_race", ".*..." "*..." "*+" "...." "..+.." },
-    { "bearing_ball", ".*..." "*..." "*+" "...." ".+..." },
-    { "bearing_cage", ".*..." "*..." "*." "...." "+...." },
-    { "circular_spline_tooth", ".+..." "...." "**" "...+" "....*" },
+    { "none",
+      "....."
+      "...."
+      ".."
+      "...."
+      "....." },
+    { "interface_wear",
+      ".*-*."
+      "++*-"
+      "*."
+      ".**."
+      "....." },
+    { "rear_section_crack",
+      ".*-.*"
+      "...."
+      "*."
+      "**.."
+      "....." },
+    { "lubricant_degradation",
+      "....."
+      "+++-"
+      ".."
+      "...."
+      "....." },
+    { "tooth_wear",
+      ".*-++"
+      "***."
+      "**"
+      ".**."
+      "....*" },
+    { "tooth_root_crack",
+      ".+*.."
+      "...."
+      "**"
+      ".+**"
+      "....*" },
+    { "flange_crack",
+      ".*-*."
+      "...."
+      "*."
+      "+*.."
+      "....." },
+    { "tooth_tip_crack",
+      ".+..."
+      "...."
+      "++"
+      ".+**"
+      "....*" },
+    { "pitting",
+      ".**.."
+      "**.*"
+      "++"
+      ".***"
+      "....+" },
+    { "wave_generator_wear",
+      ".+-+."
+      "--*+"
+      "*."
+      ".++."
+      "....." },
+    { "flexspline_crack",
+      ".+-.."
+      "...."
+      "*."
+      ".++."
+      "....." },
+    { "buckling",
+      "++-++"
+      "**.-"
+      "+*"
+      "*++*"
+      "....." },
+    { "ratcheting",
+      "++.+*"
+      "*..*"
+      "++"
+      "****"
+      "....*" },
+    { "bearing_inner_race",
+      ".*..."
+      "*..."
+      "*+"
+      "...."
+      "...+." },
+    { "bearing_outer_race",
+      ".*..."
+      "*..."
+      "*+"
+      "...."
+      "..+.." },
+    { "bearing_ball",
+      ".*..."
+      "*..."
+      "*+"
+      "...."
+      ".+..." },
+    { "bearing_cage",
+      ".*..."
+      "*..."
+      "*."
+      "...."
+      "+...." },
+    { "circular_spline_tooth",
+      ".+..."
+      "...."
+      "**"
+      "...+"
+      "....*" },
 } };
 
 Move moveOf(char letter) noexcept
@@ -189,8 +279,8 @@ std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) 
       if (scores[feature].compared)
       {
         const double score = std::clamp(scores[feature].score, -LARGEST_SCORE, LARGEST_SCORE);
-        logs[cause] += std::log(
-            likelihood(score, expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature))));
+        logs[cause] +=
+            std::log(likelihood(score, expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature))));
       }
     }
     largest = std::max(largest, logs[cause]);

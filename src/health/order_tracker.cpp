@@ -10,7 +10,7 @@ namespace hjt
 namespace
 {
 constexpr double MOST_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
-constexpr double USED_BAND = 0.8;        // of half the samples a turn [-]
+constexpr double USED_BAND = 0.8;       // of half the samples a turn [-]
 }  // namespace
 
 double LineFit::amplitude() const noexcept

@@ -28,11 +28,21 @@ constexpr std::array<std::array<const char*, 2>, SCALAR_COUNT> SCALARS{ {
     { "residual_kurtosis", "-" },
     { "residual_crest", "-" },
 } };
-constexpr std::array<const char*, LINE_COUNT> LINES{
-  "wave_generator_1", "wave_generator_2", "wave_generator_4", "circular_spline_2", "cage",
-  "ball",             "ball_double",      "outer",            "outer_below",       "outer_above",
-  "inner",            "inner_below",      "inner_above",      "tooth_pass",        "tooth_pass_above"
-};
+constexpr std::array<const char*, LINE_COUNT> LINES{ "wave_generator_1",
+                                                     "wave_generator_2",
+                                                     "wave_generator_4",
+                                                     "circular_spline_2",
+                                                     "cage",
+                                                     "ball",
+                                                     "ball_double",
+                                                     "outer",
+                                                     "outer_below",
+                                                     "outer_above",
+                                                     "inner",
+                                                     "inner_below",
+                                                     "inner_above",
+                                                     "tooth_pass",
+                                                     "tooth_pass_above" };
 constexpr std::array<std::array<const char*, 2>, LINE_SIGNALS> SIGNALS{ { { "error", "rad" }, { "torque", "N.m" } } };
 
 std::array<Label, INDICATOR_COUNT> makeLabels()

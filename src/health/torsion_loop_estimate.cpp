@@ -106,7 +106,8 @@ void TorsionLoopEstimate::fit() noexcept
   const Branch& falling = branches_[FALLING];
   if (rising.count > 0.0 && falling.count > 0.0)
   {
-    const auto offset = [slope](const Branch& branch) { return (branch.torsion - slope * branch.torque) / branch.count; };
+    const auto offset = [slope](const Branch& branch)
+    { return (branch.torsion - slope * branch.torque) / branch.count; };
     lost_motion_ = { true, offset(falling) - offset(rising) };
   }
 }

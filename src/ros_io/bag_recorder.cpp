@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-BagRecorder::BagRecorder(Twin& twin, const std::string& joint_namespace, BagWriter& bag)
+BagRecorder::BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag)
   : bag_(bag)
   , schedule_(twin.parameters())
   , tooth_forces_(twin.makeToothForces())
@@ -18,7 +18,6 @@ BagRecorder::BagRecorder(Twin& twin, const std::string& joint_namespace, BagWrit
   , indicators_(makeIndicators(JointNames(twin.parameters().joint.name)))
   , assessment_(makeAssessment(JointNames(twin.parameters().joint.name)))
 {
-  twin.watchSignals(true);
 }
 
 void BagRecorder::record(Twin& twin)
@@ -52,7 +51,7 @@ void BagRecorder::record(Twin& twin)
     fillHealth(outputs, twin.health(), health_);
     bag_.write(prefix_ + topics::HEALTH, stamp, health_);
   }
-  if (schedule_.isDue(Output::INDICATORS, stamp))
+  if (twin.watchesSignals() && schedule_.isDue(Output::INDICATORS, stamp))
   {
     fillIndicators(stamp, twin.signalIndicators(), indicators_);
     bag_.write(prefix_ + topics::INDICATORS, stamp, indicators_);

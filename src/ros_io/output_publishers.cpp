@@ -90,7 +90,7 @@ void OutputPublishers::offer(Twin& twin) noexcept
 
 std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
 {
-  return { joint_states_.counters(), encoders_.counters(), contact_forces_.counters(),
+  return { joint_states_.counters(), encoders_.counters(),   contact_forces_.counters(),
            health_.counters(),       indicators_.counters(), assessment_.counters() };
 }
 

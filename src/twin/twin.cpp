@@ -95,7 +95,7 @@ struct Twin::Impl
   SignalMonitor signals;
   Assessor assessor;
   Stamp steps_per_sample;
-  bool watching{};  // indicators are made of the readings
+  bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
@@ -368,6 +368,11 @@ HealthReport Twin::health() noexcept
 void Twin::watchSignals(bool on) noexcept
 {
   impl_->watching = on;
+}
+
+bool Twin::watchesSignals() const noexcept
+{
+  return impl_->watching;
 }
 
 const SignalIndicators& Twin::signalIndicators() const noexcept

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -12,6 +14,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
 #include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 
@@ -35,10 +38,10 @@ public:
   {
   }
 
-  std::function<double(double)> speed = [](double) { return 100.0; };                   // of time [rad/s]
-  std::function<double(double)> load = [](double) { return 0.0; };                      // of time [N.m]
-  std::function<double(double, double)> error = [](double, double) { return 0.0; };     // motor angle, load [rad]
-  std::function<double(double, double)> torque = [](double, double) { return 0.1; };    // motor angle, speed [N.m]
+  std::function<double(double)> speed = [](double) { return 100.0; };                 // of time [rad/s]
+  std::function<double(double)> load = [](double) { return 0.0; };                    // of time [N.m]
+  std::function<double(double, double)> error = [](double, double) { return 0.0; };   // motor angle, load [rad]
+  std::function<double(double, double)> torque = [](double, double) { return 0.1; };  // motor angle, speed [N.m]
   bool quantised = true;
 
   /// One sample; true if it completed a window.
@@ -104,12 +107,12 @@ void expectLinesRecovered(const std::function<double(double)>& speed)
   joint.speed = speed;
   joint.error = [&](double angle, double)
   {
-    return ARCSEC * (joint.line(Line::WAVE_GENERATOR_1, 2.0, 0.4, angle) +
-                     joint.line(Line::WAVE_GENERATOR_2, 5.0, 1.0, angle) +
-                     joint.line(Line::WAVE_GENERATOR_4, 1.5, -2.0, angle) +
-                     joint.line(Line::CIRCULAR_SPLINE_2, 0.8, 2.5, angle) + joint.line(Line::CAGE, 0.5, 0.1, angle) +
-                     joint.line(Line::BALL, 0.3, 0.7, angle) + joint.line(Line::OUTER, 1.0, 0.0, angle) +
-                     joint.line(Line::INNER_ABOVE, 0.6, 3.0, angle));
+    return ARCSEC *
+           (joint.line(Line::WAVE_GENERATOR_1, 2.0, 0.4, angle) + joint.line(Line::WAVE_GENERATOR_2, 5.0, 1.0, angle) +
+            joint.line(Line::WAVE_GENERATOR_4, 1.5, -2.0, angle) +
+            joint.line(Line::CIRCULAR_SPLINE_2, 0.8, 2.5, angle) + joint.line(Line::CAGE, 0.5, 0.1, angle) +
+            joint.line(Line::BALL, 0.3, 0.7, angle) + joint.line(Line::OUTER, 1.0, 0.0, angle) +
+            joint.line(Line::INNER_ABOVE, 0.6, 3.0, angle));
   };
   const SignalIndicators& found = joint.nextWindow();
   const auto amplitude = [&](Line line) { return found.amplitude(LineSignal::KINEMATIC_ERROR, line) / ARCSEC; };
@@ -425,6 +428,44 @@ TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
     const auto best = std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin();
     EXPECT_STREQ(causeName(static_cast<Cause>(best)), causeName(static_cast<Cause>(cause)));
   }
+}
+/// The twin held at 150 rad/s under a load that swings; its indicators of the second window of 30 turns.
+SignalIndicators twinIndicators(std::vector<std::string> edits)
+{
+  edits.insert(edits.end(), { "indicators.window_turns=30.0", "output.load_inertia=0.5" });
+  Twin twin(shippedParameters(edits));
+  twin.watchSignals(true);
+  double held_back = 0.0;  // integral part of the speed control [N.m]
+  const double step = 1e-9 * static_cast<double>(twin.stepLength());
+  while (twin.signalIndicators().windows < 2)
+  {
+    const double missing = 150.0 - twin.outputs().motor_velocity;
+    held_back += 0.2 * missing * step;
+    twin.commandMotorTorque(twin.stamp() + twin.stepLength(), 0.02 * missing + held_back);
+    twin.commandLoadTorque(twin.stamp() + twin.stepLength(),
+                           12.0 * std::sin(TWO_PI * 3.0 * 1e-9 * static_cast<double>(twin.stamp())));
+    twin.step(twin.stamp() + twin.stepLength());
+  }
+  return twin.signalIndicators();
+}
+
+TEST(TwinsIndicators, FollowPhysicalEdits)
+{
+  const SignalIndicators healthy = twinIndicators({});
+  const double stiffness = healthy[ScalarIndicator::TORSIONAL_STIFFNESS];
+  EXPECT_GT(stiffness, 20e3);
+  EXPECT_LT(stiffness, 50e3);
+  EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 1e-5);
+
+  const SignalIndicators soft_cup =
+      twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
+  EXPECT_LT(soft_cup[ScalarIndicator::TORSIONAL_STIFFNESS], 0.95 * stiffness);
+
+  const SignalIndicators thick_grease = twinIndicators({ "motor.viscous_friction=1.066e-3" });
+  EXPECT_NEAR(thick_grease[ScalarIndicator::RUNNING_TORQUE] - healthy[ScalarIndicator::RUNNING_TORQUE], 0.15, 0.03);
+
+  const SignalIndicators worn_teeth = twinIndicators({ "mesh.flank_clearance=5.0e-6" });
+  EXPECT_GT(worn_teeth[ScalarIndicator::LOST_MOTION], healthy[ScalarIndicator::LOST_MOTION]);
 }
 }  // namespace
 }  // namespace hjt

@@ -71,7 +71,8 @@ enum class BaselineState : std::uint8_t
 /// Law:   t = (x - m) / sqrt(max(s^2, u^2) (1 + 1/n) + (f m)^2 + q^2),
 ///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
-///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes
+///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
+///          0.3 for kurtosis, 0.5 for crest
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
 /// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
 class Baseline

@@ -13,8 +13,9 @@ namespace hjt
 class BagRecorder
 {
 public:
-  /// Has the twin watch its signals. `joint_namespace`: of the node, e.g. "/joint_twin".
-  BagRecorder(Twin& twin, const std::string& joint_namespace, BagWriter& bag);
+  /// Indicators and assessment are only written if the twin watches its signals.
+  /// `joint_namespace`: of the node, e.g. "/joint_twin".
+  BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
 
   /// To be called after every step of the twin.
   void record(Twin& twin);

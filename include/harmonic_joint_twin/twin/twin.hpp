@@ -144,6 +144,7 @@ public:
   /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with
   /// `reset`.
   void watchSignals(bool on) noexcept;
+  bool watchesSignals() const noexcept;
   const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
   const Assessment& assessment() const noexcept;
 

@@ -115,12 +115,9 @@ Json toJson(const Assessment& assessment)
                          { "expected", numberOrNull(item.expected) },
                          { "score", numberOrNull(item.score) } });
   }
-  return { { "state", stateName(assessment.state) },
-           { "level", levelName(assessment.level) },
-           { "cause", causeName(assessment.cause) },
-           { "confidence", assessment.confidence },
-           { "largest_score", assessment.largest_score },
-           { "evidence", evidence } };
+  return { { "state", stateName(assessment.state) },      { "level", levelName(assessment.level) },
+           { "cause", causeName(assessment.cause) },      { "confidence", assessment.confidence },
+           { "largest_score", assessment.largest_score }, { "evidence", evidence } };
 }
 
 Json toJson(const WindowResult& window)
@@ -157,8 +154,9 @@ void writeWindows(const std::string& path, const std::vector<WindowResult>& wind
   {
     const SignalIndicators& indicators = window.indicators;
     const OperatingPoint& point = indicators.point;
-    std::vector<double> row{ toSeconds(indicators.stamp), indicators.turns, point.speed, point.direction, point.load,
-                             point.temperature };
+    std::vector<double> row{
+      toSeconds(indicators.stamp), indicators.turns, point.speed, point.direction, point.load, point.temperature
+    };
     row.insert(row.end(), indicators.values.begin(), indicators.values.end());
     row.insert(row.end(), { static_cast<double>(window.assessment.level), static_cast<double>(window.assessment.cause),
                             window.assessment.confidence, window.assessment.largest_score });
@@ -270,11 +268,11 @@ int run(IndicatorsOptions options)
     {
       list.push_back(toJson(window));
     }
-    std::cout << Json{ { "threshold", assessor.baseline().threshold() },
-                       { "windows", list },
-                       { "assessment", toJson(windows.back().assessment) } }
-                     .dump(2)
-              << '\n';
+    std::cout << Json{
+      { "threshold", assessor.baseline().threshold() },
+      { "windows", list },
+      { "assessment", toJson(windows.back().assessment) }
+    }.dump(2) << '\n';
   }
   else
   {
@@ -300,19 +298,26 @@ void addSourceOptions(CLI::App& command, IndicatorsOptions& options)
                   "motor torque per unit of what is recorded for it [N.m], for a current: gain / ratio [N.m/A]")
       ->capture_default_str()
       ->check(FINITE);
-  command.add_option("--states-topic", options.states_topic, "bag: JointState messages; default: NAMESPACE/joint_states")
+  command
+      .add_option("--states-topic", options.states_topic, "bag: JointState messages; default: NAMESPACE/joint_states")
       ->type_name("TOPIC");
-  command.add_option("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load")->type_name("TOPIC");
+  command.add_option("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load")
+      ->type_name("TOPIC");
 }
 }  // namespace
 
 void addIndicatorsCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<IndicatorsOptions>();
-  auto* command = app.add_subcommand("indicators", "health indicators and assessment of a recording, from encoders and "
-                                                   "torque or current alone");
-  command->add_option("recording", options->recording, "the recording")->required()->type_name("IN.csv|IN.bag")->check(BAG_OR_CSV);
-  command->add_option("--model", options->model, "the twin's own recording of the same run: its indicators are taken off")
+  auto* command = app.add_subcommand("indicators",
+                                     "health indicators and assessment of a recording, from encoders and "
+                                     "torque or current alone");
+  command->add_option("recording", options->recording, "the recording")
+      ->required()
+      ->type_name("IN.csv|IN.bag")
+      ->check(BAG_OR_CSV);
+  command
+      ->add_option("--model", options->model, "the twin's own recording of the same run: its indicators are taken off")
       ->type_name("FILE.csv|FILE.bag")
       ->check(BAG_OR_CSV);
   command->add_option("--baseline", options->baseline, "healthy reference; default: learned from the first windows")

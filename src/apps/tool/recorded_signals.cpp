@@ -129,8 +129,8 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
   }
   if (samples == 0)
   {
-    throw InputError(path + " has no state of " + source.joint + " on " + source.states_topic + "; it holds:" +
-                     listTopics(bag));
+    throw InputError(path + " has no state of " + source.joint + " on " + source.states_topic +
+                     "; it holds:" + listTopics(bag));
   }
 }
 }  // namespace

@@ -22,8 +22,8 @@ struct SignalSource
   // Topics of a bag.
   std::string states_topic;
   std::string load_topic;
-  std::string joint;            ///< its name in both
-  double torque_scale{ 1.0 };   ///< motor torque per unit of what is recorded for it
+  std::string joint;           ///< its name in both
+  double torque_scale{ 1.0 };  ///< motor torque per unit of what is recorded for it
 };
 
 /// Gives every sample of a CSV file or a bag to `take`, in order of time, until that returns false.
