@@ -17,9 +17,9 @@ constexpr double LOAD_STEP = 25.0;         // [N.m]
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
 constexpr double COUNT_SHARE = 0.1;        // of an encoder count that a window's mean may wander by
-constexpr double KURTOSIS_FLOOR = 0.3;     // moments of the residual are no normal quantities: these are not looked into
+constexpr double KURTOSIS_FLOOR = 0.3;  // moments of the residual are no normal quantities: these are not looked into
 constexpr double CREST_FLOOR = 0.5;
-constexpr int LEAST_COUNT = 3;             // windows before a spread means anything
+constexpr int LEAST_COUNT = 3;  // windows before a spread means anything
 
 int stepOf(double value, double step) noexcept
 {

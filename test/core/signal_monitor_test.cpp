@@ -457,8 +457,7 @@ TEST(TwinsIndicators, FollowPhysicalEdits)
   EXPECT_LT(stiffness, 50e3);
   EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 1e-5);
 
-  const SignalIndicators soft_cup =
-      twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
+  const SignalIndicators soft_cup = twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
   EXPECT_LT(soft_cup[ScalarIndicator::TORSIONAL_STIFFNESS], 0.95 * stiffness);
 
   const SignalIndicators thick_grease = twinIndicators({ "motor.viscous_friction=1.066e-3" });

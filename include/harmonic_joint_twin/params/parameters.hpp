@@ -235,6 +235,14 @@ struct PublishParameters
   double indicators_rate{};
 };
 
+struct RealtimeParameters
+{
+  double deadline{};
+  int priority{};
+  bool lock_memory{};
+  int processor{};
+};
+
 struct JointParameters
 {
   std::string name{};
@@ -261,5 +269,6 @@ struct Parameters
   IndicatorParameters indicators;
   InputParameters input;
   PublishParameters publish;
+  RealtimeParameters realtime;
 };
 }  // namespace hjt

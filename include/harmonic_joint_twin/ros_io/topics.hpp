@@ -16,5 +16,6 @@ constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, 
 constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
 constexpr const char* INDICATORS = "indicators";                      ///< out, harmonic_joint_twin/Indicators
 constexpr const char* ASSESSMENT = "assessment";                      ///< out, harmonic_joint_twin/Assessment
+constexpr const char* TIMING = "timing";                              ///< out, live only, harmonic_joint_twin/Timing
 }  // namespace topics
 }  // namespace hjt
