@@ -32,11 +32,11 @@ struct Twin::Impl
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
+    if (given.solver.scene == SceneKind::AUTO)
     {
-      if (std::optional<SurfaceTable> table = obtainSurface(given, surface_source))
+      if (std::optional<SurfaceTables> tables = obtainSurface(given, faults, surface_source))
       {
-        surface.emplace(std::move(*table));
+        surface.emplace(std::move(tables->table), std::move(tables->departures));
         stepper.useSurface(&*surface);
       }
     }
@@ -220,7 +220,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
   loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
-  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
   loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "harmonic_joint_twin/model/tooth_faults.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/response_surface.hpp"
 
@@ -21,12 +22,21 @@ struct SurfaceSource
 /// $XDG_CACHE_HOME/harmonic_joint_twin, or ~/.cache/harmonic_joint_twin; empty if there is no home.
 std::string surfaceCacheDirectory();
 
-/// The surface of these parameters: from the cache, or built and put there. Nothing if the gear has none.
-///
-/// A file counts only if it names this format, holds the very same parameters and its sum is right; else it is built
-/// anew and written over. Files appear whole or not at all.
-std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const SurfaceSource& source);
+/// A surface's tables.
+struct SurfaceTables
+{
+  SurfaceTable table;
+  DepartureTable departures;
+};
 
-/// File of these parameters within the directory.
+/// The surface of a gear with these faults: from the cache, or built and put there. Nothing if the gear has none.
+///
+/// Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as departure from one
+/// of equal teeth. A file counts only if it names this format, holds the very same parameters and faults and its sum is
+/// right; else it is built anew and written over. Files appear whole or not at all.
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const ToothFaults& faults,
+                                           const SurfaceSource& source);
+
+/// File of the surface of these parameters, all teeth equal, within the directory.
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);
 }  // namespace hjt
