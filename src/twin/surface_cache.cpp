@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/params/text_hash.hpp"
 #include "harmonic_joint_twin/twin/departure_builder.hpp"
 #include "harmonic_joint_twin/twin/surface_builder.hpp"
 #include "harmonic_joint_twin/twin/surface_ring.hpp"
@@ -58,17 +59,6 @@ constexpr std::array<const char*, 23> OTHER_KEYS{ "joint.",
                                                   "output.gravity_angle" };
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
-
-/// Fowler, Noll, Vo, 1a, 64 bits.
-std::uint64_t hashOf(std::string_view text)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text)
-  {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  }
-  return hash;
-}
 
 /// Format and every parameter that the ring may depend on.
 std::string parametersOfTheRing(const Parameters& parameters)
@@ -254,7 +244,7 @@ bool readFile(const std::string& path, const std::string& wanted, Table& table)
   const std::string_view rest = std::string_view(bytes).substr(wanted.size());
   const std::string_view values = rest.substr(0, rest.size() - sizeof(sum));
   std::memcpy(&sum, rest.data() + values.size(), sizeof(sum));
-  return sum == hashOf(values) && parseBody(values, table);
+  return sum == textHash(values) && parseBody(values, table);
 }
 
 /// @returns what went wrong, or nothing.
@@ -286,7 +276,7 @@ std::string writeFile(const std::string& path, const std::string& bytes)
 std::string fileOf(const std::string& kind, const std::string& key, const std::string& directory)
 {
   std::ostringstream name;
-  name << directory << '/' << kind << '_' << std::hex << hashOf(key) << ".bin";
+  name << directory << '/' << kind << '_' << std::hex << textHash(key) << ".bin";
   return name.str();
 }
 
@@ -318,7 +308,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   if (kept)
   {
     std::string bytes = body(built.table);
-    const std::uint64_t sum = hashOf(bytes);
+    const std::uint64_t sum = textHash(bytes);
     append(bytes, &sum, 1);
     const std::string problem = writeFile(path, key + bytes);
     if (!problem.empty())
@@ -385,5 +375,54 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const T
     tables.departures = std::move(*departures);
   }
   return tables;
+}
+
+SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
+{
+  std::promise<Surface> promise;
+  std::shared_future<Surface> surface;
+  bool mine = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.first == key; });
+    mine = found == entries_.end();
+    if (mine)
+    {
+      entries_.emplace_front(key, promise.get_future().share());
+      if (entries_.size() > kept_)
+      {
+        entries_.pop_back();
+      }
+    }
+    else
+    {
+      entries_.splice(entries_.begin(), entries_, found);
+    }
+    surface = entries_.front().second;
+  }
+  if (mine)
+  {
+    try
+    {
+      promise.set_value(make());
+    }
+    catch (...)
+    {
+      promise.set_exception(std::current_exception());
+    }
+  }
+  return surface.get();
+}
+
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& source)
+{
+  const auto make = [&]() -> SurfacePool::Surface
+  {
+    std::optional<SurfaceTables> tables = obtainSurface(parameters, faults, source);
+    return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->departures)) :
+                    nullptr;
+  };
+  return source.pool ? source.pool->obtain(header(parameters, faults), make) : make();
 }
 }  // namespace hjt

@@ -183,6 +183,14 @@ struct SensorParameters
   int motor_counts_per_turn{};
   int output_bits{};
   double velocity_window{};
+  double motor_eccentricity{};
+  double motor_noise{};
+  double output_eccentricity{};
+  double output_noise{};
+  double torque_noise{};
+  double torque_resolution{};
+  double delay{};
+  int noise_seed{};
 };
 
 struct HealthParameters
