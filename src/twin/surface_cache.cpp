@@ -75,26 +75,17 @@ std::string parametersOfTheRing(const Parameters& parameters)
 }
 
 /// The same with the faults, and with what stands in files that the parameters name.
-std::string header(const Parameters& parameters, const ToothFaults& faults)
+std::string header(const Parameters& parameters, const std::string& faults)
 {
-  std::ostringstream text;
-  text << parametersOfTheRing(parameters);
-  for (const auto& [name, numbers] : { std::pair("missing", &faults.missing), std::pair("cut", &faults.cut) })
-  {
-    text << name;
-    for (const int number : *numbers)
-    {
-      text << ' ' << number;
-    }
-    text << '\n';
-  }
+  std::string text = parametersOfTheRing(parameters) + faults + '\n';
   for (const std::string& path :
        { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })
   {
     std::ifstream file(path, std::ios::binary);
-    text << std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>()) << '\n';
+    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    text += '\n';
   }
-  return text.str() + '\n';
+  return text;
 }
 
 /// These parameters with teeth and spaces that are all equal.
@@ -338,14 +329,13 @@ std::string surfaceCacheFile(const Parameters& parameters, const std::string& di
   return fileOf("surface", header(parameters, {}), directory);
 }
 
-std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const ToothFaults& faults,
-                                           const SurfaceSource& source)
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
+                                           const std::string& faults, const SurfaceSource& source)
 {
-  const JointModel actual = makeFaultyJoint(parameters, faults);
   // The cache is asked only for gears that repeat: what stops others is not in its keys.
-  const int repetition = SurfaceRing(parameters, actual).repetition();
+  const int repetition = SurfaceRing(parameters, model).repetition();
   const Parameters equal_parameters = repetition == 1 ? parameters : withEqualTeeth(parameters);
-  const JointModel equal = repetition == 1 ? actual : JointModel(equal_parameters);
+  const JointModel equal = repetition == 1 ? model : JointModel(equal_parameters);
   if (repetition == 0 || (repetition > 1 && SurfaceRing(equal_parameters, equal).repetition() != 1))
   {
     tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
@@ -365,7 +355,7 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const T
         "departures", header(parameters, faults), source,
         [&]
         {
-          return buildDepartures(parameters, equal, actual, repetition, tables.table.lines.front(),
+          return buildDepartures(parameters, equal, model, repetition, tables.table.lines.front(),
                                  tables.table.lines.back(), source.progress);
         });
     if (!departures)
@@ -415,11 +405,12 @@ SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::func
   return surface.get();
 }
 
-SurfacePool::Surface sharedSurface(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& source)
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
+                                   const SurfaceSource& source)
 {
   const auto make = [&]() -> SurfacePool::Surface
   {
-    std::optional<SurfaceTables> tables = obtainSurface(parameters, faults, source);
+    std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
     return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->departures)) :
                     nullptr;
   };

@@ -5,15 +5,36 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/surface_worker.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// What the faults changed, for the cache of surfaces.
+std::string keyOf(const ToothFaults& faults)
+{
+  std::ostringstream text;
+  for (const int tooth : faults.missing)
+  {
+    text << "missing " << tooth << ' ';
+  }
+  for (const int tooth : faults.cut)
+  {
+    text << "cut " << tooth << ' ';
+  }
+  return text.str();
+}
+}  // namespace
+
 struct Twin::Impl
 {
   Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
@@ -28,9 +49,14 @@ struct Twin::Impl
   {
     if (given.solver.scene == SceneKind::AUTO)
     {
-      surface = sharedSurface(given, faults, surface_source);
-      if (surface)
+      if (surface_source.background)
       {
+        surface_awaited = true;
+        surface_worker = std::make_unique<SurfaceWorker>(given, model, keyOf(faults), surface_source);
+      }
+      else
+      {
+        surface = sharedSurface(given, model, keyOf(faults), surface_source);
         stepper.useSurface(surface.get());
       }
     }
@@ -60,6 +86,7 @@ struct Twin::Impl
 
   void step() noexcept;
   void takeInputs() noexcept;
+  void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
@@ -70,6 +97,8 @@ struct Twin::Impl
   Parameters parameters;
   JointModel model;
   std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -119,6 +148,20 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
+/// The surface that was built beside, when it is there.
+void Twin::Impl::takeSurface() noexcept
+{
+  if (surface_awaited)
+  {
+    const ResponseSurface* ready = surface_worker->surface();
+    if (ready != nullptr)
+    {
+      surface_awaited = false;
+      stepper.useSurface(ready);
+    }
+  }
+}
+
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
@@ -143,6 +186,7 @@ void Twin::Impl::step() noexcept
   now += step_length;
   simulated_until = now;
   takeInputs();
+  takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
   const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
   ++counters.steps;

@@ -66,7 +66,8 @@ SurfaceSource cached()
 
 const ResponseSurface& surface()
 {
-  static const ResponseSurface shipped(obtainSurface(surfaceParameters(), {}, cached())->table);
+  static const ResponseSurface shipped(
+      obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", cached())->table);
   return shipped;
 }
 
@@ -298,16 +299,21 @@ const ToothFaults& brokenTooth()
   return faults;
 }
 
+JointModel brokenModel()
+{
+  return makeFaultyJoint(surfaceParameters(), brokenTooth());
+}
+
 /// What a broken tooth changes, at the same angles: to a hundredth of its largest effect, root mean square.
 TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
 {
   const Parameters parameters = surfaceParameters();
-  const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenTooth(), cached());
+  const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenModel(), "missing 40 ", cached());
   ASSERT_TRUE(tables);
   ASSERT_EQ(tables->departures.pitches.size(), 100u);  // half a turn
   const ResponseSurface faulty(tables->table, tables->departures);
   SurfaceRing sound_ring(parameters, JointModel(parameters));
-  SurfaceRing faulty_ring(parameters, makeFaultyJoint(parameters, brokenTooth()));
+  SurfaceRing faulty_ring(parameters, brokenModel());
   ASSERT_TRUE(sound_ring.insert() && faulty_ring.insert());
   std::mt19937 random(8);
   std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -346,7 +352,8 @@ TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
 /// Energy and torques are continuous where the tables of two pitches meet, whatever lines they have.
 TEST(Departures, AreContinuousFromPitchToPitch)
 {
-  const std::optional<SurfaceTables> tables = obtainSurface(surfaceParameters(), brokenTooth(), cached());
+  const std::optional<SurfaceTables> tables =
+      obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ", cached());
   ASSERT_TRUE(tables);
   const ResponseSurface faulty(tables->table, tables->departures);
   constexpr double BESIDE = 1e-12;  // rad
@@ -370,10 +377,10 @@ TEST(Departures, AreContinuousFromPitchToPitch)
 
 TEST(Departures, ComeFromTheCacheAsTheyWereBuilt)
 {
-  const std::optional<SurfaceTables> built = obtainSurface(surfaceParameters(), brokenTooth(), cached());
+  const std::optional<SurfaceTables> built = obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ", cached());
   bool building = false;
-  const std::optional<SurfaceTables> kept =
-      obtainSurface(surfaceParameters(), brokenTooth(), { cacheDirectory(), [&](double) { building = true; }, {} });
+  const std::optional<SurfaceTables> kept = obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ",
+                                                          { cacheDirectory(), [&](double) { building = true; }, {} });
   ASSERT_TRUE(built && kept);
   EXPECT_FALSE(building);
   ASSERT_EQ(built->departures.pitches.size(), kept->departures.pitches.size());
@@ -426,6 +433,55 @@ TEST(SceneAuto, ABrokenToothShowsInTheTorsionAsOnTheFullRing)
   EXPECT_LT(std::sqrt(miss_squares / squares), 0.015);
 }
 
+/// The full ring from the first instant, and the surface as soon as it is there, without a step in the torque.
+TEST(SceneAuto, RunsOnTheFullRingWhileTheSurfaceIsBuiltBeside)
+{
+  surface();  // so that it only has to be read
+  Twin reference(shippedParameters({ "input.command_timeout=10.0" }));
+  SurfaceSource beside = cached();
+  beside.background = true;
+  Twin twin(surfaceParameters(), {}, beside);
+  EXPECT_FALSE(twin.onSurface());
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  double largest_step = 0.0;
+  double step_at_change = 0.0;
+  for (int after = 0; after < 200 && std::chrono::steady_clock::now() < deadline; after += twin.onSurface() ? 1 : 0)
+  {
+    const bool was_on_surface = twin.onSurface();
+    const double torque = twin.outputs().joint_torque;
+    for (Twin* each : { &reference, &twin })
+    {
+      each->commandMotorTorque(each->stamp(), 0.3 - 0.01 * each->outputs().motor_velocity);
+      each->step(each->stamp() + each->stepLength());
+    }
+    const double step = std::abs(twin.outputs().joint_torque - torque);
+    if (twin.onSurface() != was_on_surface)
+    {
+      step_at_change = step;
+    }
+    else if (!twin.onSurface())
+    {
+      ASSERT_EQ(numbers(twin.outputs()), numbers(reference.outputs()));
+      largest_step = std::max(largest_step, step);
+    }
+  }
+  EXPECT_TRUE(twin.onSurface());
+  EXPECT_LT(step_at_change, largest_step + 1e-3);
+}
+
+/// A twin that goes before its surface is built does not wait for it.
+TEST(SceneAuto, GivesUpASurfaceThatIsNotWaitedFor)
+{
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    SurfaceSource beside;
+    beside.background = true;
+    Twin twin(surfaceParameters(), {}, beside);
+    twin.step(twin.stepLength());
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
 TEST(SurfaceRing, TellsAfterHowManyPitchesTheGearIsTheSameAgain)
 {
   const auto repetition = [](const std::string& error)
@@ -459,14 +515,14 @@ TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
   const auto size = fs::file_size(file);
   int built = 0;
   const SurfaceSource counting{ cacheDirectory(), [&](double done) { built += done >= 1.0 ? 1 : 0; }, {} };
-  ASSERT_TRUE(obtainSurface(surfaceParameters(), {}, counting));
+  ASSERT_TRUE(obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", counting));
   EXPECT_EQ(built, 0);
   {
     std::fstream spoilt(file, std::ios::in | std::ios::out | std::ios::binary);
     spoilt.seekp(static_cast<std::streamoff>(size / 2));
     spoilt.put('!');
   }
-  ASSERT_TRUE(obtainSurface(surfaceParameters(), {}, counting));
+  ASSERT_TRUE(obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", counting));
   EXPECT_EQ(built, 1);
   EXPECT_EQ(fs::file_size(file), size);
   EXPECT_NE(surfaceCacheFile(shippedParameters({ "mesh.stiffness=1.0e+7" }), "x"),
