@@ -87,6 +87,10 @@ void checkElements(const Parameters& p, Contradictions& check)
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
                 "mesh.friction_kinetic = " + numberText(p.mesh.friction_kinetic) +
                     " [-] must not exceed mesh.friction_static = " + numberText(p.mesh.friction_static) + " [-]");
+  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
+                { "bearing.ball_diameter", "bearing.pitch_diameter" },
+                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
+                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
 }
 
 void checkRates(const Parameters& p, Contradictions& check)
@@ -107,6 +111,7 @@ void checkRates(const Parameters& p, Contradictions& check)
   check_rate("publish.encoders_rate", p.publish.encoders_rate);
   check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
   check_rate("publish.health_rate", p.publish.health_rate);
+  check_rate("publish.indicators_rate", p.publish.indicators_rate);
 }
 }  // namespace
 

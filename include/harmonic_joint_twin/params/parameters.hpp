@@ -122,6 +122,8 @@ struct BearingParameters
   double load_factor{};
   double race_preload{};
   double pitch_diameter{};
+  int balls{};
+  double ball_diameter{};
   double viscosity{};
   double viscosity_temperature{};
   double viscosity_slope{};
@@ -193,6 +195,23 @@ struct SensorParameters
   int noise_seed{};
 };
 
+/// Health indicators out of the drive's own signals, and what is made of them.
+struct IndicatorParameters
+{
+  double sample_rate{};
+  double window_turns{};
+  double window_time{};
+  double least_speed{};
+  double speed_change{};
+  double stiffness_torque{};
+  double lost_motion_torque{};
+  int baseline_windows{};
+  double least_spread{};
+  double false_alarm_rate{};
+  int confirm_windows{};
+  double error_factor{};
+};
+
 struct HealthParameters
 {
   double stiffness_torque_span{};
@@ -213,6 +232,7 @@ struct PublishParameters
   double encoders_rate{};
   double contact_forces_rate{};
   double health_rate{};
+  double indicators_rate{};
 };
 
 struct RealtimeParameters
@@ -246,6 +266,7 @@ struct Parameters
   SolverParameters solver;
   SensorParameters sensors;
   HealthParameters health;
+  IndicatorParameters indicators;
   InputParameters input;
   PublishParameters publish;
   RealtimeParameters realtime;
