@@ -17,27 +17,6 @@ namespace hjt
 {
 namespace
 {
-std::string valueText(const ParameterValue& configured)
-{
-  struct
-  {
-    std::string operator()(bool value) const { return value ? "true" : "false"; }
-    std::string operator()(std::int64_t value) const { return std::to_string(value); }
-    std::string operator()(double value) const { return numberText(value); }
-    std::string operator()(const std::string& value) const { return "'" + value + "'"; }
-    std::string operator()(const std::vector<double>& value) const
-    {
-      std::string text;
-      for (const double number : value)
-      {
-        text += (text.empty() ? "" : ", ") + numberText(number);
-      }
-      return "[" + text + "]";
-    }
-  } write;
-  return std::visit(write, configured.value);
-}
-
 /// Single edits (insert, delete, replace) between two texts (Levenshtein).
 std::size_t editDistance(const std::string& from, const std::string& to)
 {
@@ -298,6 +277,27 @@ void throwIfAny(const std::vector<std::string>& errors)
   throw ParameterError(text);
 }
 }  // namespace
+
+std::string valueText(const ParameterValue& configured)
+{
+  struct
+  {
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return std::to_string(value); }
+    std::string operator()(double value) const { return numberText(value); }
+    std::string operator()(const std::string& value) const { return "'" + value + "'"; }
+    std::string operator()(const std::vector<double>& value) const
+    {
+      std::string text;
+      for (const double number : value)
+      {
+        text += (text.empty() ? "" : ", ") + numberText(number);
+      }
+      return "[" + text + "]";
+    }
+  } write;
+  return std::visit(write, configured.value);
+}
 
 Parameters parseParameters(const ParameterMap& map)
 {

@@ -90,11 +90,7 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
 Value scalarValue(const YAML::Node& node, const std::string& origin, const std::string& key)
 {
   // yaml-cpp tags a quoted text "!", a plain one "?".
-  if (node.Tag() == "!")
-  {
-    return node.Scalar();
-  }
-  return plainValue(node.Scalar(), origin, key);
+  return parseScalar(node.Scalar(), node.Tag() == "!", key, origin).value;
 }
 
 Value listValue(const YAML::Node& node, const std::string& origin, const std::string& key)
@@ -206,6 +202,11 @@ void readYamlFile(const std::string& path, ParameterMap& map)
     fail(path, "expected one YAML document, found " + std::to_string(documents.size()));
   }
   readDocument(path, documents.front(), map);
+}
+
+ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin)
+{
+  return { quoted ? Value(text) : plainValue(text, origin, key), origin };
 }
 
 void readAssignment(const std::string& assignment, ParameterMap& map)

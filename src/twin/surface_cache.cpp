@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/params/text_hash.hpp"
 #include "harmonic_joint_twin/twin/surface_builder.hpp"
 
 namespace hjt
@@ -29,19 +30,8 @@ namespace fs = std::filesystem;
 /// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface 1\n";
 /// Sections that the ring in equilibrium does not depend on.
-constexpr std::array<const char*, 7> OTHER_SECTIONS{ "joint.",  "brake.", "solver.", "sensors.",
-                                                     "health.", "input.", "publish." };
-
-/// Fowler, Noll, Vo, 1a, 64 bits.
-std::uint64_t hashOf(std::string_view text)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text)
-  {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  }
-  return hash;
-}
+constexpr std::array<const char*, 8> OTHER_SECTIONS{ "joint.",  "brake.", "solver.",  "sensors.",
+                                                     "health.", "input.", "publish.", "realtime." };
 
 /// Format and every parameter that the surface may depend on.
 std::string header(const Parameters& parameters)
@@ -117,7 +107,7 @@ std::optional<SurfaceTable> readFile(const std::string& path, const std::string&
   const std::string_view rest = std::string_view(bytes).substr(wanted.size());
   const std::string_view values = rest.substr(0, rest.size() - sizeof(sum));
   std::memcpy(&sum, rest.data() + values.size(), sizeof(sum));
-  return sum == hashOf(values) ? parseBody(values) : std::nullopt;
+  return sum == textHash(values) ? parseBody(values) : std::nullopt;
 }
 
 /// @returns what went wrong, or nothing.
@@ -163,7 +153,7 @@ std::string surfaceCacheDirectory()
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory)
 {
   std::ostringstream name;
-  name << directory << "/surface_" << std::hex << hashOf(header(parameters)) << ".bin";
+  name << directory << "/surface_" << std::hex << textHash(header(parameters)) << ".bin";
   return name.str();
 }
 
@@ -202,7 +192,7 @@ std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const Su
   if (kept)
   {
     std::string bytes = body(build.table);
-    const std::uint64_t sum = hashOf(bytes);
+    const std::uint64_t sum = textHash(bytes);
     append(bytes, &sum, 1);
     const std::string problem = writeFile(path, key + bytes);
     if (!problem.empty())
@@ -211,5 +201,53 @@ std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const Su
     }
   }
   return std::move(build.table);
+}
+
+SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
+{
+  std::promise<Surface> promise;
+  std::shared_future<Surface> surface;
+  bool mine = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.first == key; });
+    mine = found == entries_.end();
+    if (mine)
+    {
+      entries_.emplace_front(key, promise.get_future().share());
+      if (entries_.size() > kept_)
+      {
+        entries_.pop_back();
+      }
+    }
+    else
+    {
+      entries_.splice(entries_.begin(), entries_, found);
+    }
+    surface = entries_.front().second;
+  }
+  if (mine)
+  {
+    try
+    {
+      promise.set_value(make());
+    }
+    catch (...)
+    {
+      promise.set_exception(std::current_exception());
+    }
+  }
+  return surface.get();
+}
+
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const SurfaceSource& source)
+{
+  const auto make = [&]() -> SurfacePool::Surface
+  {
+    std::optional<SurfaceTable> table = obtainSurface(parameters, source);
+    return table ? std::make_shared<const ResponseSurface>(std::move(*table)) : nullptr;
+  };
+  return source.pool ? source.pool->obtain(header(parameters), make) : make();
 }
 }  // namespace hjt

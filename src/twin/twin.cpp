@@ -10,9 +10,6 @@
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
-#include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
-#include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 
 namespace hjt
@@ -24,20 +21,17 @@ struct Twin::Impl
     , model(makeFaultyJoint(given, faults))
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
-    , motor_encoder(given.sensors)
-    , output_encoder(given.sensors)
-    , motor_velocity(given.sensors.velocity_window, 1.0 / given.solver.rate)
-    , output_velocity(given.sensors.velocity_window, 1.0 / given.solver.rate)
+    , sensors(given.sensors, 1.0 / given.solver.rate)
     , monitor(given.health, given.gear)
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
     if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
     {
-      if (std::optional<SurfaceTable> table = obtainSurface(given, surface_source))
+      surface = sharedSurface(given, surface_source);
+      if (surface)
       {
-        surface.emplace(std::move(*table));
-        stepper.useSurface(&*surface);
+        stepper.useSurface(surface.get());
       }
     }
     reset(0);
@@ -56,8 +50,7 @@ struct Twin::Impl
     load_torque = 0.0;
     load_clamped = false;
     brake_engaged = parameters.brake.engaged_at_start;
-    motor_velocity.reset();
-    output_velocity.reset();
+    sensors.reset();
     monitor.reset();
     outputs = {};
     steps_at_report = {};
@@ -76,7 +69,7 @@ struct Twin::Impl
 
   Parameters parameters;
   JointModel model;
-  std::optional<ResponseSurface> surface;
+  std::shared_ptr<const ResponseSurface> surface;
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -90,10 +83,7 @@ struct Twin::Impl
   bool load_clamped{};
   bool brake_engaged{};
   JointOutputs outputs;
-  IncrementalEncoder motor_encoder;
-  AbsoluteEncoder output_encoder;
-  VelocityEstimate motor_velocity;
-  VelocityEstimate output_velocity;
+  JointSensors sensors;
   HealthMonitor monitor;
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
@@ -190,11 +180,10 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.swing_phase = stepper.swingPhase();
 }
 
-/// What watches the joint step by step: encoder speeds and health.
+/// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
-  motor_velocity.update(motor_encoder.angle(motor_encoder.count(outputs.motor_angle)));
-  output_velocity.update(output_encoder.unwrappedAngle(outputs.output_angle));
+  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
 }
@@ -304,15 +293,12 @@ bool Twin::onSurface() const noexcept
 
 EncoderReadings Twin::encoders() const noexcept
 {
-  const JointOutputs& joint = impl_->outputs;
-  EncoderReadings readings;
-  readings.motor_count = impl_->motor_encoder.count(joint.motor_angle);
-  readings.motor_angle = impl_->motor_encoder.angle(readings.motor_count);
-  readings.motor_velocity = impl_->motor_velocity.velocity();
-  readings.output_count = impl_->output_encoder.count(joint.output_angle);
-  readings.output_angle = impl_->output_encoder.unwrappedAngle(joint.output_angle);
-  readings.output_velocity = impl_->output_velocity.velocity();
-  return readings;
+  return impl_->sensors.encoders();
+}
+
+double Twin::motorTorqueReading() const noexcept
+{
+  return impl_->sensors.motorTorque();
 }
 
 HealthReport Twin::health() noexcept

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -9,6 +10,7 @@
 #include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
 #include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
+#include "harmonic_joint_twin/sensors/joint_sensors.hpp"
 #include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
 #include "test/support/allocation_count.hpp"
 
@@ -139,6 +141,115 @@ TEST(Encoders, DoNotAllocate)
   }
   EXPECT_EQ(allocationCount(), before);
   EXPECT_GT(sum, 0.0);
+}
+
+constexpr double PERIOD = 1e-4;
+
+/// Readings of sensors that have seen `steps` steps of an even turning.
+std::vector<EncoderReadings> turning(const SensorParameters& parameters, int steps)
+{
+  JointSensors sensors(parameters, PERIOD);
+  std::vector<EncoderReadings> readings;
+  for (int step = 0; step < steps; ++step)
+  {
+    sensors.update(step, 0.01 * step, 1e-4 * step, 0.5);
+    readings.push_back(sensors.encoders());
+  }
+  return readings;
+}
+
+TEST(JointSensors, AreTheEncodersAloneWithoutErrors)
+{
+  const IncrementalEncoder motor(SENSORS);
+  const AbsoluteEncoder output(SENSORS);
+  const std::vector<EncoderReadings> readings = turning(SENSORS, 1000);
+  for (int step = 0; step < 1000; ++step)
+  {
+    ASSERT_EQ(readings[step].motor_count, motor.count(0.01 * step));
+    ASSERT_EQ(readings[step].output_angle, output.unwrappedAngle(1e-4 * step));
+  }
+}
+
+TEST(JointSensors, LagByTheirDelay)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.delay = 7 * PERIOD;
+  const std::vector<EncoderReadings> prompt = turning(SENSORS, 1000);
+  const std::vector<EncoderReadings> late = turning(parameters, 1000);
+  for (int step = 0; step < 1000; ++step)
+  {
+    const EncoderReadings& expected = prompt[std::max(0, step - 7)];
+    ASSERT_EQ(late[step].motor_count, expected.motor_count);
+    ASSERT_EQ(late[step].output_count, expected.output_count);
+    if (step >= 200)
+    {
+      ASSERT_EQ(late[step].motor_velocity, expected.motor_velocity);
+    }
+  }
+}
+
+TEST(JointSensors, ErrOnceATurnByTheirEccentricity)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.motor_counts_per_turn = 1 << 30;
+  parameters.motor_eccentricity = 1e-3;
+  const std::vector<EncoderReadings> readings = turning(parameters, 2000);
+  constexpr double RESOLUTION = 1e-8;
+  for (int step = 0; step < 2000; ++step)
+  {
+    ASSERT_NEAR(readings[step].motor_angle - 0.01 * step, 1e-3 * std::sin(0.01 * step), RESOLUTION);
+  }
+}
+
+TEST(JointSensors, NoiseHasItsSizeAndDependsOnSeedAndStepAlone)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.torque_noise = 0.02;
+  constexpr int STEPS = 20000;
+  std::vector<double> noise;
+  JointSensors sensors(parameters, PERIOD);
+  for (int step = 0; step < STEPS; ++step)
+  {
+    sensors.update(step, 0.0, 0.0, 0.5);
+    noise.push_back(sensors.motorTorque() - 0.5);
+  }
+  double sum = 0.0;
+  double squares = 0.0;
+  double neighbours = 0.0;
+  for (int step = 0; step < STEPS; ++step)
+  {
+    sum += noise[step];
+    squares += noise[step] * noise[step];
+    neighbours += step > 0 ? noise[step] * noise[step - 1] : 0.0;
+  }
+  // Four standard deviations of the estimates themselves.
+  EXPECT_NEAR(sum / STEPS, 0.0, 4.0 * 0.02 / std::sqrt(STEPS));
+  EXPECT_NEAR(std::sqrt(squares / STEPS), 0.02, 4.0 * 0.02 / std::sqrt(2.0 * STEPS));
+  EXPECT_NEAR(neighbours / squares, 0.0, 4.0 / std::sqrt(STEPS));
+
+  JointSensors again(parameters, PERIOD);
+  again.update(777, 0.0, 0.0, 0.5);
+  EXPECT_EQ(again.motorTorque() - 0.5, noise[777]);
+  parameters.noise_seed = 1;
+  JointSensors other(parameters, PERIOD);
+  other.update(777, 0.0, 0.0, 0.5);
+  EXPECT_NE(other.motorTorque() - 0.5, noise[777]);
+}
+
+TEST(JointSensors, AllocateNothingAndRoundTheTorque)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.motor_noise = parameters.output_noise = 1e-4;
+  parameters.torque_noise = 0.1;
+  parameters.torque_resolution = 0.25;
+  JointSensors sensors(parameters, PERIOD);
+  const std::size_t before = allocationCount();
+  for (int step = 0; step < 100; ++step)
+  {
+    sensors.update(step, 0.0, 0.0, 0.5);
+    ASSERT_EQ(sensors.motorTorque(), 0.25 * std::round(sensors.motorTorque() / 0.25));
+  }
+  EXPECT_EQ(allocationCount(), before);
 }
 }  // namespace
 }  // namespace hjt

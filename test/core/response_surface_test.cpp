@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/response_surface.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -322,6 +326,34 @@ TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
             surfaceCacheFile(shippedParameters(), "x"));
   EXPECT_EQ(surfaceCacheFile(shippedParameters({ "health.averaging_time=2.0" }), "x"),
             surfaceCacheFile(shippedParameters(), "x"));
+}
+
+TEST(SurfacePool, MakesEachSurfaceOnceForAllThreads)
+{
+  SurfacePool pool(2);
+  std::atomic<int> made{ 0 };
+  const auto make = [&made]
+  {
+    ++made;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return std::make_shared<const ResponseSurface>(SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, { {}, {}, {}, {} } });
+  };
+  SurfacePool::Surface first;
+  SurfacePool::Surface second;
+  std::thread other([&] { first = pool.obtain("a", make); });
+  second = pool.obtain("a", make);
+  other.join();
+  EXPECT_EQ(made, 1);
+  EXPECT_TRUE(first);
+  EXPECT_EQ(first, second);
+
+  pool.obtain("b", make);
+  EXPECT_EQ(pool.obtain("a", make), first);
+  pool.obtain("c", make);  // b was asked for longest ago
+  EXPECT_EQ(pool.obtain("a", make), first);
+  EXPECT_EQ(made, 3);
+  pool.obtain("b", make);
+  EXPECT_EQ(made, 4);
 }
 }  // namespace
 }  // namespace hjt

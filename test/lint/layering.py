@@ -10,7 +10,7 @@ import project
 FOLDERS = ["params", "gear", "elements", "model", "solver", "sensors", "health", "twin", "ros_io"]
 FIRST_WITH_ROS = FOLDERS.index("ros_io")
 # The core may use the standard library and these; everything else is taken for ROS or an application's library.
-CORE_LIBRARIES = re.compile(r"<([a-z_0-9]+|(Eigen|boost|libfccp|yaml-cpp)/[\w/.-]+)>$")
+CORE_LIBRARIES = re.compile(r"<([a-z_0-9]+|(Eigen|Random123|boost|libfccp|yaml-cpp)/[\w/.-]+)>$")
 INCLUDE = re.compile(r'\s*#\s*include\s*(<[^>]+>|"[^"]+")')
 OWN_HEADER = re.compile(r'"harmonic_joint_twin/(\w+)/[\w/]+\.hpp"$')
 MESSAGE_HEADER = re.compile(r'[<"]harmonic_joint_twin/[A-Z]\w*\.h[>"]$')

@@ -167,6 +167,21 @@ void visitFields(P& p, Visitor&& visit)
   visit("sensors.output_bits", "-", p.sensors.output_bits, Range{ 1, 30 }, "resolution of the absolute output encoder");
   visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
         "encoder velocities are differences over this time");
+  visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
+        "error of the motor encoder once a turn, sine of the motor angle: amplitude");
+  visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
+        "noise of the motor encoder at every step, before it is resolved into counts, rms");
+  visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
+        "error of the output encoder once a turn, sine of the output angle: amplitude");
+  visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
+        "noise of the output encoder at every step, before it is resolved into counts, rms");
+  visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
+        "noise of the motor torque told from the current, at every step, rms");
+  visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
+        "step of the motor torque told from the current; 0 = none");
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, "by which all readings lag, in whole steps");
+  visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
+        "of the noise: the same seed gives the same noise at the same stamps");
 
   visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{ 1e-3, 1e5 },
         "joint torque must have varied this much before a stiffness is estimated");
@@ -227,5 +242,14 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         "must divide solver.rate");
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+
+  visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
+        "live: a cycle of the loop that simulates an instant later than this after it was due has missed its deadline");
+  visit("realtime.priority", "-", p.realtime.priority, Range{ 0, 99 },
+        "live: priority of the loop's thread under SCHED_FIFO; 0: as every other thread");
+  visit("realtime.lock_memory", p.realtime.lock_memory,
+        "live: true: the node's memory stays in RAM (mlockall); false: it may be paged out");
+  visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
+        "live: processor that the loop's thread is bound to, counted from 0; -1: any");
 }
 }  // namespace hjt

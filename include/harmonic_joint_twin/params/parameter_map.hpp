@@ -26,6 +26,13 @@ using ParameterMap = std::map<std::string, ParameterValue>;
 /// @throws ParameterError naming file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);
 
+/// The value of one scalar of a YAML file, by rosparam's rules; a quoted one is a text whatever it looks like. `key` and
+/// `origin` are for the error text. @throws ParameterError.
+ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
+
+/// The value as an error text spells it.
+std::string valueText(const ParameterValue& value);
+
 /// Reads one `section.key=value` (value in YAML) over `map`. @throws ParameterError.
 void readAssignment(const std::string& assignment, ParameterMap& map);
 

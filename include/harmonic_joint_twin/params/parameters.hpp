@@ -183,6 +183,14 @@ struct SensorParameters
   int motor_counts_per_turn{};
   int output_bits{};
   double velocity_window{};
+  double motor_eccentricity{};
+  double motor_noise{};
+  double output_eccentricity{};
+  double output_noise{};
+  double torque_noise{};
+  double torque_resolution{};
+  double delay{};
+  int noise_seed{};
 };
 
 struct HealthParameters
@@ -234,6 +242,14 @@ struct PublishParameters
   double health_rate{};
 };
 
+struct RealtimeParameters
+{
+  double deadline{};
+  int priority{};
+  bool lock_memory{};
+  int processor{};
+};
+
 struct JointParameters
 {
   std::string name{};
@@ -260,5 +276,6 @@ struct Parameters
   LifeParameters life;
   InputParameters input;
   PublishParameters publish;
+  RealtimeParameters realtime;
 };
 }  // namespace hjt

@@ -1,21 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <future>
+#include <list>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/response_surface.hpp"
 
 namespace hjt
 {
+/// Surfaces in memory for the twins of one process, one for each set of parameters. Safe to use from several threads:
+/// who asks for one that is being made waits for it, and who asks for another does not.
+class SurfacePool
+{
+public:
+  using Surface = std::shared_ptr<const ResponseSurface>;
+
+  /// `kept`: so many of those asked for last, at least one, stay in memory, 50 MB each, also while no twin uses them.
+  explicit SurfacePool(std::size_t kept) : kept_(kept) {}
+
+  /// The surface under this key, made by `make` if it is not there; may be none.
+  Surface obtain(const std::string& key, const std::function<Surface()>& make);
+
+private:
+  using Entry = std::pair<std::string, std::shared_future<Surface>>;
+
+  std::size_t kept_;
+  std::mutex mutex_;
+  std::list<Entry> entries_;  // those asked for last in front
+};
+
 /// Where response surfaces are kept, and whom to tell.
 struct SurfaceSource
 {
   std::string cache_directory;                     ///< made if missing; empty: nothing is kept
   std::function<void(double)> progress;            ///< of building, 0 ... 1
   std::function<void(const std::string&)> notice;  ///< why there is no surface, or why it could not be kept
+  std::shared_ptr<SurfacePool> pool;               ///< asked before the cache; may be none
 };
 
 /// $XDG_CACHE_HOME/harmonic_joint_twin, or ~/.cache/harmonic_joint_twin; empty if there is no home.
@@ -26,6 +54,9 @@ std::string surfaceCacheDirectory();
 /// A file counts only if it names this format, holds the very same parameters and its sum is right; else it is built
 /// anew and written over. Files appear whole or not at all.
 std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const SurfaceSource& source);
+
+/// The same, from the source's pool if it has one.
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const SurfaceSource& source);
 
 /// File of these parameters within the directory.
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);

@@ -8,6 +8,7 @@
 
 #include "harmonic_joint_twin/model/tooth_faults.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/sensors/joint_sensors.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
 #include "harmonic_joint_twin/twin/surface_cache.hpp"
 
@@ -33,17 +34,6 @@ struct JointOutputs
   std::uint32_t iterations{};  ///< Newton iterations of the last step
   double residual{};           ///< largest out-of-balance force [N]
   double swing_phase{};        ///< of the joint's fastest swing, in one step [rad]
-};
-
-/// Readings of both encoders.
-struct EncoderReadings
-{
-  std::int64_t motor_count{};
-  double motor_angle{};     ///< [rad]
-  double motor_velocity{};  ///< difference over the velocity window [rad/s]
-  std::uint32_t output_count{};
-  double output_angle{};     ///< unwrapped [rad]
-  double output_velocity{};  ///< [rad/s]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
@@ -140,6 +130,7 @@ public:
 
   const JointOutputs& outputs() const noexcept;
   EncoderReadings encoders() const noexcept;
+  double motorTorqueReading() const noexcept;  ///< as the drive tells it from its current [N.m]
   const TwinCounters& counters() const noexcept;
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 

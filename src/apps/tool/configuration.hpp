@@ -20,6 +20,9 @@ struct CommonOptions
   bool force{};
 };
 
+/// Those about the configuration alone.
+void addConfigurationOptions(CLI::App& command, CommonOptions& options);
+
 void addCommonOptions(CLI::App& command, CommonOptions& options);
 
 /// The default configuration with the overlays and assignments over it. @throws ParameterError.

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace hjt
+{
+/// Fowler, Noll, Vo, 1a, 64 bits: tells texts apart, no protection against those made on purpose.
+constexpr std::uint64_t textHash(std::string_view text)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const char c : text)
+  {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  }
+  return hash;
+}
+}  // namespace hjt
