@@ -147,7 +147,7 @@ DriveAgeing::Life DriveAgeing::live(const DriveNature& nature, double hours, dou
         (stops(middle) ? end : begin) = middle;
       }
     }
-    for (; visit && next_visit <= end; next_visit += every)
+    for (; visit && next_visit < end; next_visit += every)
     {
       visit(next_visit, age_at(next_visit));
     }
