@@ -14,8 +14,9 @@ namespace
 namespace fs = std::filesystem;
 
 /// The default configuration, one file per stage.
-constexpr std::array<const char*, 8> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
-                                             "solver.yaml", "sensors.yaml",     "health.yaml",   "node.yaml" };
+constexpr std::array<const char*, 9> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
+                                             "solver.yaml", "sensors.yaml",     "health.yaml",   "faults.yaml",
+                                             "node.yaml" };
 
 fs::path installedConfigDirectory()
 {
