@@ -57,8 +57,7 @@ public:
     shares.motor = model_.motor.coulombTorque() + model_.motor.viscousFriction() * std::abs(speed) +
                    model_.load.viscousFriction() * follow * follow * std::abs(speed);
     friction_.setZero();
-    model_.mesh_friction.addTerms(model_.ring.mesh, ring_.shape(), ring_.position(), ring_.forces(), by_angle,
-                                  speed * rates, friction_);
+    model_.mesh_friction.addTerms(model_.ring.mesh, ring_.shape(), ring_.forces(), by_angle, speed * rates, friction_);
     shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
     model_.cup_friction.addTerm(ring_.shape(), by_angle, friction_);

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/elements/flank_contact.hpp"
+
 namespace hjt
 {
 /// Sum of what the elements do, minus the gradient of the stored energy, with the contacts it came from.
@@ -20,6 +22,8 @@ struct RingForces
     , contact_normal(2 * teeth)
     , flank_force(teeth)
     , meshed(teeth)
+    , flanks(teeth)
+    , pressed(teeth)
     , bending_moment(teeth)
     , segment(2 * teeth)
   {
@@ -44,6 +48,7 @@ struct RingForces
     teeth.setZero();
     flank_force.setZero();
     std::fill(meshed.begin(), meshed.end(), 0);
+    flanks.clear();
     wave_generator_torque = 0.0;
     output_torque = 0.0;
     energy = 0.0;
@@ -59,6 +64,8 @@ struct RingForces
   Eigen::VectorXd contact_normal;     ///< 2 N, its direction, outward [-]
   Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
   std::vector<char> meshed;           ///< N, tooth touches a flank [-]
+  FlankContacts flanks;               ///< the teeth that touch, with what the mesh found
+  Eigen::VectorXd pressed;            ///< N, depth of each tooth in the nearer flank, across; touching if > 0 [m]
   Eigen::VectorXd
       bending_moment;       ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
   double cup_rotation{};    ///< mean rotation of the tooth points [rad]

@@ -224,7 +224,8 @@ inline void factor(const Layout& layout, const Tangent& tangent, double* factors
 }
 
 template <int COLUMNS>
-void forward(const Layout& layout, const double* factors, const double* b, double* rows, double* before, double* after)
+void forward(const Layout& layout, const double* factors, const double* const* b, double* rows, double* before,
+             double* after)
 {
   Lanes px[COLUMNS]{}, py[COLUMNS]{}, qx[COLUMNS]{}, qy[COLUMNS]{};
   Lanes sum[BORDER][COLUMNS]{};
@@ -234,8 +235,8 @@ void forward(const Layout& layout, const double* factors, const double* b, doubl
   {
     for (int c = 0; c < COLUMNS; ++c)
     {
-      Lanes x = gather(layout, b + 2 * COLUMNS * t + c, 2 * COLUMNS);
-      Lanes y = gather(layout, b + 2 * COLUMNS * t + COLUMNS + c, 2 * COLUMNS);
+      Lanes x = gather(layout, b[c] + 2 * t, 2);
+      Lanes y = gather(layout, b[c] + 2 * t + 1, 2);
       if (t == 0)
       {
         x = patch(layout, x, 0.0);
@@ -270,7 +271,7 @@ void forward(const Layout& layout, const double* factors, const double* b, doubl
 
 template <int COLUMNS>
 void backward(const Layout& layout, const double* factors, const double* rows, const double* before,
-              const double* after, double* x)
+              const double* after, double* const* x)
 {
   Lanes px[COLUMNS], py[COLUMNS], qx[COLUMNS], qy[COLUMNS];
   for (int c = 0; c < COLUMNS; ++c)
@@ -309,18 +310,74 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
       {
         if (t > 0 || !layout.idle[k])
         {
-          double* at = x + 2 * COLUMNS * (layout.first[k] + t) + c;
+          double* at = x[c] + 2 * (layout.first[k] + t);
           at[0] = vx[k];
-          at[COLUMNS] = vy[k];
+          at[1] = vy[k];
         }
       }
     }
   }
 }
 
+inline bool factorCorner(double* matrix, CornerFactors& factors)
+{
+  constexpr int LANES = CORNER / COUNT;  // a row
+  bool positive = true;
+  for (int k = 0; k < CORNER; ++k)
+  {
+    const double* row = matrix + CORNER * k;
+    const double pivot = row[k];
+    const double inverse = 1.0 / pivot;
+    positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
+    factors.inverse_pivots[k] = inverse;
+    for (int i = 0; i < CORNER; ++i)
+    {
+      const double share = i > k ? row[i] * inverse : 0.0;
+      factors.upper[k][i] = share;
+      factors.lower[i][k] = share;
+    }
+    for (int i = k + 1; i < CORNER; ++i)
+    {
+      const double share = factors.upper[k][i];
+      for (int v = i / COUNT; v < LANES; ++v)
+      {
+        lanes(matrix + CORNER * i)[v] -= share * lanes(row)[v];
+      }
+    }
+  }
+  return positive;
+}
+
+inline void solveCorner(const CornerFactors& factors, double* b)
+{
+  constexpr int LANES = CORNER / COUNT;
+  for (int k = 0; k < CORNER; ++k)
+  {
+    const double value = b[k];
+    for (int v = k / COUNT; v < LANES; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.upper[k])[v];
+    }
+  }
+  for (int v = 0; v < LANES; ++v)
+  {
+    lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
+  }
+  for (int k = CORNER - 1; k > 0; --k)
+  {
+    const double value = b[k];
+    for (int v = 0; v <= k / COUNT; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.lower[k])[v];
+    }
+  }
+}
+
 constexpr Kernels kernels()
 {
-  return { factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> } };
+  return {
+    factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> }, factorCorner, solveCorner
+  };
 }
 }  // namespace
 }  // namespace arcs

@@ -80,8 +80,6 @@ public:
   }
 
 private:
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-
   /// All that a failed move must bring back.
   struct Equilibrium
   {
@@ -108,6 +106,7 @@ private:
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
   bool slopesChanged() const noexcept;
+  void solveStep() noexcept;
   bool searchLine(double residual) noexcept;
   double rounding() noexcept;
   bool stepDownhill() noexcept;
@@ -134,6 +133,9 @@ private:
   std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
   Eigen::VectorXd step_;
   Eigen::VectorXd start_forces_;
-  Columns columns_;
+  // Of the last factored tangent, once known.
+  Eigen::VectorXd by_wave_generator_;
+  Eigen::VectorXd by_output_;
+  bool rates_known_{ false };
 };
 }  // namespace hjt
