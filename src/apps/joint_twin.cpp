@@ -28,6 +28,7 @@ int main(int argc, char** argv)
   hjt::addTrialCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);
+  hjt::addFaultsCommand(app, exit_code);
   hjt::addParametersCommand(app, exit_code);
 
   hjt::catchInterrupts();

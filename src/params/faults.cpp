@@ -85,14 +85,6 @@ std::vector<std::string> split(const std::string& text)
   return parts;
 }
 
-/// "0 ... 199", or "-1 (the whole member)".
-std::string placeRange(FaultKind kind, const Parameters& parameters)
-{
-  const int last = lastPlace(kind, parameters);
-  const std::string numbers = "0 ... " + std::to_string(last);
-  const std::string whole = "-1 (the whole member)";
-  return last < 0 ? whole : describe(kind).whole ? numbers + " or " + whole : numbers;
-}
 }  // namespace
 
 const std::array<FaultDescription, FAULT_KINDS>& faultDescriptions() noexcept
@@ -173,6 +165,18 @@ int lastPlace(FaultKind kind, const Parameters& parameters) noexcept
   return placesOf(describe(kind).place, parameters) - 1;
 }
 
+std::string placeText(FaultKind kind, const Parameters& parameters)
+{
+  const int last = lastPlace(kind, parameters);
+  const std::string whole = "-1 (the whole member)";
+  if (last < 0)
+  {
+    return whole;
+  }
+  const std::string numbers = std::string(placeName(describe(kind).place)) + " 0 ... " + std::to_string(last);
+  return describe(kind).whole ? numbers + " or " + whole : numbers;
+}
+
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept
 {
   // Written so that NaN fails.
@@ -190,11 +194,11 @@ std::string faultErrors(const Fault& fault, const Parameters& parameters, const 
   refuse(fault.severity >= 0.0 && fault.severity <= 1.0,
          "severity = " + numberText(fault.severity) + " [-]" + of + " is out of range, allowed: 0 ... 1 [-]");
   refuse(fault.place >= firstPlace(fault.kind) && fault.place <= lastPlace(fault.kind, parameters),
-         "place = " + std::to_string(fault.place) + " [" + placeName(describe(fault.kind).place) + "]" + of +
-             " is out of range, allowed: " + placeRange(fault.kind, parameters));
-  refuse(fault.onset >= 0.0 && fault.onset <= LATEST_ONSET,
-         "onset = " + numberText(fault.onset) + " [s]" + of + " is out of range, allowed: 0 ... " +
-             numberText(LATEST_ONSET) + " [s]");
+         "place = " + std::to_string(fault.place) + " [-]" + of +
+             " is out of range, allowed: " + placeText(fault.kind, parameters));
+  refuse(fault.onset >= 0.0 && fault.onset <= LATEST_ONSET, "onset = " + numberText(fault.onset) + " [s]" + of +
+                                                                " is out of range, allowed: 0 ... " +
+                                                                numberText(LATEST_ONSET) + " [s]");
   return text;
 }
 

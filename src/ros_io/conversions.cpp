@@ -2,6 +2,7 @@
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
@@ -137,6 +138,35 @@ void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmoni
   message.solver_iterations = report.solver_iterations;
   message.solver_residual = report.solver_residual;
   message.solver_failures = report.solver_failures;
+}
+
+harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults)
+{
+  harmonic_joint_twin::Faults message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = names.joint;
+  for (const ActiveFault& active : faults)
+  {
+    harmonic_joint_twin::Fault fault;
+    fault.header = message.header;
+    fault.header.stamp = fault.since = toRosTime(active.since);
+    fault.kind = describe(active.fault.kind).name;
+    fault.severity = active.fault.severity;
+    fault.place = active.fault.place;
+    message.faults.push_back(fault);
+  }
+  return message;
+}
+
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault)
+{
+  const std::optional<FaultKind> kind = faultNamed(message.kind);
+  if (!kind)
+  {
+    return "kind = '" + message.kind + "' is unknown, allowed: " + faultNames();
+  }
+  fault = { *kind, message.severity, message.place, 0.0 };
+  return faultErrors(fault, parameters, "");
 }
 
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept

@@ -26,10 +26,10 @@ SurfaceSource surfaceSource()
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters, {}, surfaceSource())
+  : twin_(parameters, surfaceSource())
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
-  , subscribers_(node, JointNames(parameters.joint.name), inbox_)
+  , subscribers_(node, parameters, inbox_)
   , diagnostics_(node, parameters, loop_, inbox_, subscribers_, publishers_)
   , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))
   , brake_service_(node.advertiseService("brake", &TwinNode::setBrake, this))

@@ -70,8 +70,23 @@ bool JointStepper::reset() noexcept
   friction_.setZero();
   balance_ = 0.0;
   throughput_ = 0.0;
+  released_ = 0.0;
   stored_at_start_ = dynamics_.storedEnergy();
   return settled;
+}
+
+bool JointStepper::followModel() noexcept
+{
+  const double stored = dynamics_.storedEnergy();
+  const Eigen::Vector2d torque = dynamics_.torque();
+  const bool good = dynamics_.followModel().ok();
+  released_ += stored - dynamics_.storedEnergy();
+  if (kind_ == StepperKind::LEAPFROG)
+  {
+    // The last kick, half of which belongs after this instant, was still by the old torque.
+    released_ -= 0.5 * step_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
+  }
+  return good;
 }
 
 bool JointStepper::step(const JointInputs& inputs) noexcept
@@ -129,6 +144,6 @@ double JointStepper::swingPhase() const noexcept
 
 double JointStepper::energyResidual() const noexcept
 {
-  return balance_ - (dynamics_.storedEnergy() - stored_at_start_);
+  return balance_ - (dynamics_.storedEnergy() - stored_at_start_) - released_;
 }
 }  // namespace hjt

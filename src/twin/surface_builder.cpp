@@ -101,7 +101,7 @@ public:
     : parameters_(parameters)
     , progress_(progress)
     , model_(parameters)
-    , unit_friction_(unitFriction(parameters.mesh))
+    , unit_friction_(unitFriction(parameters.mesh), parameters.gear.teeth_flexspline)
     , ring_(model_.ring, staticSolver(parameters.solver))
     , friction_(parameters.gear.teeth_flexspline)
     , running_(2 * parameters.gear.teeth_flexspline)

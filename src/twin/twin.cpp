@@ -9,6 +9,7 @@
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 
@@ -16,9 +17,10 @@ namespace hjt
 {
 struct Twin::Impl
 {
-  Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
+  Impl(const Parameters& given, const SurfaceSource& surface_source)
     : parameters(given)
-    , model(makeFaultyJoint(given, faults))
+    , model(given)
+    , faults(given, model)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
@@ -26,20 +28,25 @@ struct Twin::Impl
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
+    if (given.solver.scene == SceneKind::AUTO && std::none_of(given.faults.begin(), given.faults.end(), setsInAtOnce))
     {
       surface = sharedSurface(given, surface_source);
-      if (surface)
-      {
-        stepper.useSurface(surface.get());
-      }
     }
-    reset(0);
+    if (!reset(0))
+    {
+      throw ParameterError(
+          "the faults that the twin starts with leave it no equilibrium: the insertion of the wave "
+          "generator did not converge (faults.*)");
+    }
   }
 
-  void reset(Stamp stamp) noexcept
+  bool reset(Stamp stamp) noexcept
   {
-    stepper.reset();
+    stepper.useSurface(nullptr);
+    scheduleConfigured(stamp);
+    faults.apply(active);
+    stepper.useSurface(active.empty() ? surface.get() : nullptr);
+    const bool settled = stepper.reset();
     queue.clear();
     counters = {};
     now = (stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length) * step_length;
@@ -56,8 +63,14 @@ struct Twin::Impl
     steps_at_report = {};
     fillOutputs(0.0, true);
     observe();
+    return settled;
   }
 
+  static bool setsInAtOnce(const Fault& fault) noexcept { return fault.severity > 0.0 && fault.onset == 0.0; }
+  static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
+
+  void scheduleConfigured(Stamp stamp) noexcept;
+  bool takeFaults() noexcept;
   void step() noexcept;
   void takeInputs() noexcept;
   double commandInForce() noexcept;
@@ -69,6 +82,9 @@ struct Twin::Impl
 
   Parameters parameters;
   JointModel model;
+  JointFaults faults;
+  FaultList active;
+  FaultSchedule waiting;
   std::shared_ptr<const ResponseSurface> surface;
   JointStepper stepper;
   Stamp step_length;
@@ -88,6 +104,45 @@ struct Twin::Impl
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
+
+/// The configured faults: those from the start on are there, the others wait.
+void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
+{
+  active.clear();
+  waiting.clear();
+  for (const Fault& fault : parameters.faults)
+  {
+    if (setsInAtOnce(fault))
+    {
+      active.set(fault, stamp);
+    }
+    else
+    {
+      waiting.push(fault, stamp + delayOf(fault));
+    }
+  }
+}
+
+/// Faults whose time has come. @returns false if the ring found no equilibrium with them.
+bool Twin::Impl::takeFaults() noexcept
+{
+  const std::uint64_t version = active.version();
+  Fault fault;
+  Stamp stamp{};
+  while (waiting.pop(now, fault, stamp))
+  {
+    counters.faults.no_room += active.set(fault, stamp) ? 0 : 1;
+  }
+  if (active.version() == version)
+  {
+    return true;
+  }
+  stepper.useSurface(nullptr);
+  faults.apply(active);
+  const bool good = stepper.followModel();
+  stepper.useSurface(active.empty() ? surface.get() : nullptr);
+  return good;
+}
 
 void Twin::Impl::takeInputs() noexcept
 {
@@ -113,6 +168,8 @@ void Twin::Impl::takeInputs() noexcept
         break;
       case InputKind::BRAKE:
         brake_engaged = input.value != 0.0;
+        break;
+      case InputKind::FAULT:
         break;
     }
   }
@@ -142,9 +199,11 @@ void Twin::Impl::step() noexcept
 {
   now += step_length;
   simulated_until = now;
+  const bool followed = takeFaults();
   takeInputs();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
+  const bool converged =
+      stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -173,6 +232,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
   outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
+  outputs.released_energy = stepper.releasedEnergy();
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
@@ -216,7 +276,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   return loads;
 }
 
-Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& surface_source)
+Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
@@ -224,7 +284,7 @@ Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const Surfac
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
-  impl_ = std::make_unique<Impl>(parameters, faults, surface_source);
+  impl_ = std::make_unique<Impl>(parameters, surface_source);
 }
 
 Twin::~Twin() = default;
@@ -254,6 +314,39 @@ void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
   impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
+}
+
+void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
+{
+  FaultCounters& counted = impl_->counters.faults;
+  if (!isValid(fault, impl_->parameters))
+  {
+    ++counted.refused;
+    return;
+  }
+  const Stamp sets_in = stamp + Impl::delayOf(fault);
+  if (!impl_->waiting.push(fault, sets_in))
+  {
+    ++counted.no_room;
+    return;
+  }
+  ++counted.accepted;
+  counted.late += sets_in < impl_->simulated_until ? 1 : 0;
+}
+
+const FaultList& Twin::activeFaults() const noexcept
+{
+  return impl_->active;
+}
+
+void Twin::give(const Input& input) noexcept
+{
+  if (input.kind == InputKind::FAULT)
+  {
+    injectFault(input.stamp, input.fault);
+    return;
+  }
+  impl_->queue.push(input, impl_->simulated_until);
 }
 
 bool Twin::step(Stamp until) noexcept

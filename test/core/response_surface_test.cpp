@@ -168,7 +168,7 @@ TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
 {
   constexpr int STEPS = 10000;
   Twin full(shippedParameters({ "input.command_timeout=10.0" }));
-  Twin fast(surfaceParameters(), {}, cached());
+  Twin fast(surfaceParameters(), cached());
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   double load = 0.0;
@@ -207,7 +207,7 @@ TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
 
 TEST(SceneAuto, EnergyBalances)
 {
-  Twin twin(surfaceParameters(), {}, cached());
+  Twin twin(surfaceParameters(), cached());
   for (const Input& input : randomInputs(9, SECOND, 1.5, 60.0))
   {
     give(twin, input);
@@ -257,7 +257,7 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
 
 TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
 {
-  Twin twin(surfaceParameters(), {}, cached());
+  Twin twin(surfaceParameters(), cached());
   twin.commandLoadTorque(0, 40.0);
   twin.commandMotorTorque(0, 1.0);
   advance(twin, SECOND / 2);
@@ -282,7 +282,7 @@ TEST(SceneAuto, SameBitsFromTheCacheAndAnew)
   std::vector<std::vector<double>> runs;
   for (const SurfaceSource& source : { SurfaceSource{}, cached() })
   {
-    Twin twin(surfaceParameters(), {}, source);
+    Twin twin(surfaceParameters(), source);
     twin.commandMotorTorque(0, 0.7);
     advance(twin, SECOND / 10);
     runs.push_back(numbers(twin.outputs()));
@@ -296,7 +296,7 @@ TEST(SurfaceBuilder, AGearWithUnequalTeethHasNone)
   const std::string error = "manufacture.flexspline_pitch_deviation=2.0e-6";
   EXPECT_NE(surfaceObstacle(shippedParameters({ error })), "");
   std::string told;
-  Twin twin(shippedParameters({ "solver.scene=auto", error }), {},
+  Twin twin(shippedParameters({ "solver.scene=auto", error }),
             { cacheDirectory(), {}, [&](const std::string& what) { told = what; } });
   EXPECT_NE(told.find("not the same again"), std::string::npos);
   twin.commandMotorTorque(0, 0.5);

@@ -37,15 +37,17 @@ constexpr std::size_t FAULT_KINDS = 16;
 constexpr int WHOLE_MEMBER = -1;
 
 /// As many can be active at once, and be configured.
-constexpr std::size_t MOST_FAULTS = 64;
+constexpr std::size_t MOST_FAULTS = 256;
 
 /// One fault of the gear. It is known by kind and place: the same once more replaces its severity.
 struct Fault
 {
   FaultKind kind{};
-  double severity{};          ///< 0 none ... 1, see FaultDescription::severity [-]
-  int place{ WHOLE_MEMBER };  ///< tooth, segment, lobe or ball by kind, from 0 on; WHOLE_MEMBER where the kind allows it
-  double onset{};             ///< after the start, or after the stamp that it was injected with; >= 0 [s]
+  double severity{};  ///< 0 none ... 1, see FaultDescription::severity [-]
+  int place{
+    WHOLE_MEMBER
+  };               ///< tooth, segment, lobe or ball by kind, from 0 on; WHOLE_MEMBER where the kind allows it
+  double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
 };
 
 /// What a place counts.
@@ -81,6 +83,9 @@ const char* placeName(FaultPlace place) noexcept;
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
 int firstPlace(FaultKind kind) noexcept;  ///< the least allowed: WHOLE_MEMBER or 0
 int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
+
+/// The places of a kind: "tooth 0 ... 199 or -1 (the whole member)".
+std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset are within their ranges.
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept;

@@ -226,7 +226,7 @@ void visitFields(P& p, Visitor&& visit)
         "lubricant_degradation at severity 1: friction of flanks and of race in rim times this");
   visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
         "tooth_wear at severity 1: material off each flank, along its normal");
-  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, part,
+  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
         "part of a tooth pair's compliance that is bending of the flexspline's tooth");
   visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
         "pitting at severity 1: part of the flank's width that carries no more");

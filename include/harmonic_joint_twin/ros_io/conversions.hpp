@@ -7,6 +7,8 @@
 
 #include "harmonic_joint_twin/ContactForces.h"
 #include "harmonic_joint_twin/Encoders.h"
+#include "harmonic_joint_twin/Fault.h"
+#include "harmonic_joint_twin/Faults.h"
 #include "harmonic_joint_twin/Health.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
 
@@ -41,6 +43,12 @@ void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
 
 harmonic_joint_twin::Health makeHealth(const JointNames& names);
 void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmonic_joint_twin::Health& message) noexcept;
+
+/// Allocates.
+harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
+
+/// The fault in a message; its onset is the stamp. @returns what is wrong with it, or nothing.
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault);
 
 /// What was found in a stamped torque message.
 enum class EffortStatus

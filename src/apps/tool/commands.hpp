@@ -31,5 +31,6 @@ void addSimulateCommand(CLI::App& app, int& exit_code);
 void addTrialCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
+void addFaultsCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 }  // namespace hjt
