@@ -220,6 +220,14 @@ struct PublishParameters
   double health_rate{};
 };
 
+struct RealtimeParameters
+{
+  double deadline{};
+  int priority{};
+  bool lock_memory{};
+  int processor{};
+};
+
 struct JointParameters
 {
   std::string name{};
@@ -276,5 +284,6 @@ struct Parameters
   PublishParameters publish;
   FaultScaleParameters fault_scale;
   std::vector<Fault> faults;  ///< that it starts with, or gets on its way
+  RealtimeParameters realtime;
 };
 }  // namespace hjt

@@ -16,5 +16,6 @@ constexpr const char* ENCODERS = "encoders";                          ///< out, 
 constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, harmonic_joint_twin/ContactForces
 constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
 constexpr const char* FAULTS = "faults";                              ///< out, latched, harmonic_joint_twin/Faults
+constexpr const char* TIMING = "timing";                              ///< out, live only, harmonic_joint_twin/Timing
 }  // namespace topics
 }  // namespace hjt

@@ -32,5 +32,6 @@ void addTrialCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addFaultsCommand(CLI::App& app, int& exit_code);
+void addSweepCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 }  // namespace hjt

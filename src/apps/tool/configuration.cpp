@@ -13,6 +13,8 @@ namespace
 {
 namespace fs = std::filesystem;
 
+constexpr const char* GROUP = "Common options";
+
 /// The default configuration, one file per stage.
 constexpr std::array<const char*, 9> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml",
                                              "joint.yaml",  "solver.yaml",      "sensors.yaml",
@@ -63,9 +65,8 @@ void addFaultOption(CLI::App& command, CommonOptions& options)
       ->allow_extra_args(false);
 }
 
-void addCommonOptions(CLI::App& command, CommonOptions& options)
+void addConfigurationOptions(CLI::App& command, CommonOptions& options)
 {
-  constexpr const char* GROUP = "Common options";
   command
       .add_option("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
       ->type_name("FILE")
@@ -78,6 +79,11 @@ void addCommonOptions(CLI::App& command, CommonOptions& options)
   command.add_option("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
       ->type_name("DIR")
       ->group(GROUP);
+}
+
+void addCommonOptions(CLI::App& command, CommonOptions& options)
+{
+  addConfigurationOptions(command, options);
   command.add_flag("--json", options.json, "one JSON document on stdout and nothing else there")->group(GROUP);
   command.add_flag("--force", options.force, "overwrite existing output files")->group(GROUP);
 }

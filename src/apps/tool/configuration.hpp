@@ -24,6 +24,9 @@ struct CommonOptions
 /// `--fault`, for the commands that march the joint.
 void addFaultOption(CLI::App& command, CommonOptions& options);
 
+/// Those about the configuration alone.
+void addConfigurationOptions(CLI::App& command, CommonOptions& options);
+
 void addCommonOptions(CLI::App& command, CommonOptions& options);
 
 /// The default configuration with the overlays and assignments over it. @throws ParameterError.

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `joint_twin sweep` under mpirun: rank I of N does the shard I/N.
+#include <mpi.h>
+
+#include <exception>
+#include <iostream>
+
+#include "tool/commands.hpp"
+#include "tool/interrupt.hpp"
+#include "tool/sweep_command.hpp"
+
+namespace
+{
+int sweepAs(int rank, int ranks, int argc, char** argv)
+{
+  CLI::App app("One rank after the other takes a run of the plan.", "joint_twin_sweep_mpi");
+  hjt::SweepArguments arguments;
+  hjt::addSweepOptions(app, arguments);
+  try
+  {
+    app.parse(argc, argv);
+    arguments.shard = static_cast<std::uint64_t>(rank);
+    arguments.shards = static_cast<std::uint64_t>(ranks);
+    arguments.quiet = rank > 0;
+    return hjt::sweep(arguments);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    return (rank == 0 ? app.exit(error) : error.get_exit_code()) == 0 ? hjt::EXIT_DONE : hjt::EXIT_USAGE;
+  }
+  catch (const std::exception& error)
+  {
+    if (rank == 0)
+    {
+      std::cerr << "joint_twin_sweep_mpi: " << error.what() << '\n';
+    }
+    return hjt::EXIT_FAILED;
+  }
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  MPI_Init(&argc, &argv);
+  int rank = 0;
+  int ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  hjt::catchInterrupts();
+  const int mine = sweepAs(rank, ranks, argc, argv);
+  int worst = mine;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return worst;
+}

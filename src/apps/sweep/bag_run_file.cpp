@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_run_file.hpp"
+
+#include <cstdio>
+#include <mutex>
+#include <utility>
+
+#include <rosbag/view.h>
+#include <std_msgs/String.h>
+
+#include "../tool/run_summary.hpp"
+#include "../tool/validators.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Opening and closing look for plugins (compression, encryption), which is not made for several threads.
+std::mutex g_opening;
+}  // namespace
+
+BagRunFile::BagRunFile(const Twin* twin, std::string path)
+  : path_(std::move(path)), temporary_(path_ + ".part"), last_(SIMULATION_EPOCH)
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  bag_.emplace(temporary_);
+  if (twin != nullptr)
+  {
+    recorder_.emplace(*twin, DEFAULT_NAMESPACE, *bag_);
+  }
+}
+
+BagRunFile::~BagRunFile()
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  bag_.reset();
+  std::remove(temporary_.c_str());
+}
+
+void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
+{
+  recorder_->record(twin);
+  last_ = twin.stamp();
+}
+
+void BagRunFile::finish(const nlohmann::ordered_json& record)
+{
+  std_msgs::String message;
+  message.data = record.dump();
+  bag_->write(RECORD_TOPIC, last_, message);
+  {
+    const std::lock_guard<std::mutex> lock(g_opening);
+    bag_->close();
+  }
+  bringToDisk(temporary_, path_);
+}
+
+std::string BagRunFile::readRecord(const std::string& path)
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  try
+  {
+    const rosbag::Bag bag(path);
+    rosbag::View view(bag, rosbag::TopicQuery(RECORD_TOPIC));
+    for (const rosbag::MessageInstance& message : view)
+    {
+      const auto text = message.instantiate<std_msgs::String>();
+      return text ? text->data : std::string();
+    }
+  }
+  catch (const rosbag::BagException&)
+  {
+    // Not a bag: as if it were not there.
+  }
+  return {};
+}
+}  // namespace hjt

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "columns.hpp"
+
+#include <algorithm>
+
+namespace hjt
+{
+const std::vector<Column>& columns()
+{
+  using I = const Instant&;
+  static const std::vector<Column> COLUMNS{
+    // What a robot's controller has.
+    { "motor_angle_encoder", "rad", "motor encoder", [](I i) { return i.encoders.motor_angle; }, nullptr },
+    { "motor_velocity_encoder", "rad/s", "motor encoder, difference over sensors.velocity_window",
+      [](I i) { return i.encoders.motor_velocity; }, nullptr },
+    { "output_angle_encoder", "rad", "output encoder, unwrapped", [](I i) { return i.encoders.output_angle; },
+      nullptr },
+    { "output_velocity_encoder", "rad/s", "output encoder, difference over sensors.velocity_window",
+      [](I i) { return i.encoders.output_velocity; }, nullptr },
+    { "motor_torque_reading", "N.m", "motor torque told from the current", [](I i) { return i.motor_torque_reading; },
+      nullptr },
+    { "speed_reference", "rad/s", "joint speed asked for", [](I i) { return i.speed_reference; }, nullptr },
+    // What only the twin knows.
+    { "motor_angle", "rad", "motor, true", [](I i) { return i.outputs.motor_angle; }, nullptr },
+    { "motor_velocity", "rad/s", "motor, true", [](I i) { return i.outputs.motor_velocity; }, nullptr },
+    { "output_angle", "rad", "output, true", [](I i) { return i.outputs.output_angle; }, nullptr },
+    { "output_velocity", "rad/s", "output, true", [](I i) { return i.outputs.output_velocity; }, nullptr },
+    { "motor_torque", "N.m", "applied by the motor", [](I i) { return i.outputs.motor_torque; }, nullptr },
+    { "load_torque", "N.m", "external, at the output; > 0 resists positive motion",
+      [](I i) { return i.outputs.load_torque; }, nullptr },
+    { "wave_generator_torque", "N.m", "of the wave generator on the flexspline",
+      [](I i) { return i.outputs.wave_generator_torque; }, nullptr },
+    { "joint_torque", "N.m", "of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; },
+      nullptr },
+    { "friction_torque", "N.m", "all friction, reduced to the motor by power",
+      [](I i) { return i.outputs.friction_torque; }, nullptr },
+    { "torsional_stiffness", "N.m/rad", "local, wave generator locked",
+      [](I i) { return i.outputs.torsional_stiffness; }, nullptr },
+    { "energy_residual", "J", "energy in, less stored and dissipated", [](I i) { return i.outputs.energy_residual; },
+      nullptr },
+    { "wave_generator_force", "N", "wave generator on each tooth", nullptr, &ToothForces::wave_generator_force },
+    { "rim_tension", "N", "rim behind each tooth", nullptr, &ToothForces::rim_tension },
+    { "bending_force", "N", "of the bent rim on each tooth", nullptr, &ToothForces::bending_force },
+    { "mesh_force", "N", "flank of each tooth", nullptr, &ToothForces::mesh_force },
+    { "tooth_x", "m", "position of each tooth", nullptr, &ToothForces::tooth_x },
+    { "tooth_y", "m", "position of each tooth", nullptr, &ToothForces::tooth_y },
+  };
+  return COLUMNS;
+}
+
+const Column* findColumn(const std::string& name)
+{
+  const auto found = std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == name; });
+  return found == columns().end() ? nullptr : &*found;
+}
+}  // namespace hjt

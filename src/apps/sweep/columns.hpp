@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// The joint at one instant, for the columns of a data set.
+struct Instant
+{
+  const JointOutputs& outputs;
+  EncoderReadings encoders;
+  double motor_torque_reading{};  ///< [N.m]
+  double speed_reference{};       ///< [rad/s]
+};
+
+/// One quantity that can be recorded.
+struct Column
+{
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double (*value)(const Instant&);              ///< none: a column of numbers per tooth
+  std::vector<double> ToothForces::*per_tooth;  ///< none: one number
+};
+
+const std::vector<Column>& columns();
+
+/// None if there is no column of this name.
+const Column* findColumn(const std::string& name);
+}  // namespace hjt

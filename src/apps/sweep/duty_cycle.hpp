@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "waveform.hpp"
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// What a run asks of the joint: a motor torque, or a speed that a drive's control holds; and a load.
+struct DutyCycle
+{
+  std::shared_ptr<const Waveform> torque;  ///< of the motor [N.m]; none: speed is controlled
+  std::shared_ptr<const Waveform> speed;   ///< of the joint [rad/s]
+  double bandwidth{};                      ///< of the speed control [Hz]
+  std::shared_ptr<const Waveform> load;    ///< external torque at the output [N.m]; none: none
+};
+
+/// Gives the twin its commands of a duty cycle, step by step.
+///
+/// The speed control works as a drive's does, from the motor encoder's readings:
+///        T = J a + 2 w J (v_r - v) + w^2 J (x_r - x)
+/// where  J    inertia of motor and joint, seen by the motor      [kg.m^2]
+///        w    2 pi times the bandwidth                           [rad/s]
+///        a, v_r, x_r   acceleration, speed, angle asked for; v, x as read   [rad/s^2], [rad/s], [rad], motor side
+class DutyFeeder
+{
+public:
+  DutyFeeder(const DutyCycle& duty, const Twin& twin);
+
+  /// Before the step that ends `time` [s] after the start.
+  void feed(Twin& twin, double time);
+
+  double speedReference() const { return speed_reference_; }  ///< joint side [rad/s]; zero where a torque is given
+
+private:
+  double controlTorque(const Twin& twin, double time);
+
+  DutyCycle duty_;
+  double ratio_;
+  double inertia_;  // [kg.m^2]
+  double last_load_{};
+  double last_time_{};
+  double angle_reference_{};  // joint side [rad]
+  double speed_reference_{};
+};
+}  // namespace hjt

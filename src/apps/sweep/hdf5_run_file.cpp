@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hdf5_run_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <mutex>
+#include <utility>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr hsize_t ROWS_IN_CHUNK = 4096;
+
+/// The library may serve one thread at a time.
+std::unique_lock<std::mutex> lockLibrary()
+{
+  static std::mutex mutex;
+  std::unique_lock<std::mutex> lock(mutex);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by exceptions
+  return lock;
+}
+
+/// Creation properties without times.
+Hdf5Handle withoutTimes(hid_t kind)
+{
+  Hdf5Handle properties(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(properties.get(), false);
+  return properties;
+}
+
+Hdf5Handle textType(std::size_t length)
+{
+  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  return type;
+}
+
+void writeText(hid_t object, const char* name, const std::string& text)
+{
+  const Hdf5Handle type = textType(text.size());
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  H5Awrite(attribute.get(), type.get(), text.empty() ? "\0" : text.data());
+}
+
+void writeNumber(hid_t object, const char* name, double value)
+{
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(object, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value);
+}
+
+/// A text as a data set of its own: an attribute may hold 64 kB at most, and object headers are no place for long ones.
+bool writeTextDataset(hid_t file, const char* name, const std::string& text)
+{
+  const Hdf5Handle type = textType(text.size());
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
+  const Hdf5Handle dataset(H5Dcreate2(file, name, type.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                           H5Dclose);
+  return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
+}
+/// A fault as it lies in memory and, without the gaps, in the file.
+struct FaultRow
+{
+  char kind[32];
+  double severity;
+  std::int32_t place;
+  double onset;
+};
+
+bool writeFaults(hid_t file, const std::vector<FaultLabel>& faults)
+{
+  std::vector<FaultRow> rows(faults.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    rows[i] = { {}, faults[i].severity, faults[i].place, faults[i].onset };
+    faults[i].kind.copy(rows[i].kind, sizeof(rows[i].kind));
+  }
+  const Hdf5Handle name = textType(sizeof(FaultRow::kind));
+  const Hdf5Handle memory(H5Tcreate(H5T_COMPOUND, sizeof(FaultRow)), H5Tclose);
+  H5Tinsert(memory.get(), "kind", offsetof(FaultRow, kind), name.get());
+  H5Tinsert(memory.get(), "severity", offsetof(FaultRow, severity), H5T_NATIVE_DOUBLE);
+  H5Tinsert(memory.get(), "place", offsetof(FaultRow, place), H5T_NATIVE_INT32);
+  H5Tinsert(memory.get(), "onset", offsetof(FaultRow, onset), H5T_NATIVE_DOUBLE);
+  const Hdf5Handle packed(H5Tcopy(memory.get()), H5Tclose);
+  H5Tpack(packed.get());
+  const hsize_t count = rows.size();
+  const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
+  const Hdf5Handle dataset(
+      H5Dcreate2(file, "faults", packed.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
+  writeText(dataset.get(), "unit", "severity [-], 0 ... 1; place: tooth, segment or ball, -1 all; onset [s]");
+  return dataset.valid() &&
+         (rows.empty() || H5Dwrite(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
+}
+}  // namespace
+
+Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept
+{
+  std::swap(id_, other.id_);
+  std::swap(close_, other.close_);
+  return *this;
+}
+
+Hdf5Handle::~Hdf5Handle()
+{
+  if (id_ >= 0)
+  {
+    close_(id_);
+  }
+}
+
+Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
+  : path_(std::move(path)), temporary_(path_ + ".part")
+{
+  const auto lock = lockLibrary();
+  const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
+  file_ = Hdf5Handle(H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT), H5Fclose);
+  if (!file_.valid())
+  {
+    fail();
+  }
+  if (!writeFaults(file_.get(), spec.faults) ||
+      !writeTextDataset(file_.get(), "parameters", describeParameters(spec.parameters)))
+  {
+    fail();
+  }
+  if (twin == nullptr)
+  {
+    return;
+  }
+  begin_ = twin->stamp();
+  from_ = begin_ + toStampLength(recording.start);
+  teeth_ = twin->makeToothForces();
+  for (const RecordingGroup& group : recording.groups)
+  {
+    makeGroup(group, spec, *twin, recording.start, recording.deflate);
+  }
+}
+
+Hdf5RunFile::~Hdf5RunFile()
+{
+  close();
+  std::remove(temporary_.c_str());
+}
+
+void Hdf5RunFile::close() noexcept
+{
+  const auto lock = lockLibrary();
+  groups_.clear();
+  file_ = Hdf5Handle();
+}
+
+void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start,
+                            int deflate)
+{
+  const auto rows = static_cast<hsize_t>(std::floor((spec.duration - start) * recorded.rate + 1e-6));
+  const hsize_t chunks = std::max<hsize_t>(1, (rows + ROWS_IN_CHUNK - 1) / ROWS_IN_CHUNK);
+  Group group{ recorded.float32, toStampLength(1.0 / recorded.rate),
+               std::max<hsize_t>(1, (rows + chunks - 1) / chunks) };
+  const Hdf5Handle properties = withoutTimes(H5P_GROUP_CREATE);
+  const Hdf5Handle place(H5Gcreate2(file_.get(), recorded.name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                         H5Gclose);
+  check(place.get());
+  writeNumber(place.get(), "sample_rate", recorded.rate);
+  writeText(place.get(), "sample_rate_unit", "Hz");
+  writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
+  writeText(place.get(), "first_time_unit", "s");
+  for (const Column* column : recorded.columns)
+  {
+    const bool per_tooth = column->per_tooth != nullptr;
+    const std::size_t width = per_tooth ? static_cast<std::size_t>(twin.parameters().gear.teeth_flexspline) : 1;
+    const hsize_t extent[2] = { rows, width };
+    const hsize_t chunk[2] = { group.rows_in_block, width };
+    const hsize_t most[2] = { H5S_UNLIMITED, width };
+    const int rank = per_tooth ? 2 : 1;
+    const Hdf5Handle creation = withoutTimes(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation.get(), rank, chunk);
+    if (deflate > 0)
+    {
+      H5Pset_shuffle(creation.get());
+      H5Pset_deflate(creation.get(), static_cast<unsigned>(deflate));
+    }
+    const Hdf5Handle space(H5Screate_simple(rank, extent, most), H5Sclose);
+    Hdf5Handle dataset(H5Dcreate2(place.get(), column->name, group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE,
+                                  space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                       H5Dclose);
+    check(dataset.get());
+    writeText(dataset.get(), "unit", column->unit);
+    writeText(dataset.get(), "meaning", column->meaning);
+    group.per_tooth = group.per_tooth || per_tooth;
+    group.columns.push_back({ column, std::move(dataset), width, {} });
+    group.columns.back().block.reserve(group.rows_in_block * width);
+  }
+  groups_.push_back(std::move(group));
+}
+
+void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
+{
+  const Stamp now = twin.stamp();
+  for (Group& group : groups_)
+  {
+    if (now <= from_ || (now - from_) % group.period != 0)
+    {
+      continue;
+    }
+    const Instant instant{ twin.outputs(), twin.encoders(), twin.motorTorqueReading(), feeder.speedReference() };
+    if (group.per_tooth)
+    {
+      twin.toothForces(teeth_);
+    }
+    for (ColumnData& data : group.columns)
+    {
+      if (data.column->per_tooth != nullptr)
+      {
+        const std::vector<double>& row = teeth_.*data.column->per_tooth;
+        data.block.insert(data.block.end(), row.begin(), row.end());
+      }
+      else
+      {
+        data.block.push_back(data.column->value(instant));
+      }
+    }
+    if (++group.buffered == group.rows_in_block)
+    {
+      flush(group);
+    }
+  }
+}
+
+void Hdf5RunFile::flush(Group& group)
+{
+  const auto lock = lockLibrary();
+  for (ColumnData& data : group.columns)
+  {
+    const int rank = data.column->per_tooth != nullptr ? 2 : 1;
+    const hsize_t first[2] = { group.written, 0 };
+    const hsize_t count[2] = { group.buffered, data.width };
+    const Hdf5Handle space(H5Dget_space(data.dataset.get()), H5Sclose);
+    const Hdf5Handle memory(H5Screate_simple(rank, count, nullptr), H5Sclose);
+    check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first, nullptr, count, nullptr));
+    check(H5Dwrite(data.dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, data.block.data()));
+    data.block.clear();
+  }
+  group.written += group.buffered;
+  group.buffered = 0;
+}
+
+void Hdf5RunFile::finish(const nlohmann::ordered_json& record)
+{
+  for (Group& group : groups_)
+  {
+    if (group.buffered > 0)
+    {
+      flush(group);
+    }
+    const auto lock = lockLibrary();
+    for (ColumnData& data : group.columns)
+    {
+      const hsize_t extent[2] = { group.written, data.width };
+      check(H5Dset_extent(data.dataset.get(), extent));  // less than planned if the run stopped
+    }
+  }
+  {
+    const auto lock = lockLibrary();
+    for (const char* key : { "run", "class", "duty", "status", "error", "version" })
+    {
+      const auto& value = record.at(key);
+      if (value.is_number())
+      {
+        writeNumber(file_.get(), key, value.get<double>());
+      }
+      else
+      {
+        writeText(file_.get(), key, value.get<std::string>());
+      }
+    }
+    if (!writeTextDataset(file_.get(), "record", record.dump()))
+    {
+      fail();
+    }
+    groups_.clear();
+    check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
+    file_ = Hdf5Handle();
+  }
+  bringToDisk(temporary_, path_);
+}
+
+std::string Hdf5RunFile::readRecord(const std::string& path)
+{
+  const auto lock = lockLibrary();
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.valid())
+  {
+    return {};
+  }
+  const Hdf5Handle dataset(H5Dopen2(file.get(), "record", H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid())
+  {
+    return {};
+  }
+  const Hdf5Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  std::string text(H5Tget_size(type.get()), '\0');
+  const bool read = H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
+  return read ? text : std::string();
+}
+
+hid_t Hdf5RunFile::check(hid_t result) const
+{
+  if (result < 0)
+  {
+    fail();
+  }
+  return result;
+}
+
+void Hdf5RunFile::fail() const
+{
+  throw InputError(path_ + " cannot be written");
+}
+}  // namespace hjt

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "harmonic_joint_twin/params/number_text.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Kind = PlanNode::Kind;
+
+constexpr double MOST_RUNS = 1e9;
+constexpr double LARGE = 1e6;  // of any value of a waveform
+constexpr const char* NOISE_SEED = "sensors.noise_seed";
+/// Where a plan has no classes: all runs are of this one.
+const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
+
+std::string fileOf(const PlanNode& csv)
+{
+  return PlanValues().text(csv, "file");
+}
+
+/// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
+template <class Visitor>
+void visitTables(const PlanNode& node, const Visitor& visit)
+{
+  for (const auto& [key, below] : node.entries)
+  {
+    if (key == "csv")
+    {
+      visit(below);
+    }
+    visitTables(below, visit);
+  }
+}
+
+nlohmann::ordered_json jsonOf(const PlanNode& node)
+{
+  if (node.kind == Kind::SCALAR)
+  {
+    return jsonOf(node.scalar);
+  }
+  nlohmann::ordered_json json =
+      node.kind == Kind::MAP ? nlohmann::ordered_json::object() : nlohmann::ordered_json::array();
+  for (const auto& [key, below] : node.entries)
+  {
+    if (node.kind == Kind::MAP)
+    {
+      json[key] = jsonOf(below);
+    }
+    else
+    {
+      json.push_back(jsonOf(below));
+    }
+  }
+  return json;
+}
+}  // namespace
+
+nlohmann::ordered_json jsonOf(const ParameterValue& value)
+{
+  return std::visit([](const auto& content) { return nlohmann::ordered_json(content); }, value.value);
+}
+
+std::vector<std::string> Plan::overlays(const std::string& path)
+{
+  const PlanNode root = readPlanFile(path);
+  std::vector<std::string> files;
+  if (root.find("overlays") != nullptr)
+  {
+    const PlanNode& list = required(root, "overlays", Kind::LIST);
+    const std::filesystem::path directory = std::filesystem::path(path).parent_path();
+    for (const auto& [key, node] : list.entries)
+    {
+      const std::string name = PlanValues().text(list, key);
+      const std::filesystem::path beside = directory / name;
+      files.push_back(std::filesystem::exists(beside) ? beside.string() : name);
+    }
+  }
+  return files;
+}
+
+Plan::Plan(const std::string& path, ParameterMap base)
+  : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path)), base_(std::move(base))
+{
+  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "duty", "classes", "record" });
+  const PlanValues values;
+  name_ = values.text(root_, "name");
+  seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }));
+  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MOST_RUNS }));
+  visitTables(required(root_, "duty", Kind::LIST),
+              [this](const PlanNode& csv)
+              {
+                allowOnly(csv, { "file", "column" });
+                const std::string file = (std::filesystem::path(directory_) / fileOf(csv)).string();
+                const std::string column = PlanValues().text(csv, "column");
+                tables_[csv.path] = TableWaveform::read(file, column);
+              });
+  readRecording();
+  makeBlocks();
+}
+
+void Plan::readRecording()
+{
+  const PlanNode& record = required(root_, "record", Kind::MAP);
+  const PlanValues values;
+  const std::string format = values.text(record, "format");
+  if (format == "bag")
+  {
+    allowOnly(record, { "format" });
+    recording_.format = RunFormat::BAG;
+    return;
+  }
+  if (format != "hdf5")
+  {
+    required(record, "format").refuse("is unknown; allowed: hdf5, bag");
+  }
+  allowOnly(record, { "format", "start", "deflate", "groups" });
+  recording_.start = values.number(record, "start", "s", { 0, 1e6 });
+  recording_.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }));
+  for (const auto& [name, node] : required(record, "groups", Kind::MAP).entries)
+  {
+    allowOnly(node, { "rate", "type", "columns" });
+    RecordingGroup group{ name, values.number(node, "rate", "Hz", { 1e-3, 1e6 }), false, {} };
+    const std::string type = values.text(node, "type");
+    if (type != "float32" && type != "float64")
+    {
+      required(node, "type").refuse("is unknown; allowed: float32, float64");
+    }
+    group.float32 = type == "float32";
+    const PlanNode& list = required(node, "columns", Kind::LIST);
+    for (const auto& [key, element] : list.entries)
+    {
+      const Column* column = findColumn(values.text(list, key));
+      if (column == nullptr)
+      {
+        element.refuse("is no column; --columns lists them");
+      }
+      if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
+      {
+        element.refuse("stands twice");
+      }
+      group.columns.push_back(column);
+    }
+    if (name == "faults" || name == "parameters" || name.find('/') != std::string::npos || group.columns.empty())
+    {
+      node.refuse("needs at least one column, and a name other than faults and parameters without '/'");
+    }
+    recording_.groups.push_back(group);
+  }
+}
+
+void Plan::collect(const PlanNode& node, std::vector<const Variable*>& into)
+{
+  if (Variable::stands(node))
+  {
+    const auto known = std::find_if(variables_.begin(), variables_.end(),
+                                    [&](const auto& variable) { return &variable->node() == &node; });
+    if (known == variables_.end())
+    {
+      variables_.push_back(std::make_unique<const Variable>(node));
+      into.push_back(variables_.back().get());
+    }
+    else
+    {
+      into.push_back(known->get());
+    }
+    return;
+  }
+  for (const auto& [key, below] : node.entries)
+  {
+    collect(below, into);
+  }
+}
+
+void Plan::makeBlocks()
+{
+  std::vector<const PlanNode::Entry*> classes;
+  if (root_.find("classes") != nullptr)
+  {
+    for (const PlanNode::Entry& entry : required(root_, "classes", Kind::MAP).entries)
+    {
+      const PlanNode& faults = required(*root_.find("classes"), entry.first, Kind::LIST);
+      if (!faults.entries.empty())
+      {
+        faults.refuse("lists faults, which this version does not simulate");
+      }
+      classes.push_back(&entry);
+    }
+  }
+  if (classes.empty())
+  {
+    classes.push_back(&HEALTHY);
+  }
+  double total = 0.0;
+  for (const PlanNode::Entry* fault_class : classes)
+  {
+    for (const auto& [key, duty] : root_.find("duty")->entries)
+    {
+      Block block{ fault_class, &duty, {}, runs_, repeats_ };
+      collect(required(root_, "duration"), block.variables);
+      if (root_.find("set") != nullptr)
+      {
+        collect(required(root_, "set", Kind::MAP), block.variables);
+      }
+      collect(duty, block.variables);
+      collect(fault_class->second, block.variables);
+      double size = static_cast<double>(repeats_);
+      for (const Variable* variable : block.variables)
+      {
+        size *= static_cast<double>(variable->gridSize());
+        block.size *= variable->gridSize();
+      }
+      total += size;
+      if (total > MOST_RUNS)
+      {
+        root_.refuse("has more than " + numberText(MOST_RUNS) + " runs");
+      }
+      runs_ += block.size;
+      blocks_.push_back(block);
+    }
+  }
+  if (runs_ == 0)
+  {
+    root_.find("duty")->refuse("must have at least one duty cycle");
+  }
+}
+
+RunSpec Plan::run(std::uint64_t number) const
+{
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
+                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
+  const Block& block = *(after - 1);
+  RunSpec spec;
+  spec.run = number;
+  spec.fault_class = block.fault_class->first;
+  std::uint64_t rest = number - block.first;
+  spec.repeat = rest % repeats_;
+  rest /= repeats_;
+  PlanValues values;
+  spec.variables.resize(block.variables.size());
+  for (std::size_t i = block.variables.size(); i-- > 0;)
+  {
+    const Variable& variable = *block.variables[i];
+    const ParameterValue value = variable.value(seed_, number, rest % variable.gridSize());
+    rest /= variable.gridSize();
+    values.set(variable.node(), value);
+    spec.variables[i] = { variable.node().path, value };
+  }
+  constexpr Range DURATION{ 1e-3, 1e6 };
+  spec.duration = values.number(root_, "duration", "s", DURATION);
+  if (spec.duration <= recording_.start)
+  {
+    required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
+  }
+  allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load" });
+  spec.duty_name = values.text(*block.duty, "name");
+  spec.duty = dutyOf(*block.duty, values);
+  spec.parameters = parametersOf(values, number);
+  checkRates(spec.parameters);
+  return spec;
+}
+
+Parameters Plan::parametersOf(const PlanValues& values, std::uint64_t number) const
+{
+  ParameterMap map = base_;
+  bool seeded = false;
+  if (const PlanNode* settings = root_.find("set"))
+  {
+    for (const auto& [key, node] : settings->entries)
+    {
+      map[key] = values.value(node);
+      map[key].origin = node.origin;
+      seeded = seeded || key == NOISE_SEED;
+    }
+  }
+  if (!seeded)
+  {
+    map[NOISE_SEED].value = static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1);
+  }
+  return parseParameters(map);
+}
+
+DutyCycle Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
+{
+  DutyCycle cycle;
+  const bool torque = duty.find("torque") != nullptr;
+  if (torque == (duty.find("speed") != nullptr))
+  {
+    duty.refuse("must have either torque or speed");
+  }
+  if (torque)
+  {
+    cycle.torque = waveform(duty, "torque", "N.m", values);
+  }
+  else
+  {
+    cycle.speed = waveform(duty, "speed", "rad/s", values);
+    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 1000 });
+  }
+  if (duty.find("load") != nullptr)
+  {
+    cycle.load = waveform(duty, "load", "N.m", values);
+  }
+  return cycle;
+}
+
+std::shared_ptr<const Waveform> Plan::waveform(const PlanNode& map, const std::string& key, const char* unit,
+                                               const PlanValues& values) const
+{
+  const PlanNode& node = required(map, key, Kind::MAP);
+  allowOnly(node, { "constant", "sinus", "trapezoid", "csv" });
+  if (node.entries.size() != 1)
+  {
+    node.refuse("must be one of constant, sinus, trapezoid, csv");
+  }
+  const auto& [kind, shape] = node.entries.front();
+  const std::string slope_unit = std::string(unit) + "/s";
+  if (kind == "constant")
+  {
+    return std::make_shared<ConstantWaveform>(values.number(node, kind, unit, { -LARGE, LARGE }));
+  }
+  if (kind == "sinus")
+  {
+    allowOnly(shape, { "mean", "amplitude", "frequency", "phase" });
+    return std::make_shared<SinusWaveform>(
+        values.number(shape, "mean", unit, { -LARGE, LARGE }), values.number(shape, "amplitude", unit, { 0.0, LARGE }),
+        values.number(shape, "frequency", "Hz", { 0.0, 1e4 }), values.number(shape, "phase", "rad", { -1e3, 1e3 }));
+  }
+  if (kind == "trapezoid")
+  {
+    allowOnly(shape, { "peak", "slope", "hold", "pause" });
+    return std::make_shared<TrapezoidWaveform>(values.number(shape, "peak", unit, { -LARGE, LARGE }),
+                                               values.number(shape, "slope", slope_unit.c_str(), { 1e-6, 1e9 }),
+                                               values.number(shape, "hold", "s", { 0.0, 1e6 }),
+                                               values.number(shape, "pause", "s", { 0.0, 1e6 }));
+  }
+  return std::make_shared<TableWaveform>(tables_.at(shape.path));
+}
+
+void Plan::checkRates(const Parameters& parameters) const
+{
+  for (const RecordingGroup& group : recording_.groups)
+  {
+    const double steps = parameters.solver.rate / group.rate;
+    if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps < 0.5)
+    {
+      const PlanNode& groups = *root_.find("record")->find("groups");
+      required(*groups.find(group.name), "rate")
+          .refuse("[Hz] must divide solver.rate = " + numberText(parameters.solver.rate) + " [Hz]");
+    }
+  }
+}
+
+std::vector<std::string> Plan::variableNames() const
+{
+  std::vector<std::string> names;
+  for (const auto& variable : variables_)
+  {
+    names.push_back(variable->node().path);
+  }
+  return names;
+}
+
+nlohmann::ordered_json Plan::snapshot() const
+{
+  nlohmann::ordered_json tables = nlohmann::ordered_json::object();
+  for (const auto& [path, rows] : tables_)
+  {
+    tables[path] = *rows;
+  }
+  nlohmann::ordered_json base = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : base_)
+  {
+    base[key] = jsonOf(value);
+  }
+  return { { "runs", runs_ }, { "plan", jsonOf(root_) }, { "tables", tables }, { "configuration", base } };
+}
+}  // namespace hjt

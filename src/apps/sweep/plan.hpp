@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "columns.hpp"
+#include "duty_cycle.hpp"
+#include "plan_node.hpp"
+#include "plan_values.hpp"
+#include "variable.hpp"
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+nlohmann::ordered_json jsonOf(const ParameterValue& value);
+
+/// Columns that are recorded at one rate.
+struct RecordingGroup
+{
+  std::string name;
+  double rate{};   // [Hz]
+  bool float32{};  // else float64
+  std::vector<const Column*> columns;
+};
+
+enum class RunFormat
+{
+  HDF5,
+  BAG
+};
+
+struct Recording
+{
+  RunFormat format{};
+  double start{};  ///< nothing is recorded before [s]
+  int deflate{};   ///< 0 ... 9; 0: not compressed
+  std::vector<RecordingGroup> groups;
+};
+
+/// A fault of a run, as its label says it.
+struct FaultLabel
+{
+  std::string kind;
+  double severity{};  ///< 0 ... 1 [-]
+  int place{};        ///< tooth, segment or ball, from 0; -1: the whole member
+  double onset{};     ///< after the start [s]
+};
+
+/// One run of a plan, with nothing left open.
+struct RunSpec
+{
+  std::uint64_t run{};
+  std::string fault_class;
+  std::string duty_name;
+  std::uint64_t repeat{};
+  double duration{};  ///< [s]
+  Parameters parameters;
+  DutyCycle duty;
+  std::vector<FaultLabel> faults;
+  std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
+};
+
+/// A plan of many runs: what is fixed, laid out on grids and drawn.
+///
+/// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one fastest,
+/// then the repeats. After construction all members may be called from any thread.
+class Plan
+{
+public:
+  /// `base`: the configuration below the plan's own settings. @throws InputError naming file and line.
+  Plan(const std::string& path, ParameterMap base);
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+
+  /// Overlays that a plan names, to be read before the plan is made.
+  static std::vector<std::string> overlays(const std::string& path);
+
+  const std::string& name() const { return name_; }
+  std::uint64_t runs() const { return runs_; }
+  const Recording& recording() const { return recording_; }
+
+  /// @throws InputError naming file, line, key, value, unit and range.
+  RunSpec run(std::uint64_t number) const;
+
+  /// Runs of one class and duty cycle.
+  struct Block
+  {
+    const PlanNode::Entry* fault_class;
+    const PlanNode* duty;
+    std::vector<const Variable*> variables;
+    std::uint64_t first;  ///< run
+    std::uint64_t size;
+  };
+  const std::vector<Block>& blocks() const { return blocks_; }
+
+  /// Paths of all that varies, in the order of the plan.
+  std::vector<std::string> variableNames() const;
+
+  /// Everything the runs depend on, as one document.
+  nlohmann::ordered_json snapshot() const;
+
+private:
+  void readRecording();
+  void collect(const PlanNode& node, std::vector<const Variable*>& into);
+  void makeBlocks();
+  Parameters parametersOf(const PlanValues& values, std::uint64_t number) const;
+  DutyCycle dutyOf(const PlanNode& duty, const PlanValues& values) const;
+  std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
+                                           const PlanValues& values) const;
+  void checkRates(const Parameters& parameters) const;
+
+  std::string directory_;
+  PlanNode root_;
+  ParameterMap base_;
+  std::string name_;
+  std::uint32_t seed_{};
+  std::uint64_t repeats_{};
+  std::uint64_t runs_{};
+  Recording recording_;
+  std::vector<std::unique_ptr<const Variable>> variables_;
+  std::vector<Block> blocks_;
+  std::map<std::string, std::shared_ptr<const TableWaveform::Rows>> tables_;  // by file and column
+};
+}  // namespace hjt

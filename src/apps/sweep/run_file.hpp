@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "duty_cycle.hpp"
+#include "plan.hpp"
+
+namespace hjt
+{
+/// What one run is written to. Nothing stands under its name before `finish`.
+class RunFile
+{
+public:
+  virtual ~RunFile() = default;
+
+  /// After every step. @throws InputError if the disk does not take it.
+  virtual void record(Twin& twin, const DutyFeeder& feeder) = 0;
+
+  /// Writes what is known only now, brings all to the disk and gives the file its name. `record`: the run's row of the
+  /// index. @throws InputError.
+  virtual void finish(const nlohmann::ordered_json& record) = 0;
+};
+
+/// `twin`: none if the run has none; then only the record is written. @throws InputError.
+std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
+                                     const std::string& path);
+
+/// Of the format's files, with the dot.
+const char* runFileExtension(RunFormat format);
+
+/// The record of a finished run; none if there is no readable file.
+nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path);
+
+/// A text file, whole or not at all, brought to the disk. @throws InputError.
+void writeTextFile(const std::string& path, const std::string& text);
+
+/// Bytes of the numbers of a run.
+double dataSize(const Recording& recording, double duration, int teeth);
+
+/// Brings a written file to the disk and gives it its name. @throws InputError.
+void bringToDisk(const std::string& temporary, const std::string& path);
+}  // namespace hjt

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hjt
+{
+/// A quantity over time, and its slope.
+class Waveform
+{
+public:
+  virtual ~Waveform() = default;
+  virtual double value(double time) const = 0;  ///< `time` [s] from 0 on
+  virtual double slope(double time) const = 0;  ///< [1/s] of the quantity's unit
+};
+
+class ConstantWaveform : public Waveform
+{
+public:
+  explicit ConstantWaveform(double value) : value_(value) {}
+  double value(double) const override { return value_; }
+  double slope(double) const override { return 0.0; }
+
+private:
+  double value_;
+};
+
+/// mean + amplitude sin(2 pi frequency t + phase): phase [rad], frequency [Hz].
+class SinusWaveform : public Waveform
+{
+public:
+  SinusWaveform(double mean, double amplitude, double frequency, double phase);
+  double value(double time) const override;
+  double slope(double time) const override;
+
+private:
+  double mean_, amplitude_, angular_frequency_, phase_;
+};
+
+/// To and fro for ever: up to the peak at an even slope, there for `hold`, down to zero, there for `pause`; then the same
+/// with the opposite sign.
+class TrapezoidWaveform : public Waveform
+{
+public:
+  /// `slope` [1/s] of the quantity's unit, > 0; `hold`, `pause` [s].
+  TrapezoidWaveform(double peak, double slope, double hold, double pause);
+  double value(double time) const override;
+  double slope(double time) const override;
+
+private:
+  struct Place
+  {
+    double sign;
+    double time;  // since the half period began [s]
+  };
+  Place place(double time) const;
+
+  double peak_, slope_, rise_, hold_, half_period_;
+};
+
+/// Straight lines between the rows of a table; before the first and after the last row its value holds.
+class TableWaveform : public Waveform
+{
+public:
+  using Rows = std::vector<std::pair<double, double>>;
+
+  /// One column over the column `time` [s] of a CSV file. @throws InputError naming line and column.
+  static std::shared_ptr<const Rows> read(const std::string& path, const std::string& column);
+
+  explicit TableWaveform(std::shared_ptr<const Rows> rows) : rows_(std::move(rows)) {}
+  double value(double time) const override;
+  double slope(double time) const override;
+
+private:
+  std::size_t rowAfter(double time) const;
+
+  std::shared_ptr<const Rows> rows_;
+};
+}  // namespace hjt

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin sweep`: data sets of many runs."""
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy
+import rosbag
+
+import tool
+
+PLAN = """
+name: test
+seed: 7
+duration: 0.06
+overlays: [real_sensors.yaml]
+set:
+  input.temperature: {grid: [10.0, 40.0]}
+  output.load_inertia: {log_uniform: [0.5, 2.0]}
+repeats: 3
+duty:
+  - name: turning
+    speed: {sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}
+    bandwidth: 8.0
+    load: {constant: 5.0}
+record:
+  format: hdf5
+  start: 0.01
+  deflate: 0
+  groups:
+    signals: {rate: 500.0, type: float32, columns: [motor_angle_encoder, motor_torque_reading]}
+    teeth: {rate: 100.0, type: float64, columns: [mesh_force, joint_torque]}
+"""
+RUNS = 6
+
+
+def tree(directory):
+    """Bytes of every file below."""
+    return {os.path.relpath(os.path.join(path, name), directory): tool.read_bytes(os.path.join(path, name))
+            for path, _, names in os.walk(directory) for name in names}
+
+
+class Sweep(tool.ToolTest):
+    mpi_executable = None
+
+    def setUp(self):
+        super().setUp()
+        self.write("plan.yaml", PLAN)
+
+    def sweep(self, out, *arguments, plan="plan.yaml"):
+        return self.succeed("sweep", plan, "--out", out, *arguments)
+
+    def index(self, out):
+        with open(self.path(out + "/index.csv")) as file:
+            return list(csv.DictReader(file))
+
+    def start(self, plan, out, *arguments):
+        return subprocess.Popen([self.executable, "sweep", plan, "--out", out, *arguments], cwd=self.directory,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def wait_for_runs(self, out, count):
+        deadline = time.monotonic() + 60.0
+        while time.monotonic() < deadline:
+            runs = self.path(out + "/runs")
+            if os.path.isdir(runs) and sum(name.endswith(".h5") for name in os.listdir(runs)) >= count:
+                return
+            time.sleep(0.005)
+        self.fail("no runs")
+
+    def test_any_number_of_workers_and_shards_gives_the_same_bytes(self):
+        self.sweep("one", "--jobs", 1)
+        whole = tree(self.path("one"))
+        self.assertEqual(len(whole), RUNS + 2)
+        self.sweep("two", "--jobs", 2)
+        self.assertEqual(tree(self.path("two")), whole)
+        for shard in ["1/2", "0/2"]:
+            self.sweep("shards", "--jobs", 1, "--shard", shard)
+        self.assertEqual(tree(self.path("shards")), whole)
+
+    def test_ranks_of_mpi_give_the_same_bytes(self):
+        if not self.mpi_executable or not shutil.which("mpirun"):
+            self.skipTest("built without MPI")
+        self.sweep("one", "--jobs", 1)
+        done = subprocess.run(["mpirun", "-n", "3", "--allow-run-as-root", "--oversubscribe", self.mpi_executable,
+                               "plan.yaml", "--out", "ranks"], cwd=self.directory, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(tree(self.path("ranks")), tree(self.path("one")))
+
+    def test_goes_on_after_being_killed_and_repeats_nothing(self):
+        self.write("plan.yaml", PLAN.replace("duration: 0.06", "duration: 0.6").replace("repeats: 3", "repeats: 4"))
+        self.sweep("whole", "--jobs", 2)
+        process = self.start("plan.yaml", "killed", "--jobs", "1")
+        self.wait_for_runs("killed", 2)
+        process.kill()
+        process.communicate()
+        runs = self.path("killed/runs")
+        finished = {name: os.stat(os.path.join(runs, name)).st_mtime_ns for name in os.listdir(runs)
+                    if name.endswith(".h5")}
+        self.assertLess(len(finished), 8)
+        self.assertFalse(os.path.exists(self.path("killed/index.csv")))
+        done = self.sweep("killed", "--jobs", 2)
+        self.assertIn(f"{len(finished)} were there", done.stderr)
+        for name, written in finished.items():
+            self.assertEqual(os.stat(os.path.join(runs, name)).st_mtime_ns, written)
+        self.assertEqual(tree(self.path("killed")), tree(self.path("whole")))
+
+    def test_an_interrupt_keeps_what_is_finished(self):
+        self.write("plan.yaml", PLAN.replace("duration: 0.06", "duration: 0.3").replace("repeats: 3", "repeats: 400"))
+        process = self.start("plan.yaml", "a", "--jobs", "2")
+        self.wait_for_runs("a", 2)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertIn(b"interrupted; the same command goes on", errors)
+        rows = self.index("a")
+        self.assertGreaterEqual(len(rows), 2)
+        self.assertEqual(sorted(os.path.basename(row["file"]) for row in rows), sorted(os.listdir(self.path("a/runs"))))
+
+    def test_file_holds_signals_units_and_labels(self):
+        self.sweep("a", "--jobs", 2)
+        rows = self.index("a")
+        self.assertEqual([int(row["run"]) for row in rows], list(range(RUNS)))
+        self.assertEqual([float(row["set.input.temperature"]) for row in rows], [10.0] * 3 + [40.0] * 3)
+        for row in rows:
+            self.assertEqual((row["status"], row["class"], row["duty"]), ("ok", "healthy", "turning"))
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                record = json.loads(file["record"][()])
+                for key, value in record["variables"].items():
+                    self.assertEqual(float(row[key]), value)
+                self.assertEqual(file.attrs["run"], int(row["run"]))
+                signals = file["signals"]
+                self.assertEqual(signals.attrs["sample_rate"], 500.0)
+                self.assertAlmostEqual(signals.attrs["first_time"], 0.012)
+                angle = signals["motor_angle_encoder"]
+                self.assertEqual((angle.dtype, angle.shape, angle.attrs["unit"].decode()),
+                                 (numpy.float32, (25,), "rad"))
+                self.assertEqual(file["teeth/mesh_force"].shape, (5, 200))
+                self.assertGreater(numpy.abs(file["teeth/mesh_force"]).max(), 10.0)
+                self.assertIn(f"input.temperature: {float(row['set.input.temperature'])}",
+                              file["parameters"][()].decode())
+
+    def test_signals_are_those_of_the_twin(self):
+        self.write("plan.yaml", PLAN.replace("overlays: [real_sensors.yaml]\n", "").split("repeats")[0] + """
+repeats: 1
+duty: [{name: push, torque: {constant: 0.4}, load: {constant: 3.0}}]
+record:
+  format: hdf5
+  start: 0.0
+  deflate: 4
+  groups: {all: {rate: 1000.0, type: float64, columns: [motor_angle, joint_torque, motor_angle_encoder]}}
+""")
+        self.sweep("a")
+        row = self.index("a")[1]
+        self.succeed("simulate", "--torque", 0.4, "--load", 3, "--duration", 0.06, "--out", "b.csv",
+                     "--set", "input.temperature=40.0", "--set", f"output.load_inertia={row['set.output.load_inertia']}")
+        simulated = numpy.genfromtxt(self.path("b.csv"), delimiter=",", names=True)
+        with h5py.File(self.path("a/" + row["file"]), "r") as file:
+            for name, column in file["all"].items():
+                numpy.testing.assert_array_equal(column[:], simulated[name])
+
+    def test_what_is_drawn_depends_on_seed_name_and_run_alone(self):
+        def drawn(plan):
+            self.write("other.yaml", plan)
+            rows = list(csv.DictReader(self.sweep("unused", "--list", plan="other.yaml").stdout.splitlines()))
+            return [(row["set.output.load_inertia"], row["noise_seed"]) for row in rows]
+        first = drawn(PLAN)
+        self.assertEqual(len(set(first)), RUNS)
+        for inertia, _ in first:
+            self.assertTrue(0.5 <= float(inertia) <= 2.0)
+        more = PLAN.replace("set:\n", "set:\n  bearing.viscosity: {normal: [1.0e-4, 1.0e-5, 5.0e-5, 2.0e-4]}\n")
+        self.assertEqual(drawn(more), first)
+        self.assertFalse(set(drawn(PLAN.replace("seed: 7", "seed: 8"))) & set(first))
+        self.assertFalse(os.path.exists(self.path("unused")))
+
+    def test_bags_hold_the_nodes_topics_and_the_record(self):
+        text = PLAN.split("record:")[0].replace("repeats: 3", "repeats: 1") + "record: {format: bag}\n"
+        self.write("plan.yaml", text)
+        self.sweep("one", "--jobs", 1)
+        self.sweep("two", "--jobs", 2)
+        self.assertEqual(tree(self.path("one")), tree(self.path("two")))
+        with rosbag.Bag(self.path("one/" + self.index("one")[0]["file"])) as bag:
+            topics = bag.get_type_and_topic_info().topics
+            self.assertEqual(topics["/joint_twin/joint_states"].message_count, 60)
+            record = [message for _, message, _ in bag.read_messages(topics=["/joint_twin/run"])]
+        self.assertEqual(json.loads(record[0].data)["duty"], "turning")
+
+    def test_a_run_without_equilibrium_is_recorded_and_the_others_go_on(self):
+        # A rim that gives way under flat flanks, and a solver that may not iterate: teeth jump below 600 N.m.
+        plan = PLAN.replace("  input.temperature: {grid: [10.0, 40.0]}\n", """
+  contact.stiffness: {grid: [1.0e+6, 1.0e+12]}
+  ring.tension_stiffness: 5.0e+7
+  mesh.flank_angle: 1.0
+  mesh.engagement_depth: 200.0e-6
+  output.load_torque_limit: 1000.0
+  solver.max_iterations: {grid: [20, 1]}
+""").replace("load: {constant: 5.0}", "load: {trapezoid: {peak: 600.0, slope: 1.0e+5, hold: 1.0, pause: 1.0}}")
+        self.write("plan.yaml", plan.replace("repeats: 3", "repeats: 1"))
+        done = self.run_tool("sweep", "plan.yaml", "--out", "a")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("4 runs done, 0 were there, 2 failed", done.stderr)
+        rows = self.index("a")
+        self.assertEqual([row["status"] for row in rows], ["ok", "failed", "ok", "failed"])
+        self.assertIn("the solver found no equilibrium at 0.0", rows[1]["error"])
+        self.assertIn("the insertion of the wave generator did not converge", rows[3]["error"])
+        with h5py.File(self.path("a/" + rows[1]["file"]), "r") as file:
+            self.assertLess(len(file["signals/motor_torque_reading"]), 25)
+            self.assertEqual(file.attrs["status"], b"failed")
+        done = self.run_tool("sweep", "plan.yaml", "--out", "a")  # nothing is left to do, and it still says so
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("0 runs done, 4 were there, 2 failed", done.stderr)
+
+    def test_bad_plans_are_refused_before_anything_runs(self):
+        for old, new, parts in [
+                ("duration: 0.06", "duration: -1.0", ["plan.yaml:4: duration = -1.0 [s] is out of range, allowed: 0.001"]),
+                ("duration: 0.06", "duration: long", ["plan.yaml:4: duration = 'long' must be a number [s]"]),
+                ("[10.0, 40.0]", "[10.0, 400.0]",
+                 ["plan.yaml:7: input.temperature = 400.0 [degC] is out of range, allowed: -40 ... 150 [degC]", "run 3"]),
+                ("[0.5, 2.0]", "[0.5, -2.0]", ["plan.yaml:8: set.output.load_inertia.log_uniform", "[lowest, highest]"]),
+                ("input.temperature", "input.temperatur", ["unknown parameter input.temperatur", "did you mean"]),
+                ("repeats: 3", "repeats: 0", ["plan.yaml:9: repeats = 0 [-] is out of range, allowed: 1"]),
+                ("seed: 7", "sead: 7", ["plan.yaml:3: sead = 7 is unknown; allowed: name, seed"]),
+                ("    bandwidth: 8.0\n", "", ["plan.yaml:11: duty.0 lacks the key 'bandwidth'"]),
+                ("speed: {sinus:", "speed: {square:", ["duty.0.speed.square is unknown; allowed: constant, sinus"]),
+                ("mesh_force,", "mesh_forces,", ["record.groups.teeth.columns.0 = 'mesh_forces' is no column"]),
+                ("rate: 500.0", "rate: 333.0", ["rate = 333.0 [Hz] must divide solver.rate = 10000"]),
+                ("float32", "float16", ["type = 'float16' is unknown; allowed: float32, float64"]),
+                ("format: hdf5", "format: hdf6", ["record.format = 'hdf6' is unknown; allowed: hdf5, bag"]),
+                ("load: {constant: 5.0}", "load: {csv: {file: none.csv, column: load}}", ["none.csv cannot be read"]),
+                ("seed: 7", "seed: 7\nseed: 8", ["seed"]),
+                ("name: test", "name: [", ["plan.yaml:"])]:
+            with self.subTest(new):
+                self.assertIn(old, PLAN)
+                self.write("plan.yaml", PLAN.replace(old, new, 1))
+                self.fail_with(1, parts, "sweep", "plan.yaml", "--out", "a")
+                self.assertFalse(os.path.exists(self.path("a")))
+        self.fail_with(1, ["none.yaml cannot be read"], "sweep", "none.yaml", "--out", "a")
+        self.fail_with(2, ["I/N"], "sweep", "plan.yaml", "--out", "a", "--shard", "2/2")
+
+    def test_a_directory_of_another_plan_is_refused(self):
+        self.sweep("a")
+        before = tree(self.path("a"))
+        self.write("plan.yaml", PLAN.replace("seed: 7", "seed: 8"))
+        self.fail_with(1, ["a/plan.json is of another plan"], "sweep", "plan.yaml", "--out", "a")
+        self.assertEqual(tree(self.path("a")), before)
+
+    def test_dry_run_tells_runs_and_size_and_writes_nothing(self):
+        done = self.sweep("a", "--dry-run")
+        self.assertIn("runs 0 ... 5: class healthy, duty turning", done.stdout)
+        self.assertIn("expected time", done.stdout)
+        self.assertFalse(os.path.exists(self.path("a")))
+
+    def test_the_shipped_plans_are_right(self):
+        for name in ["small.yaml", "fault_grid.yaml"]:
+            rows = self.sweep("unused", "--list", plan=os.path.join(tool.CHECKOUT, "plans", name)).stdout.splitlines()
+            self.assertGreater(len(rows), 2)
+
+
+if __name__ == "__main__":
+    Sweep.mpi_executable = sys.argv.pop(2) if len(sys.argv) > 2 else None
+    tool.main()
