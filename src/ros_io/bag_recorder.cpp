@@ -13,7 +13,8 @@ BagRecorder::BagRecorder(const Twin& twin, const std::string& joint_namespace, B
   , tooth_forces_(twin.makeToothForces())
   , prefix_(joint_namespace + "/")
   , names_(twin.parameters().joint.name)
-  , recorded_faults_(std::numeric_limits<std::uint64_t>::max())
+  , recorded_faults_(twin.activeFaults().empty() ? twin.activeFaults().version() :
+                                                   std::numeric_limits<std::uint64_t>::max())
   , joint_states_(makeJointStates(JointNames(twin.parameters().joint.name)))
   , encoders_(makeEncoders(JointNames(twin.parameters().joint.name)))
   , contact_forces_(

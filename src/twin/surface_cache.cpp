@@ -30,8 +30,8 @@ namespace fs = std::filesystem;
 /// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface 1\n";
 /// Sections that the ring in equilibrium does not depend on.
-constexpr std::array<const char*, 9> OTHER_SECTIONS{ "joint.",  "brake.", "solver.",  "sensors.",
-                                                     "health.", "input.", "publish.", "realtime.", "fault" };
+constexpr std::array<const char*, 9> OTHER_SECTIONS{ "joint.", "brake.",   "solver.",   "sensors.", "health.",
+                                                     "input.", "publish.", "realtime.", "fault" };
 
 /// Format and every parameter that the surface may depend on.
 std::string header(const Parameters& parameters)
