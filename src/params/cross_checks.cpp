@@ -100,6 +100,22 @@ void checkLife(const Parameters& p, Contradictions& check)
                     " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
 }
 
+void checkFaults(const Parameters& p, Contradictions& check)
+{
+  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
+                { "bearing.ball_diameter", "bearing.pitch_diameter" },
+                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
+                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
+  for (std::size_t i = 0; i < p.faults.size(); ++i)
+  {
+    const std::string key = faultKey(static_cast<int>(i)) + '.';
+    const std::string errors = faultErrors(p.faults[i], p, key);
+    check.require(errors.empty(), { key + "kind" }, errors);
+  }
+  check.require(p.faults.size() <= MOST_FAULTS, { faultKey(static_cast<int>(MOST_FAULTS)) + ".kind" },
+                "more than " + std::to_string(MOST_FAULTS) + " faults");
+}
+
 void checkRates(const Parameters& p, Contradictions& check)
 {
   // The clock of the messages counts nanoseconds; a step that is no whole number of them would drift.
@@ -131,6 +147,7 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
   checkElements(parameters, check);
   checkLife(parameters, check);
   checkRates(parameters, check);
+  checkFaults(parameters, check);
   return check.take();
 }
 }  // namespace hjt
