@@ -71,6 +71,13 @@ private:
   std::vector<ros::Subscriber> subscribers_;
 };
 
+/// FILE_twin.bag beside FILE.bag.
+std::string defaultOutput(const std::filesystem::path& played_bag)
+{
+  const std::string stem = (played_bag.extension() == ".bag" ? played_bag.stem() : played_bag.filename()).string();
+  return played_bag.parent_path() / (stem + "_twin.bag");
+}
+
 void record(const std::set<std::string>& topics, const std::string& path, bool force)
 {
   if (!force && std::filesystem::exists(path))
@@ -94,13 +101,14 @@ int main(int argc, char** argv)
   std::string twin_namespace = "/joint_twin";
   bool force = false;
   app.add_option("played", played_bag, "the bag being played")->required()->check(CLI::ExistingFile);
-  app.add_option("output", output_bag, "the bag to write")->required();
+  app.add_option("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag beside the one played");
   app.add_option("--joint-namespace", twin_namespace, "of the twin's topics")->capture_default_str();
   app.add_flag("--force", force, "overwrite an existing output");
   CLI11_PARSE(app, argc, argv);
   try
   {
-    record(topicsToRecord(played_bag, twin_namespace), output_bag, force);
+    record(topicsToRecord(played_bag, twin_namespace), output_bag.empty() ? defaultOutput(played_bag) : output_bag,
+           force);
   }
   catch (const std::exception& error)
   {

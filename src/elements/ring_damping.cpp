@@ -69,37 +69,65 @@ HJT_VECTOR_CLONES void RingDamping::add(const RingShape& shape, const RingForces
   friction.viscous(1, 1) += oo;
 }
 
-DashpotPower RingDamping::addForces(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& speeds,
-                                    const Eigen::VectorXd& growth, Eigen::VectorXd& force) const noexcept
+HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, const RingForces& forces,
+                                                      const Eigen::VectorXd& speeds, const Eigen::VectorXd& growth,
+                                                      Eigen::VectorXd& force) const noexcept
 {
-  DashpotPower power;
   const int n = shape.teeth();
-  const int wave_generator = 2 * n;
-  force.head(2 * n) -= tooth_ * speeds.head(2 * n);
-  power.dissipated += tooth_ * speeds.head(2 * n).squaredNorm();
+  const double* __restrict__ speed = speeds.data();
+  const double* __restrict__ direction = shape.directions.data();
+  const double* __restrict__ point = shape.points.data();
+  const double* __restrict__ normal = forces.contact_normal.data();
+  const double* __restrict__ depth = forces.contact_depth.data();
+  const double* __restrict__ pressed = forces.contact_force.data();
+  const double* __restrict__ grows = growth.data();
+  double* __restrict__ out = force.data();
+  const double tension = tension_;
+  const double tooth = tooth_;
+  const double contact = contact_;
+  const double smoothing = smoothing_;
+  const double turning = speed[2 * n];
+  double dissipated = 0.0;
+  double supplied = 0.0;
+  double torque = 0.0;  // on the wave generator
+  const auto stretchRate = [&](int i, int j)
+  {
+    return direction[2 * i] * (speed[2 * j] - speed[2 * i]) +
+           direction[2 * i + 1] * (speed[2 * j + 1] - speed[2 * i + 1]);
+  };
+  // Each tooth takes up both its segments, so that no two teeth write to one place.
+  const auto addSegments = [&](int before, int i, int after)
+  {
+    const double rate = stretchRate(i, after);
+    const double pull = tension * rate;
+    const double pull_before = tension * stretchRate(before, i);
+    out[2 * i] += pull * direction[2 * i] - pull_before * direction[2 * before];
+    out[2 * i + 1] += pull * direction[2 * i + 1] - pull_before * direction[2 * before + 1];
+    return pull * rate;
+  };
+  dissipated += addSegments(n - 1, 0, 1) + addSegments(n - 2, n - 1, 0);
+#pragma omp simd reduction(+ : dissipated)
+  for (int i = 1; i < n - 1; ++i)
+  {
+    dissipated += addSegments(i - 1, i, i + 1);
+  }
+#pragma omp simd reduction(+ : dissipated, supplied, torque)
   for (int i = 0; i < n; ++i)
   {
-    const int j = shape.next(i);
-    const Eigen::Vector2d along = shape.directions.segment<2>(2 * i);
-    const double stretch_rate = along.dot(speeds.segment<2>(2 * j) - speeds.segment<2>(2 * i));
-    force.segment<2>(2 * i) += tension_ * stretch_rate * along;
-    force.segment<2>(2 * j) -= tension_ * stretch_rate * along;
-    power.dissipated += tension_ * stretch_rate * stretch_rate;
-
-    const double contact = contactStrength(forces, i);
-    if (contact == 0.0)
-    {
-      continue;
-    }
-    const Eigen::Vector2d normal = forces.contact_normal.segment<2>(2 * i);
-    const double lever = surfaceLever(shape, forces, i);
-    const double depth_rate = lever * speeds[wave_generator] + growth[i] - normal.dot(speeds.segment<2>(2 * i));
-    force.segment<2>(2 * i) += contact * depth_rate * normal;
-    force[wave_generator] -= contact * depth_rate * lever;
-    power.dissipated += contact * depth_rate * depth_rate;
-    power.supplied += contact * depth_rate * growth[i];
+    const double vx = speed[2 * i];
+    const double vy = speed[2 * i + 1];
+    const double strength = pressed[i] > 0.0 ? contact * ContactRamp(depth[i], smoothing).tangent : 0.0;
+    const double lever = point[2 * i] * normal[2 * i + 1] - point[2 * i + 1] * normal[2 * i];
+    const double rate = lever * turning + grows[i] - normal[2 * i] * vx - normal[2 * i + 1] * vy;
+    const double push = strength * rate;
+    out[2 * i] += push * normal[2 * i] - tooth * vx;
+    out[2 * i + 1] += push * normal[2 * i + 1] - tooth * vy;
+    torque -= push * lever;
+    dissipated += push * rate + tooth * (vx * vx + vy * vy);
+    supplied += push * grows[i];
   }
-  return power;
+  out[2 * n] += torque;
+  return { dissipated, supplied };
 }
 
 void RingDamping::addTangent(const RingShape& shape, const RingForces& forces, double scale,

@@ -43,13 +43,16 @@ const char* stateText(LoopState state)
 constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders", "contact_forces", "health" };
 }  // namespace
 
-Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop, const Inbox& inbox,
-                         const InputSubscribers& subscribers, const OutputPublishers& publishers)
+Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop,
+                         const RealtimeState& realtime, const Inbox& inbox, const InputSubscribers& subscribers,
+                         const OutputPublishers& publishers)
   : loop_(loop)
+  , realtime_(realtime)
   , inbox_(inbox)
   , subscribers_(subscribers)
   , publishers_(publishers)
   , command_timeout_(parameters.input.command_timeout)
+  , deadline_(parameters.realtime.deadline)
   , clock_moved_(ros::WallTime::now())
 {
   updater_.setHardwareID(parameters.joint.hardware_id);
@@ -97,6 +100,7 @@ void Diagnostics::readSnapshot()
   lost_inputs_.update(twin.input.overflow + snapshot_.overflow + loop.waiting_overflow, now);
   refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort, now);
   clock_jumps_.update(loop.clock_jumps, now);
+  missed_deadlines_.update(loop.timing.missed_deadlines, now);
   std::uint64_t dropped = 0;
   for (const ChannelCounters& output : snapshot_.outputs)
   {
@@ -196,9 +200,17 @@ Verdict Diagnostics::judgeTiming() const
   {
     return { DiagnosticStatus::WARN, "Behind the clock and catching up; ~reset starts anew at the current instant" };
   }
+  if (missed_deadlines_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" };
+  }
   if ((ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER)
   {
     return { DiagnosticStatus::WARN, "The clock stands" };
+  }
+  if (!realtime_.refusals.empty())
+  {
+    return { DiagnosticStatus::WARN, "In time, but without what was asked for below realtime: see the log" };
   }
   return { DiagnosticStatus::OK, "In time" };
 }
@@ -257,6 +269,19 @@ void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
   status.addf("Simulated instant [s]", "%.4f", toSeconds(loop.twin_stamp));
   status.add("Lag [s]", toSeconds(loop.lag));
   status.add("Largest lag [s]", toSeconds(loop.largest_lag));
+  status.add("Deadline [s]", deadline_);
+  status.add("Deadlines missed", loop.timing.missed_deadlines);
+  status.add("Lateness, median [s]", toSeconds(loop.timing.lateness.quantile(0.5)));
+  status.add("Lateness, 99.9 % [s]", toSeconds(loop.timing.lateness.quantile(0.999)));
+  status.add("Lateness, largest [s]", toSeconds(loop.timing.lateness.largest()));
+  status.add("Wake-up jitter, 99.9 % [s]", toSeconds(loop.timing.wake_up.quantile(0.999)));
+  status.add("Wake-up jitter, largest [s]", toSeconds(loop.timing.wake_up.largest()));
+  status.add("Longest cycle [s]", toSeconds(loop.timing.longest_cycle));
+  status.add("Real-time factor", loop.timing.realTimeFactor());
+  status.add("Load of the loop", loop.timing.load());
+  status.add("Scheduling", realtime_.scheduling);
+  status.add("Memory", realtime_.memory);
+  status.add("Processor", realtime_.processor);
   status.add("Cycles", loop.cycles);
   status.add("Cycles overrun", loop.overruns);
   status.add("Clock jumps back", loop.clock_jumps);

@@ -2,9 +2,13 @@
 #include "harmonic_joint_twin/ros_io/twin_loop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 #include <utility>
+
+#include <pthread.h>
+#include <sys/prctl.h>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
 
@@ -23,14 +27,43 @@ constexpr Stamp LONGEST_CATCH_UP = 20'000'000;
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// How long a request waits for the loop.
 constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
+/// More than the loop ever has on its stack [bytes].
+constexpr std::size_t STACK_SIZE = 256 * 1024;
+
+Stamp nanoseconds(steady_clock::duration duration)
+{
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Has the pages of the stack mapped before the first cycle needs them.
+__attribute__((noinline)) void touchStack()
+{
+  std::array<volatile char, STACK_SIZE> stack;
+  constexpr std::size_t PAGE = 4096;
+  for (std::size_t byte = 0; byte < stack.size(); byte += PAGE)
+  {
+    stack[byte] = 0;
+  }
+}
+
+void prepareThread()
+{
+  pthread_setname_np(pthread_self(), "twin_loop");
+  // Linux may let a thread without real-time priority sleep 50 us longer than it asked for.
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  touchStack();
+}
 }  // namespace
 
-TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, AfterStep after_step)
+TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step)
   : twin_(twin)
   , inbox_(inbox)
   , clock_(std::move(clock))
+  , clock_kind_(clock_kind)
   , after_step_(std::move(after_step))
   , hold_back_(toStampLength(twin.parameters().input.hold_back))
+  , deadline_(toStampLength(twin.parameters().realtime.deadline))
+  , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
   , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
   , arrived_(Inbox::makeBuffer())
   , waiting_(Inbox::makeBuffer())
@@ -57,22 +90,20 @@ bool TwinLoop::reset()
 
 void TwinLoop::run()
 {
-  auto deadline = steady_clock::now();
+  prepareThread();
+  auto wake_up = steady_clock::now();
   while (!stopping_)
   {
     const auto begin = steady_clock::now();
     cycle();
     const auto end = steady_clock::now();
-    if (end - begin > CYCLE_PERIOD)
-    {
-      ++status_.overruns;
-    }
-    ++status_.cycles;
+    keepTimes(begin, end);
     shown_status_.tryWrite(status_);
-    deadline = std::max(deadline + CYCLE_PERIOD, end);
-    if (status_.lag < LONGEST_CATCH_UP)
+    wake_up = std::max(wake_up + CYCLE_PERIOD, end);
+    if (wake_up > end && status_.lag < LONGEST_CATCH_UP)
     {
-      std::this_thread::sleep_until(deadline);
+      std::this_thread::sleep_until(wake_up);
+      status_.timing.wake_up.add(nanoseconds(steady_clock::now() - wake_up));
     }
   }
 }
@@ -178,8 +209,13 @@ void TwinLoop::start(Stamp stamp) noexcept
 {
   twin_.reset(stamp);
   status_.state = LoopState::RUNNING;
+  status_.lag = 0;
   status_.largest_lag = 0;
   status_.command_seen = false;
+  status_.timing = {};
+  released_ = status_.clock;
+  start_stamp_ = stamp;
+  start_time_ = steady_clock::now();
   for (Input& input : waiting_)
   {
     // The twin was not there yet when these were due: they act from its first instant and are not late.
@@ -209,6 +245,11 @@ void TwinLoop::handOver(const Input& input) noexcept
 
 void TwinLoop::catchUp(Stamp limit) noexcept
 {
+  if (clock_kind_ == ClockKind::STEPPED && status_.lag < step_length_)
+  {
+    released_ = status_.clock;
+  }
+  const Stamp first = twin_.stamp() + step_length_;
   const Stamp until = std::min(limit, twin_.stamp() + LONGEST_CATCH_UP);
   while (twin_.step(until))
   {
@@ -216,5 +257,36 @@ void TwinLoop::catchUp(Stamp limit) noexcept
   }
   status_.lag = std::max<Stamp>(limit - twin_.stamp(), 0);
   status_.largest_lag = std::max(status_.largest_lag, status_.lag);
+  if (twin_.stamp() >= first)
+  {
+    judgeLateness(std::max(first + hold_back_, released_));
+  }
+}
+
+void TwinLoop::judgeLateness(Stamp due) noexcept
+{
+  const Stamp lateness = clock_() - due;
+  status_.timing.lateness.add(lateness);
+  if (lateness > deadline_)
+  {
+    ++status_.timing.missed_deadlines;
+  }
+}
+
+void TwinLoop::keepTimes(steady_clock::time_point begin, steady_clock::time_point end) noexcept
+{
+  ++status_.cycles;
+  if (end - begin > CYCLE_PERIOD)
+  {
+    ++status_.overruns;
+  }
+  if (status_.state == LoopState::RUNNING)
+  {
+    LoopTiming& timing = status_.timing;
+    timing.longest_cycle = std::max(timing.longest_cycle, nanoseconds(end - begin));
+    timing.busy += nanoseconds(end - begin);
+    timing.elapsed = nanoseconds(end - start_time_);
+    timing.simulated = twin_.stamp() - start_stamp_;
+  }
 }
 }  // namespace hjt

@@ -16,6 +16,22 @@ Stamp now()
   return fromRosTime(ros::Time::now());
 }
 
+/// Whether the clock is the system's or somebody's on /clock is settled once the node runs.
+ClockKind clockKind()
+{
+  return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
+}
+
+RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
+{
+  RealtimeState state = applyRealtime(parameters, loop.thread());
+  for (const std::string& refusal : state.refusals)
+  {
+    ROS_WARN_STREAM(refusal);
+  }
+  return state;
+}
+
 /// Response surfaces from the user's cache; building tells how far it is.
 SurfaceSource surfaceSource()
 {
@@ -28,9 +44,11 @@ SurfaceSource surfaceSource()
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
   : twin_(parameters, {}, surfaceSource())
   , publishers_(node, twin_)
-  , loop_(twin_, inbox_, now, [this](Twin& twin) { publishers_.offer(twin); })
+  , loop_(twin_, inbox_, now, clockKind(), [this](Twin& twin) { publishers_.offer(twin); })
+  , realtime_(requestRealtime(parameters.realtime, loop_))
   , subscribers_(node, JointNames(parameters.joint.name), inbox_)
-  , diagnostics_(node, parameters, loop_, inbox_, subscribers_, publishers_)
+  , timing_publisher_(node, parameters, loop_)
+  , diagnostics_(node, parameters, loop_, realtime_, inbox_, subscribers_, publishers_)
   , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))
   , brake_service_(node.advertiseService("brake", &TwinNode::setBrake, this))
 {

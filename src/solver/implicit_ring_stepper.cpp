@@ -36,6 +36,7 @@ bool ImplicitRingStepper::step(RingMotion& motion, double length) noexcept
   begin_ = motion;
   double stride = length;
   int halvings = 0;
+  restart();
   ring_.pairTeeth(motion.q, motion.time);
   double done = 0.0;
   while (done < length)
@@ -45,6 +46,7 @@ bool ImplicitRingStepper::step(RingMotion& motion, double length) noexcept
     {
       done = next < length - done ? done + next : length;
       stride *= 2.0;
+      accept();
       ring_.pairTeeth(motion.q, motion.time);
       continue;
     }
@@ -74,10 +76,12 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
     const double time = motion.time + tableau_.times[k] * length;
     if (i == 0 && tableau_.explicit_first)
     {
-      ring_.evaluate(motion.q, motion.v, time);
-      ++counts_.force_evaluations;
-      speeds_[k] = motion.v;
-      accelerations_[k] = ring_.force().cwiseProduct(ring_.inverseMass());
+      if (!begun_)
+      {
+        ring_.evaluate(motion.q, motion.v, time);
+        ++counts_.force_evaluations;
+        begin(motion.v);
+      }
     }
     else
     {
@@ -99,8 +103,8 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
       }
       speeds_[k] = v_;
       accelerations_[k] = (v_ - v_bar_) / stage_step_;
+      powers_[k] = ring_.power();
     }
-    powers_[k] = ring_.power();
   }
   error_ = 0.0;
   if (!tableau_.error.empty())
@@ -121,6 +125,23 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
   motion.v = v_;
   motion.time += length;
   return true;
+}
+
+/// The explicit first stage, from the forces the ring was last evaluated at.
+void ImplicitRingStepper::begin(const Eigen::VectorXd& speeds) noexcept
+{
+  speeds_.front() = speeds;
+  accelerations_.front() = ring_.force().cwiseProduct(ring_.inverseMass());
+  powers_.front() = ring_.power();
+  begun_ = true;
+}
+
+void ImplicitRingStepper::accept() noexcept
+{
+  if (tableau_.explicit_first)
+  {
+    begin(v_);  // the last stage was the step's end
+  }
 }
 
 /// Out-of-balance force at the speeds v_, into residual_; q_ follows. The speeds are the unknowns because they keep their

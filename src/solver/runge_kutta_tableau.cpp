@@ -7,7 +7,7 @@ namespace hjt
 {
 const RungeKuttaTableau& implicitEuler()
 {
-  static const RungeKuttaTableau TABLEAU{ 1, 1.0, false, { {} }, { 1.0 }, {} };
+  static const RungeKuttaTableau TABLEAU{ 1, 1.0, false, { {} }, { 1.0 }, {}, 0 };
   return TABLEAU;
 }
 
@@ -19,7 +19,7 @@ const RungeKuttaTableau& trBdf2()
     const double w = 0.25 * std::sqrt(2.0);
     // Weights of the step less those of the embedded method of order 3.
     const std::vector<double> error{ w - (1.0 - w) / 3.0, w - (3.0 * w + 1.0) / 3.0, g - g / 3.0 };
-    return RungeKuttaTableau{ 2, g, true, { {}, { g }, { w, w } }, { 0.0, 2.0 * g, 1.0 }, error };
+    return RungeKuttaTableau{ 2, g, true, { {}, { g }, { w, w } }, { 0.0, 2.0 * g, 1.0 }, error, 3 };
   }();
   return TABLEAU;
 }
@@ -48,7 +48,8 @@ const RungeKuttaTableau& esdirk4()
                                   2285395.0 / 8070912.0 },
                                 last },
                               { 0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0 },
-                              error };
+                              error,
+                              4 };
   }();
   return TABLEAU;
 }

@@ -131,7 +131,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   drive.load_torque = setup.load;
   DynamicRing ring(model, parameters.ring, drive);
   ring.setSpaces(balanced.shape().space);
-  const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver);
+  const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver, setup.tolerance);
   RingMotion motion(ring.coordinates());
   if (!travelInEquilibrium(balanced, setup.speed, setup.load, motion))
   {

@@ -68,7 +68,7 @@ TransientResult analyseTransient(const Parameters& parameters, const TransientSe
   drive.wave_generator_driven = true;
   drive.output_driven = true;
   DynamicRing ring(model, parameters.ring, drive);
-  const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver);
+  const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver, setup.tolerance);
   RingMotion motion(ring.coordinates());
   motion.q.head(2 * ring.teeth()) = model.ring.rest.points();
   ring.evaluate(motion.q, motion.v, 0.0);

@@ -30,8 +30,8 @@ namespace fs = std::filesystem;
 /// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface 1\n";
 /// Sections that the ring in equilibrium does not depend on.
-constexpr std::array<const char*, 7> OTHER_SECTIONS{ "joint.",  "brake.", "solver.", "sensors.",
-                                                     "health.", "input.", "publish." };
+constexpr std::array<const char*, 8> OTHER_SECTIONS{ "joint.",  "brake.", "solver.",  "sensors.",
+                                                     "health.", "input.", "publish.", "realtime." };
 
 /// Format and every parameter that the surface may depend on.
 std::string header(const Parameters& parameters)

@@ -367,11 +367,15 @@ struct SoftRing : Bench
 
   RingMotion after(RingMethod method, double duration, int steps)
   {
-    const auto stepper = makeRingStepper(method, *ring, parameters.solver);
+    return after(*makeRingStepper(method, *ring, parameters.solver), duration, steps);
+  }
+
+  RingMotion after(RingStepper& stepper, double duration, int steps)
+  {
     RingMotion motion = start;
     for (int k = 0; k < steps; ++k)
     {
-      EXPECT_TRUE(stepper->step(motion, duration / steps));
+      EXPECT_TRUE(stepper.step(motion, duration / steps));
     }
     ring->evaluate(motion.q, motion.v, motion.time);
     return motion;
@@ -390,13 +394,15 @@ TEST(RingStepper, ConvergesWithItsOrder)
     double order;
   };
   SoftRing bench;
-  const RingMotion reference = bench.after(RingMethod::RUNGE_KUTTA4, DURATION, 2000);
-  for (const Case& test : { Case{ RingMethod::RUNGE_KUTTA4, 50, 4.0 }, Case{ RingMethod::IMPLICIT_EULER, 800, 1.0 },
-                            Case{ RingMethod::TR_BDF2, 200, 2.0 }, Case{ RingMethod::ESDIRK4, 50, 4.0 } })
+  const RingMotion reference = bench.after(RingMethod::DORMAND_PRINCE8, DURATION, 400);
+  for (const Case& test : { Case{ RingMethod::RUNGE_KUTTA4, 50, 4.0 }, Case{ RingMethod::DORMAND_PRINCE8, 14, 8.0 },
+                            Case{ RingMethod::IMPLICIT_EULER, 800, 1.0 }, Case{ RingMethod::TR_BDF2, 200, 2.0 },
+                            Case{ RingMethod::ESDIRK4, 50, 4.0 } })
   {
     const double coarse = (bench.after(test.method, DURATION, test.steps).q - reference.q).norm();
     const double fine = (bench.after(test.method, DURATION, 2 * test.steps).q - reference.q).norm();
-    EXPECT_NEAR(std::log2(coarse / fine), test.order, 0.25) << static_cast<int>(test.method) << " " << coarse;
+    EXPECT_NEAR(std::log2(coarse / fine), test.order, 0.0625 * test.order)
+        << static_cast<int>(test.method) << " " << coarse;
     EXPECT_LT(fine, 0.2 * (reference.q - bench.start.q).norm());
   }
 }
@@ -439,6 +445,7 @@ TEST(RingStepper, EnergyBalancesButForWhatTheMethodDamps)
     return lost(*bench.ring, motion, stored, kinetic) / kinetic;
   };
   EXPECT_LT(std::abs(lossOf(RingMethod::RUNGE_KUTTA4, 4000)), 1e-7);
+  EXPECT_LT(std::abs(lossOf(RingMethod::DORMAND_PRINCE8, 200)), 1e-7);
   EXPECT_LT(std::abs(lossOf(RingMethod::ESDIRK4, 1000)), 1e-5);
   EXPECT_GT(lossOf(RingMethod::IMPLICIT_EULER, 1000), 0.05);  // its own damping
 }
@@ -523,15 +530,57 @@ TEST(RingStepper, AnEquilibriumStays)
 TEST(RingStepper, AFailedStepLeavesTheMotion)
 {
   SoftRing bench;
-  for (const RingMethod method : { RingMethod::RUNGE_KUTTA4, RingMethod::ESDIRK4 })
+  for (const auto& [method, tolerance] :
+       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 0.0 },
+         std::pair{ RingMethod::ESDIRK4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 1e-6 },
+         std::pair{ RingMethod::ESDIRK4, 1e-6 } })
   {
     RingMotion motion = bench.start;
     motion.v[3] = std::numeric_limits<double>::quiet_NaN();
-    const auto stepper = makeRingStepper(method, *bench.ring, bench.parameters.solver);
+    const auto stepper = makeRingStepper(method, *bench.ring, bench.parameters.solver, tolerance);
     EXPECT_FALSE(stepper->step(motion, 1e-5));
     EXPECT_EQ(motion.q, bench.start.q);
     EXPECT_EQ(motion.time, 0.0);
   }
+}
+
+TEST(AdaptiveRingStepper, ErrorFollowsTheTolerance)
+{
+  constexpr double DURATION = 4e-4;
+  SoftRing bench;
+  const RingMotion reference = bench.after(RingMethod::DORMAND_PRINCE8, DURATION, 400);
+  for (const auto& [method, loosest] : { std::pair{ RingMethod::TR_BDF2, 1e-6 }, std::pair{ RingMethod::ESDIRK4, 1e-6 },
+                                         std::pair{ RingMethod::DORMAND_PRINCE8, 1e-4 } })
+  {
+    long steps = 0;
+    double looser = 1.0;
+    for (const double tolerance : { loosest, 1e-2 * loosest, 1e-4 * loosest })
+    {
+      SCOPED_TRACE(std::to_string(static_cast<int>(method)) + ", tolerance " + std::to_string(1e9 * tolerance) + " nm");
+      const auto stepper = makeRingStepper(method, *bench.ring, bench.parameters.solver, tolerance);
+      const RingMotion motion = bench.after(*stepper, DURATION, 2);
+      EXPECT_NEAR(motion.time, DURATION, 1e-18);
+      // Of all steps together; the modes keep what single steps leave.
+      const double error = (motion.q - reference.q).lpNorm<Eigen::Infinity>();
+      EXPECT_LT(error, 0.5 * tolerance * static_cast<double>(stepper->counts().steps));
+      EXPECT_LT(error, 0.1 * looser);
+      looser = error;
+      EXPECT_GT(stepper->counts().steps, steps);
+      steps = stepper->counts().steps;
+    }
+  }
+}
+
+TEST(AdaptiveRingStepper, ShrinksItsStepWhereTheRingIsStruckAndTakesBackWhatWasTooLong)
+{
+  const Parameters parameters = thesisParameters({ "contact.law=normal" });
+  // At rest, and then a wave that grows: nothing announces the stroke.
+  TransientSetup setup{ RingMethod::ESDIRK4, 5e-4, 6e-3, 5e-3, 5e-3, 1e-3, 1e-7 };
+  const TransientResult result = analyseTransient(parameters, setup, [](double) {});
+  ASSERT_TRUE(result.finished);
+  EXPECT_GT(result.counts.rejections, 0);
+  EXPECT_LT(result.counts.rejections, result.counts.steps / 4);
+  EXPECT_GT(result.counts.steps, 12);
 }
 
 TEST(RingStepper, AStepTooLongIsHalved)
@@ -550,12 +599,15 @@ TEST(RingStepper, AllocatesNothing)
   const Parameters parameters = thesisParameters();
   RingDrive drive;
   drive.wave = { 0.0, 0.0, 0.07 };
-  for (const RingMethod method : { RingMethod::RUNGE_KUTTA4, RingMethod::TR_BDF2, RingMethod::ESDIRK4 })
+  for (const auto& [method, tolerance] :
+       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 0.0 },
+         std::pair{ RingMethod::TR_BDF2, 0.0 }, std::pair{ RingMethod::ESDIRK4, 0.0 },
+         std::pair{ RingMethod::ESDIRK4, 1e-9 } })
   {
     Bench bench(parameters, drive);
     RingMotion motion(bench.ring->coordinates());
     motion.q.head(2 * bench.ring->teeth()) = bench.model.ring.rest.points();
-    const auto stepper = makeRingStepper(method, *bench.ring, parameters.solver);
+    const auto stepper = makeRingStepper(method, *bench.ring, parameters.solver, tolerance);
     const std::size_t before = allocationCount();
     for (int k = 0; k < 10; ++k)
     {

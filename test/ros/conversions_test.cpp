@@ -95,23 +95,5 @@ TEST(OutputSchedule, CountsPeriodsFromTheEpoch)
   EXPECT_TRUE(schedule.isDue(Output::HEALTH, 1'700'000'000'100'000'000));
   EXPECT_FALSE(schedule.isDue(Output::HEALTH, 1'700'000'000'100'100'000));
 }
-
-TEST(OutputSchedule, RefusesARateThatDoesNotDivideTheSolvers)
-{
-  Parameters parameters = shippedParameters();
-  parameters.publish.encoders_rate = 3000.0;
-  try
-  {
-    const OutputSchedule schedule(parameters);
-    FAIL() << "3000 Hz does not divide 10000 Hz";
-  }
-  catch (const ParameterError& error)
-  {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("publish.encoders_rate"), std::string::npos) << text;
-    EXPECT_NE(text.find("3000"), std::string::npos) << text;
-    EXPECT_NE(text.find("[Hz]"), std::string::npos) << text;
-  }
-}
 }  // namespace
 }  // namespace hjt

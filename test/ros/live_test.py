@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-from harmonic_joint_twin.msg import ContactForces, Encoders, Health
+from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Timing
 from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, wait_until
 
 NODE = "/joint_twin"
@@ -85,6 +85,23 @@ class Live(unittest.TestCase):
         self.assertAlmostEqual(encoders.motor_angle, encoders.motor_angle_true, delta=2.0 * math.pi / 4320)
         for listener in listeners.values():
             listener.close()
+
+    def test_the_timing_of_the_loop_comes_once_a_second(self):
+        listener = Listener(f"{NODE}/timing", Timing)
+        first, second = listener.wait_for(2)[:2]
+        listener.close()
+        self.assertEqual(first.header.frame_id, JOINT)
+        self.assertGreater(second.duration, first.duration)
+        self.assertGreater(sum(second.lateness_count), sum(first.lateness_count))
+        self.assertEqual(len(second.bin_end), len(second.wake_up_count))
+        self.assertEqual(len(second.bin_end), len(second.lateness_count))
+        for name in ("wake_up", "lateness"):
+            ascending = [getattr(second, f"{name}_{what}") for what in ("median", "p99", "p999", "max")]
+            self.assertEqual(ascending, sorted(ascending), name)
+            self.assertGreater(ascending[0], 0.0, name)
+        self.assertGreater(second.real_time_factor, 0.0)
+        self.assertTrue(0.0 < second.load <= 1.0, second.load)
+        self.assertAlmostEqual(second.deadline, 0.005)
 
     def test_nothing_is_computed_for_topics_nobody_hears(self):
         wait_until(lambda: self.silence(), "all topics to fall silent")

@@ -128,8 +128,8 @@ def load_parameters(node, files, changes=None):
 class Node:
     """A joint_twin_node in a process of its own."""
 
-    def __init__(self, name, *remappings):
-        command = [executable("joint_twin_node"), f"__name:={name}", *remappings]
+    def __init__(self, name, *remappings, prefix=()):
+        command = [*prefix, executable("joint_twin_node"), f"__name:={name}", *remappings]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self._lines = []
         self._reader = threading.Thread(target=self._read, daemon=True)

@@ -132,6 +132,12 @@ class SimTime(unittest.TestCase):
         self.assertEqual(len(curves[0]), 170)
         self.assertEqual(curves[0], curves[1])
 
+    def test_7_a_long_step_of_the_clock_is_no_missed_deadline(self):
+        before = self.diagnostics.fresh("Timing")["Deadlines missed"]
+        end = 21 * SECOND
+        self.run_clock(end, end)
+        self.assertEqual(self.diagnostics.fresh("Timing")["Deadlines missed"], before)
+
 
 if __name__ == "__main__":
     # By the system's clock: this test is the one that makes the other.

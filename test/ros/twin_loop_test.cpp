@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "harmonic_joint_twin/ros_io/latency_histogram.hpp"
 #include "harmonic_joint_twin/ros_io/slot_ring.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
@@ -36,14 +37,14 @@ struct Instant
 class LoopFixture : public testing::Test
 {
 protected:
-  void start(bool wait_for_first_input)
+  void start(bool wait_for_first_input, ClockKind clock_kind = ClockKind::STEPPED)
   {
     const std::string wait = wait_for_first_input ? "true" : "false";
     twin_ = std::make_unique<Twin>(
         shippedParameters({ "solver.rate=1000", "input.hold_back=0.02", "input.wait_for_first_input=" + wait }));
     instants_.reserve(1 << 20);
     loop_ = std::make_unique<TwinLoop>(
-        *twin_, inbox_, [this] { return clock_.load(); },
+        *twin_, inbox_, [this] { return clock_.load(); }, clock_kind,
         [this](Twin& twin) {
           instants_.push_back({ twin.outputs().stamp, twin.outputs().motor_torque });
         });
@@ -182,6 +183,37 @@ TEST_F(LoopFixture, ResetStartsAnewAtTheCurrentInstantAndGivesUpALag)
   EXPECT_EQ(loop_->status().resets, 1U);
 }
 
+TEST_F(LoopFixture, CountsNoMissedDeadlineHoweverFarASimulatedClockSteps)
+{
+  start(false);
+  setClock(100 * SECOND);
+  setClock(103 * SECOND);
+  EXPECT_GT(loop_->status().timing.lateness.count(), 0U);
+  EXPECT_EQ(loop_->status().timing.lateness.largest(), 0);
+  EXPECT_EQ(loop_->status().timing.missed_deadlines, 0U);
+}
+
+TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
+{
+  start(false, ClockKind::RUNNING);
+  setClock(100 * SECOND);
+  setClock(100 * SECOND + HOLD_BACK + 5 * MILLISECOND);
+  EXPECT_EQ(loop_->status().timing.lateness.largest(), 4 * MILLISECOND) << "the oldest of five instants";
+  EXPECT_EQ(loop_->status().timing.missed_deadlines, 0U) << "4 ms late are within 5 ms";
+  setClock(103 * SECOND);
+  const LoopTiming timing = loop_->status().timing;
+  EXPECT_EQ(timing.lateness.largest(), 3 * SECOND - HOLD_BACK - 6 * MILLISECOND);
+  EXPECT_GE(timing.missed_deadlines, 140U) << "one a cycle of 20 ms, until it has caught up";
+  EXPECT_EQ(timing.simulated, 3 * SECOND - HOLD_BACK);
+  EXPECT_GT(timing.wake_up.count(), 0U);
+  EXPECT_GT(timing.longest_cycle, 0);
+  EXPECT_GT(timing.load(), 0.0);
+  ASSERT_TRUE(loop_->reset());
+  waitForCycles(2);
+  EXPECT_EQ(loop_->status().timing.missed_deadlines, 0U);
+  EXPECT_EQ(loop_->status().timing.lateness.count(), 0U);
+}
+
 TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
 {
   SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(JointNames("joint"), 200));
@@ -190,7 +222,7 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   ToothForces forces = twin_->makeToothForces();
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
-      *twin_, inbox_, [this] { return clock_.load(); },
+      *twin_, inbox_, [this] { return clock_.load(); }, ClockKind::STEPPED,
       [&](Twin& twin)
       {
         if (auto* message = ring.claim())
@@ -212,6 +244,55 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   waitFor([this] { return loop_->status().lag < STEP; });
   EXPECT_EQ(allocationCount(), before);
   EXPECT_EQ(loop_->status().counters.steps, static_cast<std::uint64_t>((SECOND - HOLD_BACK) / STEP));
+}
+
+TEST(LatencyHistogram, HoldsEveryLatencyInABinOfAnEighth)
+{
+  for (const Stamp latency : { Stamp{ 0 }, Stamp{ 1023 }, Stamp{ 1024 }, Stamp{ 1151 }, Stamp{ 1152 }, Stamp{ 999'999 },
+                               5 * MILLISECOND, SECOND, 17 * SECOND })
+  {
+    LatencyHistogram histogram;
+    histogram.add(latency);
+    std::size_t bin = 0;
+    while (histogram.bins()[bin] == 0)
+    {
+      ++bin;
+    }
+    EXPECT_LT(latency, LatencyHistogram::binEnd(bin));
+    if (bin > 0)
+    {
+      EXPECT_GE(latency, LatencyHistogram::binEnd(bin - 1));
+      EXPECT_LE(LatencyHistogram::binEnd(bin) * 8, LatencyHistogram::binEnd(bin - 1) * 9);
+    }
+  }
+}
+
+TEST(LatencyHistogram, KeepsWhatIsBeyondItsRangeInTheLastBin)
+{
+  LatencyHistogram histogram;
+  histogram.add(std::numeric_limits<Stamp>::max());
+  histogram.add(-1);
+  EXPECT_EQ(histogram.bins().back(), 1U);
+  EXPECT_EQ(histogram.bins().front(), 1U);
+  EXPECT_EQ(histogram.largest(), std::numeric_limits<Stamp>::max());
+}
+
+TEST(LatencyHistogram, TellsQuantilesToTheEndOfTheirBin)
+{
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.quantile(0.5), 0);
+  for (int i = 1; i <= 1000; ++i)
+  {
+    histogram.add(i * MILLISECOND);
+  }
+  EXPECT_EQ(histogram.count(), 1000U);
+  for (const double share : { 0.001, 0.5, 0.99, 0.999, 1.0 })
+  {
+    const double exact = share * static_cast<double>(SECOND);
+    EXPECT_GE(static_cast<double>(histogram.quantile(share)), exact);
+    EXPECT_LE(static_cast<double>(histogram.quantile(share)), 1.125 * exact);
+  }
+  EXPECT_EQ(histogram.quantile(1.0), SECOND);
 }
 
 TEST(Inbox, DropsWhatItCannotHoldAndCounts)

@@ -12,10 +12,10 @@ class Transient(tool.ToolTest):
         static = self.succeed_json("insert", *THESIS)["wave_generator_force_max"]
         result = self.succeed_json("transient", "--method", "implicit_euler", "--step", "1e-5", *THESIS)
         self.assertEqual(set(result),
-                         {"method", "step", "window_start", "force_max_lowest", "force_max_highest", "force_max_mean",
-                          "energy_supplied", "energy_stored", "energy_kinetic", "energy_dissipated", "energy_lost",
-                          "steps", "force_evaluations", "factorisations", "halvings", "solve_time", "series", "tooth_x",
-                          "tooth_y"})
+                         {"method", "step", "tolerance", "window_start", "force_max_lowest", "force_max_highest",
+                          "force_max_mean", "energy_supplied", "energy_stored", "energy_kinetic", "energy_dissipated",
+                          "energy_lost", "steps", "force_evaluations", "factorisations", "halvings", "rejections",
+                          "solve_time", "series", "tooth_x", "tooth_y"})
         self.assertAlmostEqual(result["force_max_mean"], static, delta=0.01)
         self.assertEqual((result["steps"], len(result["tooth_x"])), (5000, 200))
         self.assertGreater(result["energy_lost"], 100 * result["energy_dissipated"])
@@ -33,6 +33,12 @@ class Transient(tool.ToolTest):
             self.assertLessEqual(float(row["force_lowest"]), float(row["force_highest"]))
         self.fail_with(1, ["rows.csv exists; --force overwrites it"], *arguments)
 
+    def test_steps_by_a_tolerance(self):
+        arguments = ["transient", "--step", "1e-4", "--duration", "6e-3", "--window", "5.5e-3", *THESIS]
+        loose, tight = (self.succeed_json(*arguments, "--tolerance", tolerance) for tolerance in ("1e-6", "1e-7"))
+        self.assertGreater(tight["steps"], loose["steps"])
+        self.assertEqual(tight["tolerance"], 1e-7)
+
     def test_a_step_beyond_stability_is_a_failure_in_words(self):
         self.fail_with(1, ["could not be marched beyond", "a shorter --step may help"],
                        "transient", "--method", "rk4", "--step", "5e-6", *THESIS)
@@ -41,6 +47,8 @@ class Transient(tool.ToolTest):
         for arguments in (["--method", "euler"], ["--step", "0"], ["--step", "nan"], ["--duration", "-1"]):
             with self.subTest(arguments):
                 self.fail_with(2, [], "transient", *arguments)
+        self.fail_with(1, ["--tolerance 1e-06 [m]: rk4 does not judge its error"],
+                       "transient", "--method", "rk4", "--tolerance", "1e-6")
         self.fail_with(1, ["--window 0.05 [s] must lie before the end, --duration 0.01 [s]"],
                        "transient", "--window", "0.05", "--duration", "0.01")
 

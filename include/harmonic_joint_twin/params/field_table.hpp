@@ -201,5 +201,14 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         "must divide solver.rate");
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+
+  visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
+        "live: a cycle of the loop that simulates an instant later than this after it was due has missed its deadline");
+  visit("realtime.priority", "-", p.realtime.priority, Range{ 0, 99 },
+        "live: priority of the loop's thread under SCHED_FIFO; 0: as every other thread");
+  visit("realtime.lock_memory", p.realtime.lock_memory,
+        "live: true: the node's memory stays in RAM (mlockall); false: it may be paged out");
+  visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
+        "live: processor that the loop's thread is bound to, counted from 0; -1: any");
 }
 }  // namespace hjt

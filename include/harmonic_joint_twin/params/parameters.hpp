@@ -215,6 +215,14 @@ struct PublishParameters
   double health_rate{};
 };
 
+struct RealtimeParameters
+{
+  double deadline{};
+  int priority{};
+  bool lock_memory{};
+  int processor{};
+};
+
 struct JointParameters
 {
   std::string name{};
@@ -240,5 +248,6 @@ struct Parameters
   HealthParameters health;
   InputParameters input;
   PublishParameters publish;
+  RealtimeParameters realtime;
 };
 }  // namespace hjt

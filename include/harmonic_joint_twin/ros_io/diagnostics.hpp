@@ -13,6 +13,7 @@
 #include "harmonic_joint_twin/ros_io/inbox.hpp"
 #include "harmonic_joint_twin/ros_io/input_subscribers.hpp"
 #include "harmonic_joint_twin/ros_io/output_publishers.hpp"
+#include "harmonic_joint_twin/ros_io/realtime.hpp"
 #include "harmonic_joint_twin/ros_io/recent_events.hpp"
 #include "harmonic_joint_twin/ros_io/twin_loop.hpp"
 
@@ -30,8 +31,8 @@ struct Verdict
 class Diagnostics
 {
 public:
-  Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop, const Inbox& inbox,
-              const InputSubscribers& subscribers, const OutputPublishers& publishers);
+  Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop, const RealtimeState& realtime,
+              const Inbox& inbox, const InputSubscribers& subscribers, const OutputPublishers& publishers);
 
 private:
   /// What the tasks speak of, read once per look.
@@ -55,10 +56,12 @@ private:
   void reportTiming(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   const TwinLoop& loop_;
+  const RealtimeState& realtime_;
   const Inbox& inbox_;
   const InputSubscribers& subscribers_;
   const OutputPublishers& publishers_;
   const double command_timeout_;
+  const double deadline_;
   Snapshot snapshot_;
   std::array<Verdict, 3> verdicts_;  ///< drive, input, timing
   RecentEvents solver_failures_;
@@ -73,6 +76,7 @@ private:
   RecentEvents lost_inputs_;
   RecentEvents drops_;
   RecentEvents clock_jumps_;
+  RecentEvents missed_deadlines_;
   std::uint64_t logged_clock_jumps_{};
   Stamp last_clock_{};
   ros::WallTime clock_moved_;

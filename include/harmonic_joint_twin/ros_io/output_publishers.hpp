@@ -19,7 +19,6 @@ namespace hjt
 class OutputPublishers
 {
 public:
-  /// @throws ParameterError if a publish rate does not divide solver.rate.
   OutputPublishers(ros::NodeHandle& node, const Twin& twin);
 
   /// Stops the thread after the messages already filled.

@@ -26,7 +26,7 @@ constexpr std::size_t OUTPUT_COUNT = 4;
 class OutputSchedule
 {
 public:
-  /// @throws ParameterError if a publish rate does not divide solver.rate.
+  /// @param parameters as read: every publish rate divides solver.rate.
   explicit OutputSchedule(const Parameters& parameters);
 
   bool isDue(Output output, Stamp instant) const noexcept { return instant % period(output) == 0; }

@@ -14,5 +14,6 @@ constexpr const char* JOINT_STATES = "joint_states";                  ///< out, 
 constexpr const char* ENCODERS = "encoders";                          ///< out, harmonic_joint_twin/Encoders
 constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, harmonic_joint_twin/ContactForces
 constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
+constexpr const char* TIMING = "timing";                              ///< out, live only, harmonic_joint_twin/Timing
 }  // namespace topics
 }  // namespace hjt

@@ -10,6 +10,8 @@
 #include "harmonic_joint_twin/ros_io/inbox.hpp"
 #include "harmonic_joint_twin/ros_io/input_subscribers.hpp"
 #include "harmonic_joint_twin/ros_io/output_publishers.hpp"
+#include "harmonic_joint_twin/ros_io/realtime.hpp"
+#include "harmonic_joint_twin/ros_io/timing_publisher.hpp"
 #include "harmonic_joint_twin/ros_io/twin_loop.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 
@@ -33,7 +35,9 @@ private:
   Inbox inbox_;
   OutputPublishers publishers_;
   TwinLoop loop_;
+  RealtimeState realtime_;
   InputSubscribers subscribers_;
+  TimingPublisher timing_publisher_;
   Diagnostics diagnostics_;
   ros::ServiceServer reset_service_;
   ros::ServiceServer brake_service_;

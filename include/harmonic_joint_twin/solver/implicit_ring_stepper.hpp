@@ -18,7 +18,7 @@ namespace hjt
 /// by Newton with the matrix K + C / g + M / g^2, which is the cyclic block-tridiagonal one of the equilibrium with a
 /// larger diagonal. Its factors serve all stages of a step while they contract well; line search on the out-of-balance
 /// force; a step that does not converge is done in halves. No allocation after construction.
-class ImplicitRingStepper : public RingStepper
+class ImplicitRingStepper : public EmbeddedRingStepper
 {
 public:
   /// Of `solver` it takes the force tolerance, the bound on iterations and that on halvings.
@@ -26,11 +26,13 @@ public:
 
   bool step(RingMotion& motion, double length) noexcept override;
 
-  /// Embedded estimate of the last step's error in the positions: the largest over the teeth [m]; 0 if the method has none.
-  double errorEstimate() const noexcept { return error_; }
+  bool attempt(RingMotion& motion, double length) noexcept override;
+  void restart() noexcept override { begun_ = false; }
+  void accept() noexcept override;
+  int errorPower() const noexcept override { return tableau_.error_power; }
 
 private:
-  bool attempt(RingMotion& motion, double length) noexcept;
+  void begin(const Eigen::VectorXd& speeds) noexcept;
   bool solveStage(double time) noexcept;
   double residual(double time) noexcept;
   bool searchLine(double time, double& norm) noexcept;
@@ -45,8 +47,8 @@ private:
   BorderedRingSolver solver_;
   double stage_step_{};  // gamma h of the present step [s]
   bool factored_{};      // in this step
-  double error_{};
-  double largest_{};  // component of the out-of-balance force [N]
+  bool begun_{};         // the explicit first stage is at hand
+  double largest_{};     // component of the out-of-balance force [N]
   // Scratch, sized once.
   std::vector<Eigen::VectorXd> speeds_;         // per stage: derivative of q
   std::vector<Eigen::VectorXd> accelerations_;  // per stage: derivative of v

@@ -16,6 +16,7 @@ struct RungeKuttaTableau
   std::vector<std::vector<double>> before;  ///< row per stage: weights of the stages before it [-]
   std::vector<double> times;                ///< of the stages, in steps [-]
   std::vector<double> error;                ///< weights of the embedded error estimate; empty: none [-]
+  int error_power;                          ///< of the step that the estimate goes with; 0: none
 
   int stages() const { return static_cast<int>(times.size()); }
   /// Weight of stage i in the step: the last row.

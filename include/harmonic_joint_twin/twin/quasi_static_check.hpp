@@ -23,6 +23,7 @@ struct QuasiStaticSetup
   double settle_time{};     ///< not compared [s]
   double duration{};        ///< compared [s]
   double compare_period{};  ///< between two comparisons [s]
+  double tolerance{};  ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
 };
 
 /// Difference of a quantity from its quasi-static value.

@@ -19,6 +19,7 @@ struct TransientSetup
   double growth_time{};    ///< in which the amplitude grows [s]
   double window_start{};   ///< from here to the end the largest force is summed up [s]
   double sample_period{};  ///< of the rows [s]
+  double tolerance{};      ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
 };
 
 /// Largest force of the wave generator on a tooth, and where the energy is.

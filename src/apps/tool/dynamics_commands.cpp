@@ -25,6 +25,7 @@ namespace
 using Json = nlohmann::ordered_json;
 
 const std::map<std::string, RingMethod> METHODS{ { "rk4", RingMethod::RUNGE_KUTTA4 },
+                                                 { "dop853", RingMethod::DORMAND_PRINCE8 },
                                                  { "implicit_euler", RingMethod::IMPLICIT_EULER },
                                                  { "tr_bdf2", RingMethod::TR_BDF2 },
                                                  { "esdirk4", RingMethod::ESDIRK4 } };
@@ -36,14 +37,29 @@ int stopped(double time)
   return EXIT_FAILED;
 }
 
-void addMethodOptions(CLI::App& command, std::string& method, double& step)
+void requireEstimate(const std::string& method, double tolerance)
+{
+  if (tolerance > 0.0 && !judgesItsError(METHODS.at(method)))
+  {
+    throw InputError("--tolerance " + shortNumber(tolerance) + " [m]: " + method +
+                     " does not judge its error; dop853, tr_bdf2 and esdirk4 do");
+  }
+}
+
+void addMethodOptions(CLI::App& command, std::string& method, double& step, double& tolerance)
 {
   command
       .add_option("--method", method,
-                  "rk4: explicit, Boost.odeint; implicit_euler, tr_bdf2, esdirk4: implicit of order 1, 2, 4")
+                  "rk4, dop853: explicit of order 4 (Boost.odeint), 8; implicit_euler, tr_bdf2, esdirk4: implicit of "
+                  "order 1, 2, 4")
       ->check(CLI::IsMember(METHODS))
       ->capture_default_str();
   command.add_option("--step", step, "of time [s]")->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str();
+  command
+      .add_option("--tolerance", tolerance,
+                  "error of a tooth's position by one step [m]: the steps are chosen by it, --step is the longest")
+      ->check(FINITE)
+      ->check(CLI::PositiveNumber);
 }
 
 struct TransientOptions : CommonOptions
@@ -84,6 +100,7 @@ int transient(TransientOptions options)
   const Parameters parameters = loadParameters(options);
   TransientSetup& setup = options.setup;
   setup.method = METHODS.at(options.method);
+  requireEstimate(options.method, setup.tolerance);
   if (setup.window_start >= setup.duration)
   {
     throw InputError("--window " + shortNumber(setup.window_start) + " [s] must lie before the end, --duration " +
@@ -117,6 +134,7 @@ int transient(TransientOptions options)
   {
     const Json json{ { "method", options.method },
                      { "step", setup.step },
+                     { "tolerance", setup.tolerance },
                      { "window_start", setup.window_start },
                      { "force_max_lowest", result.window_lowest },
                      { "force_max_highest", result.window_highest },
@@ -130,6 +148,7 @@ int transient(TransientOptions options)
                      { "force_evaluations", result.counts.force_evaluations },
                      { "factorisations", result.counts.factorisations },
                      { "halvings", result.counts.halvings },
+                     { "rejections", result.counts.rejections },
                      { "solve_time", result.solve_time },
                      { "series", columnsOf(result.rows) },
                      { "tooth_x", result.tooth_x },
@@ -149,6 +168,7 @@ int transient(TransientOptions options)
                 { "force evaluations", std::to_string(result.counts.force_evaluations), "" },
                 { "factorisations", std::to_string(result.counts.factorisations), "" },
                 { "steps halved", std::to_string(result.counts.halvings), "" },
+                { "steps rejected", std::to_string(result.counts.rejections), "" },
                 { "solve time", shortNumber(result.solve_time), "s" } });
   return EXIT_DONE;
 }
@@ -172,6 +192,7 @@ int dynamics(DynamicsOptions options)
 {
   const Parameters parameters = loadParameters(options);
   options.setup.method = METHODS.at(options.method);
+  requireEstimate(options.method, options.setup.tolerance);
   QuasiStaticResult result;
   {
     Progress progress("turning");
@@ -242,7 +263,7 @@ void addTransientCommand(CLI::App& app, int& exit_code)
   auto* command = app.add_subcommand("transient",
                                      "insertion of the wave generator as motion, every tooth a mass: the amplitude "
                                      "grows at constant speed, then stays; circular spline left out");
-  addMethodOptions(*command, options->method, options->setup.step);
+  addMethodOptions(*command, options->method, options->setup.step, options->setup.tolerance);
   const auto time = [&](const char* name, double& value, const char* meaning)
   { command->add_option(name, value, meaning)->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str(); };
   time("--duration", options->setup.duration, "simulated time [s]");
@@ -266,7 +287,7 @@ void addDynamicsCommand(CLI::App& app, int& exit_code)
   command->add_option("--load", options->setup.load, "on the circular spline [N.m]")
       ->check(FINITE)
       ->capture_default_str();
-  addMethodOptions(*command, options->method, options->setup.step);
+  addMethodOptions(*command, options->method, options->setup.step, options->setup.tolerance);
   const auto time = [&](const char* name, double& value, const char* meaning)
   { command->add_option(name, value, meaning)->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str(); };
   command->add_option("--settle", options->setup.settle_time, "time before the comparison starts [s]")
