@@ -188,7 +188,7 @@ void Plan::readRecording()
       const Column* column = findColumn(values.text(list, key));
       if (column == nullptr)
       {
-        element.refuse("is no column; --columns lists them");
+        element.refuse("is no column; there are " + columnNames());
       }
       if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
       {
