@@ -98,6 +98,16 @@ void checkLife(const Parameters& p, Contradictions& check)
   check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
                 "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
                     " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
+  const auto check_limit = [&](const std::string& limit_key, double limit, const std::string& scale_key, double scale)
+  {
+    check.require(limit <= scale, { limit_key, scale_key },
+                  limit_key + " = " + numberText(limit) + " [m] must not exceed " + scale_key + " = " +
+                      numberText(scale) + " [m]");
+  };
+  check_limit("life.flank_wear_limit", p.life.flank_wear_limit, "fault_scale.tooth_wear_depth",
+              p.fault_scale.tooth_wear_depth);
+  check_limit("life.interface_wear_limit", p.life.interface_wear_limit, "fault_scale.interface_wear_depth",
+              p.fault_scale.interface_wear_depth);
 }
 
 void checkFaults(const Parameters& p, Contradictions& check)
