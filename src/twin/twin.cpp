@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
@@ -12,9 +14,28 @@
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/surface_worker.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// What the faults changed, for the cache of surfaces.
+std::string keyOf(const ToothFaults& faults)
+{
+  std::ostringstream text;
+  for (const int tooth : faults.missing)
+  {
+    text << "missing " << tooth << ' ';
+  }
+  for (const int tooth : faults.cut)
+  {
+    text << "cut " << tooth << ' ';
+  }
+  return text.str();
+}
+}  // namespace
+
 struct Twin::Impl
 {
   Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
@@ -30,11 +51,16 @@ struct Twin::Impl
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
+    if (given.solver.scene == SceneKind::AUTO)
     {
-      surface = sharedSurface(given, surface_source);
-      if (surface)
+      if (surface_source.background)
       {
+        surface_awaited = true;
+        surface_worker = std::make_unique<SurfaceWorker>(given, model, keyOf(faults), surface_source);
+      }
+      else
+      {
+        surface = sharedSurface(given, model, keyOf(faults), surface_source);
         stepper.useSurface(surface.get());
       }
     }
@@ -66,6 +92,7 @@ struct Twin::Impl
 
   void step() noexcept;
   void takeInputs() noexcept;
+  void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
@@ -77,6 +104,8 @@ struct Twin::Impl
   Parameters parameters;
   JointModel model;
   std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -130,6 +159,20 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
+/// The surface that was built beside, when it is there.
+void Twin::Impl::takeSurface() noexcept
+{
+  if (surface_awaited)
+  {
+    const ResponseSurface* ready = surface_worker->surface();
+    if (ready != nullptr)
+    {
+      surface_awaited = false;
+      stepper.useSurface(ready);
+    }
+  }
+}
+
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
@@ -154,6 +197,7 @@ void Twin::Impl::step() noexcept
   now += step_length;
   simulated_until = now;
   takeInputs();
+  takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
   const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
   ++counters.steps;
@@ -242,7 +286,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
   loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
-  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
   loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);

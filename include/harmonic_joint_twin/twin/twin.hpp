@@ -106,8 +106,8 @@ struct TwinCounters
 class Twin
 {
 public:
-  /// Inserts the wave generator (some milliseconds). With solver.scene = auto and no faults also builds the response
-  /// surface (seconds) or takes it from the cache. @throws ParameterError if the parameters have no equilibrium.
+  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response
+  /// surface (seconds) or takes it from the cache, unless that is to be done beside the running twin. @throws ParameterError if the parameters have no equilibrium.
   explicit Twin(const Parameters& parameters, const ToothFaults& faults = {}, const SurfaceSource& surface_source = {});
   ~Twin();
   Twin(Twin&&) noexcept;
