@@ -22,6 +22,7 @@ int main(int argc, char** argv)
   hjt::addManufactureCommand(app, exit_code);
   hjt::addProfileCommand(app, exit_code);
   hjt::addRatchetCommand(app, exit_code);
+  hjt::addLifeCommand(app, exit_code);
   hjt::addTransientCommand(app, exit_code);
   hjt::addDynamicsCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);

@@ -93,6 +93,13 @@ void checkElements(const Parameters& p, Contradictions& check)
                     " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
 }
 
+void checkLife(const Parameters& p, Contradictions& check)
+{
+  check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
+                "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
+                    " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
+}
+
 void checkRates(const Parameters& p, Contradictions& check)
 {
   // The clock of the messages counts nanoseconds; a step that is no whole number of them would drift.
@@ -122,6 +129,7 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
   checkPitch(parameters.manufacture.flexspline_pitch, "flexspline", check);
   checkPitch(parameters.manufacture.circular_spline_pitch, "circular_spline", check);
   checkElements(parameters, check);
+  checkLife(parameters, check);
   checkRates(parameters, check);
   return check.take();
 }

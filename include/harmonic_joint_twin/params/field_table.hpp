@@ -215,6 +215,46 @@ void visitFields(P& p, Visitor&& visit)
         "windows in a row that must agree before the level changes");
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         "a deviation of so many times the threshold is an error, not a warning");
+  visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
+        "rated output torque of the catalogue, at which the bearing's lives are given");
+  visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
+        "rated motor speed of the catalogue, at which the bearing's lives are given");
+  visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which 10 % of the wave generator's bearings have failed");
+  visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which half of them have failed; more than bearing_l10");
+  visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
+        "share of the bearing's life, in turns, from its first spall to the end of use");
+  visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
+        "standard deviation of its logarithm from drive to drive");
+  visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, "length of the flexspline's teeth");
+  visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 }, "of the flexspline");
+  visit("life.flank_wear_coefficient", "1/Pa", p.life.flank_wear_coefficient, Range{ 0.0, 1e-12 },
+        "Archard's k of the tooth flanks in fresh grease: worn volume by force times sliding");
+  visit("life.interface_wear_coefficient", "1/Pa", p.life.interface_wear_coefficient, Range{ 0.0, 1e-12 },
+        "the same between the bearing's outer race and the flexspline");
+  visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
+        "standard deviation of the logarithm of both coefficients from drive to drive");
+  visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off both flanks of a pair at which the drive is at its end");
+  visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off race and rim at which the drive is at its end");
+  visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
+        "turns of the motor between two changes of grease at grease_temperature");
+  visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
+        "temperature grease_turns holds for");
+  visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
+        "by so much warmer the grease lasts half as long");
+  visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
+        "wear in grease due for a change over wear in fresh grease");
+  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, "deepest flaw of a new tooth root");
+  visit("life.stress_concentration", "-", p.life.stress_concentration, Range{ 1.0, 10.0 },
+        "stress at the tooth root over that of the smooth rim");
+  visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
+        "C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)");
+  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
+  visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
+        "range of the stress intensity below which a flaw does not grow");
 
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         "a torque command older than this counts as zero");

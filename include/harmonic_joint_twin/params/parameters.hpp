@@ -218,6 +218,33 @@ struct HealthParameters
   double averaging_time{};
 };
 
+/// How fast the drive ages, and when it is worn out (health/ageing_laws.hpp).
+struct LifeParameters
+{
+  double rated_torque{};
+  double rated_speed{};
+  double bearing_l10{};
+  double bearing_l50{};
+  double spall_growth{};
+  double spall_spread{};
+  double face_width{};
+  double elastic_modulus{};
+  double flank_wear_coefficient{};
+  double interface_wear_coefficient{};
+  double wear_spread{};
+  double flank_wear_limit{};
+  double interface_wear_limit{};
+  double grease_turns{};
+  double grease_temperature{};
+  double grease_halving{};
+  double grease_wear_factor{};
+  double flaw_depth{};
+  double stress_concentration{};
+  double crack_coefficient{};
+  double crack_exponent{};
+  double crack_threshold{};
+};
+
 struct InputParameters
 {
   double command_timeout{};
@@ -267,6 +294,7 @@ struct Parameters
   SensorParameters sensors;
   HealthParameters health;
   IndicatorParameters indicators;
+  LifeParameters life;
   InputParameters input;
   PublishParameters publish;
   RealtimeParameters realtime;
