@@ -9,8 +9,20 @@
 namespace hjt
 {
 CupTorsion::CupTorsion(const CupParameters& parameters, const ToothRing& rest)
-  : slopes_(parameters.torsion_stiffness), torques_(parameters.torsion_breakpoints), rest_radial_(rest.radial())
+  : made_slopes_(parameters.torsion_stiffness)
+  , slopes_(made_slopes_)
+  , torques_(parameters.torsion_breakpoints)
+  , rest_radial_(rest.radial())
 {
+  scaleStiffness(1.0);
+}
+
+void CupTorsion::scaleStiffness(double factor) noexcept
+{
+  for (std::size_t i = 0; i < slopes_.size(); ++i)
+  {
+    slopes_[i] = factor * made_slopes_[i];
+  }
   rotations_[0] = torques_[0] / slopes_[0];
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
 }
@@ -126,7 +138,6 @@ HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Ring
   double* __restrict__ cup = tangent.cup_direction.data();
   double* __restrict__ xx = tangent.diagonal.xx.data();
   double* __restrict__ xy = tangent.diagonal.xy.data();
-  double* __restrict__ yx = tangent.diagonal.yx.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   tangent.cup_stiffness = stiffness(rotation);
 #pragma omp simd
@@ -142,7 +153,6 @@ HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Ring
     const double difference = scale * (y * y - x * x);
     xx[i] += product;
     xy[i] += difference;
-    yx[i] += difference;
     yy[i] -= product;
   }
 }

@@ -8,7 +8,7 @@ RingModel::RingModel(const Parameters& parameters)
   , rest(parameters.gear)
   , tension(parameters.ring, rest)
   , bending(parameters.ring, rest)
-  , contact(parameters.contact, parameters.gear, parameters.manufacture)
+  , contact(parameters.contact, parameters.gear, parameters.manufacture, parameters.bearing)
   , cup(parameters.cup, rest)
   , mesh(parameters.mesh, parameters.gear, ManufactureErrors(parameters.manufacture, parameters.gear))
 {
@@ -28,8 +28,7 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
   }
 }
 
-void RingModel::tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                        RingTangent& tangent) const noexcept
+void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   tangent.setZero();
   tension.addTangent(shape, tangent);
@@ -38,7 +37,7 @@ void RingModel::tangent(const RingShape& shape, const DrivePosition& position, c
   cup.addTangent(shape, forces, tangent);
   if (meshed)
   {
-    mesh.addTangent(shape, position, forces, tangent);
+    mesh.addTangent(shape, forces, tangent);
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
 
+#include <limits>
+
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
 namespace hjt
@@ -10,11 +12,16 @@ BagRecorder::BagRecorder(const Twin& twin, const std::string& joint_namespace, B
   , schedule_(twin.parameters())
   , tooth_forces_(twin.makeToothForces())
   , prefix_(joint_namespace + "/")
+  , names_(twin.parameters().joint.name)
+  , recorded_faults_(twin.activeFaults().empty() ? twin.activeFaults().version() :
+                                                   std::numeric_limits<std::uint64_t>::max())
   , joint_states_(makeJointStates(JointNames(twin.parameters().joint.name)))
   , encoders_(makeEncoders(JointNames(twin.parameters().joint.name)))
   , contact_forces_(
         makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
   , health_(makeHealth(JointNames(twin.parameters().joint.name)))
+  , indicators_(makeIndicators(JointNames(twin.parameters().joint.name)))
+  , assessment_(makeAssessment(JointNames(twin.parameters().joint.name)))
 {
 }
 
@@ -22,6 +29,11 @@ void BagRecorder::record(Twin& twin)
 {
   const JointOutputs& outputs = twin.outputs();
   const Stamp stamp = outputs.stamp;
+  if (const FaultList& faults = twin.activeFaults(); faults.version() != recorded_faults_)
+  {
+    recorded_faults_ = faults.version();
+    bag_.write(prefix_ + topics::FAULTS, stamp, makeFaults(names_, stamp, faults));
+  }
   const bool joint_states = schedule_.isDue(Output::JOINT_STATES, stamp);
   const bool encoders = schedule_.isDue(Output::ENCODERS, stamp);
   if (joint_states || encoders)
@@ -48,6 +60,13 @@ void BagRecorder::record(Twin& twin)
   {
     fillHealth(outputs, twin.health(), health_);
     bag_.write(prefix_ + topics::HEALTH, stamp, health_);
+  }
+  if (twin.watchesSignals() && schedule_.isDue(Output::INDICATORS, stamp))
+  {
+    fillIndicators(stamp, twin.signalIndicators(), indicators_);
+    bag_.write(prefix_ + topics::INDICATORS, stamp, indicators_);
+    fillAssessment(stamp, twin.assessment(), assessment_);
+    bag_.write(prefix_ + topics::ASSESSMENT, stamp, assessment_);
   }
 }
 }  // namespace hjt

@@ -35,6 +35,7 @@ SolveStatus JointDynamics::settle() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
+  viscosity_ = model_.bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
@@ -75,6 +76,14 @@ void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
   }
   surface_ = surface;
   surface_agrees_ = surface != nullptr && !on_surface_ && surfaceAgrees();
+}
+
+SolveStatus JointDynamics::followModel() noexcept
+{
+  const SolveStatus result = ring_.followModel();
+  viscosity_ = model_.bearing.viscosity(temperature_);
+  takeRing();
+  return result;
 }
 
 SolveStatus JointDynamics::bringRing() noexcept
@@ -146,8 +155,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     return;
   }
   const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.shape(), ring_.position(), ring_.forces(), rates, follow(), speeds, inputs, running_,
-                  friction_);
+  model_.friction(ring_.shape(), ring_.forces(), rates, follow(), speeds, inputs, viscosity(), running_, friction_);
 }
 
 /// Of the bearing's grease, at the present temperature.

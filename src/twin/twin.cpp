@@ -5,41 +5,131 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+#include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/surface_worker.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
+std::string keyOf(const FaultList& faults, const Parameters& parameters)
+{
+  if (faults.empty())
+  {
+    return "";
+  }
+  std::ostringstream text;
+  for (const ActiveFault& active : faults)
+  {
+    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
+         << '\n';
+  }
+  std::istringstream lines(describeParameters(parameters));
+  for (std::string line; std::getline(lines, line);)
+  {
+    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
+  }
+  return text.str();
+}
+
+bool isSame(const FaultList& one, const FaultList& other) noexcept
+{
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const ActiveFault& a, const ActiveFault& b)
+                    {
+                      return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
+                             a.fault.severity == b.fault.severity;
+                    });
+}
+
+/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
+bool isOfTheBalls(const ActiveFault& active) noexcept
+{
+  const FaultKind kind = active.fault.kind;
+  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
+         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
+}
+}  // namespace
+
 struct Twin::Impl
 {
-  Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
+  Impl(const Parameters& given, const SurfaceSource& surface_source)
     : parameters(given)
-    , model(makeFaultyJoint(given, faults))
+    , model(given)
+    , faults(given, model)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
     , monitor(given.health, given.gear)
+    , signals(given)
+    , assessor(given)
+    , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
+    if (given.solver.scene == SceneKind::AUTO)
     {
-      surface = sharedSurface(given, surface_source);
-      if (surface)
-      {
-        stepper.useSurface(surface.get());
-      }
+      scheduleConfigured(0);
+      faults.apply(active);
+      prepareSurface(surface_source);
     }
-    reset(0);
+    if (!reset(0))
+    {
+      throw ParameterError(
+          "the faults that the twin starts with leave it no equilibrium: the insertion of the wave "
+          "generator did not converge (faults.*)");
+    }
   }
 
-  void reset(Stamp stamp) noexcept
+  /// The surface of the drive with the faults it starts with.
+  void prepareSurface(const SurfaceSource& source)
   {
-    stepper.reset();
+    surface_faults = active;
+    if (std::any_of(active.begin(), active.end(), isOfTheBalls))
+    {
+      if (source.notice)
+      {
+        source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
+      }
+    }
+    else if (source.background)
+    {
+      surface_awaited = true;
+      surface_worker =
+          std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+    else
+    {
+      surface = sharedSurface(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+  }
+
+  /// The surface while it is that of the present faults; else the full ring.
+  void useSurface() noexcept
+  {
+    const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
+    stepper.useSurface(isSame(active, surface_faults) ? ready : nullptr);
+  }
+
+  bool reset(Stamp stamp) noexcept
+  {
+    stepper.useSurface(nullptr);
+    scheduleConfigured(stamp);
+    faults.apply(active);
+    useSurface();
+    const bool settled = stepper.reset();
     queue.clear();
     counters = {};
     now = (stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length) * step_length;
@@ -52,24 +142,40 @@ struct Twin::Impl
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
+    signals.reset();
+    assessor.reset();
     outputs = {};
     steps_at_report = {};
     fillOutputs(0.0, true);
     observe();
+    return settled;
   }
 
+  static bool setsInAtOnce(const Fault& fault) noexcept { return fault.severity > 0.0 && fault.onset == 0.0; }
+  static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
+
+  void scheduleConfigured(Stamp stamp) noexcept;
+  bool takeFaults() noexcept;
   void step() noexcept;
   void takeInputs() noexcept;
+  void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
+  void takeReadings() noexcept;
   SolverState solverState() noexcept;
   LobeLoads lobes() const noexcept;
 
   Parameters parameters;
   JointModel model;
+  JointFaults faults;
+  FaultList active;
+  FaultSchedule waiting;
+  FaultList surface_faults;  // that the surface is made for
   std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -85,9 +191,52 @@ struct Twin::Impl
   JointOutputs outputs;
   JointSensors sensors;
   HealthMonitor monitor;
+  SignalMonitor signals;
+  Assessor assessor;
+  Stamp steps_per_sample;
+  bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
+
+/// The configured faults: those from the start on are there, the others wait.
+void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
+{
+  active.clear();
+  waiting.clear();
+  for (const Fault& fault : parameters.faults)
+  {
+    if (setsInAtOnce(fault))
+    {
+      active.set(fault, stamp);
+    }
+    else
+    {
+      waiting.push(fault, stamp + delayOf(fault));
+    }
+  }
+}
+
+/// Faults whose time has come. @returns false if the ring found no equilibrium with them.
+bool Twin::Impl::takeFaults() noexcept
+{
+  const std::uint64_t version = active.version();
+  Fault fault;
+  Stamp stamp{};
+  while (waiting.pop(now, fault, stamp))
+  {
+    counters.faults.no_room += active.set(fault, stamp) ? 0 : 1;
+  }
+  if (active.version() == version)
+  {
+    return true;
+  }
+  stepper.useSurface(nullptr);
+  faults.apply(active);
+  const bool good = stepper.followModel();
+  useSurface();
+  return good;
+}
 
 void Twin::Impl::takeInputs() noexcept
 {
@@ -114,9 +263,21 @@ void Twin::Impl::takeInputs() noexcept
       case InputKind::BRAKE:
         brake_engaged = input.value != 0.0;
         break;
+      case InputKind::FAULT:
+        break;
     }
   }
   counters.input = queue.counters();
+}
+
+/// The surface that was built beside, when it is there.
+void Twin::Impl::takeSurface() noexcept
+{
+  if (surface_awaited && surface_worker->surface() != nullptr)
+  {
+    surface_awaited = false;
+    useSurface();
+  }
 }
 
 /// The latest command, or zero when it has timed out.
@@ -142,9 +303,12 @@ void Twin::Impl::step() noexcept
 {
   now += step_length;
   simulated_until = now;
+  const bool followed = takeFaults();
   takeInputs();
+  takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
+  const bool converged =
+      stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -173,6 +337,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
   outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
+  outputs.released_energy = stepper.releasedEnergy();
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
@@ -186,6 +351,28 @@ void Twin::Impl::observe() noexcept
   sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
+  if (watching && now / step_length % steps_per_sample == 0)
+  {
+    takeReadings();
+  }
+}
+
+/// What a drive would know: readings, the load it was told, its temperature.
+void Twin::Impl::takeReadings() noexcept
+{
+  const EncoderReadings readings = sensors.encoders();
+  SignalSample sample;
+  sample.stamp = now;
+  sample.motor_angle = readings.motor_angle;
+  sample.output_angle = readings.output_angle;
+  sample.motor_velocity = readings.motor_velocity;
+  sample.motor_torque = sensors.motorTorque();
+  sample.load_torque = load_torque;
+  sample.temperature = parameters.input.temperature;
+  if (signals.update(sample))
+  {
+    assessor.take(signals.indicators());
+  }
 }
 
 SolverState Twin::Impl::solverState() noexcept
@@ -209,14 +396,14 @@ LobeLoads Twin::Impl::lobes() const noexcept
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
   loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
-  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
   loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);
   return loads;
 }
 
-Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& surface_source)
+Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
@@ -224,7 +411,7 @@ Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const Surfac
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
-  impl_ = std::make_unique<Impl>(parameters, faults, surface_source);
+  impl_ = std::make_unique<Impl>(parameters, surface_source);
 }
 
 Twin::~Twin() = default;
@@ -254,6 +441,39 @@ void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
   impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
+}
+
+void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
+{
+  FaultCounters& counted = impl_->counters.faults;
+  if (!isValid(fault, impl_->parameters))
+  {
+    ++counted.refused;
+    return;
+  }
+  const Stamp sets_in = stamp + Impl::delayOf(fault);
+  if (!impl_->waiting.push(fault, sets_in))
+  {
+    ++counted.no_room;
+    return;
+  }
+  ++counted.accepted;
+  counted.late += sets_in < impl_->simulated_until ? 1 : 0;
+}
+
+const FaultList& Twin::activeFaults() const noexcept
+{
+  return impl_->active;
+}
+
+void Twin::give(const Input& input) noexcept
+{
+  if (input.kind == InputKind::FAULT)
+  {
+    injectFault(input.stamp, input.fault);
+    return;
+  }
+  impl_->queue.push(input, impl_->simulated_until);
 }
 
 bool Twin::step(Stamp until) noexcept
@@ -330,6 +550,26 @@ HealthReport Twin::health() noexcept
   report.solver_failures = impl_->counters.solver_failures;
   report.solver_state = impl_->solverState();
   return report;
+}
+
+void Twin::watchSignals(bool on) noexcept
+{
+  impl_->watching = on;
+}
+
+bool Twin::watchesSignals() const noexcept
+{
+  return impl_->watching;
+}
+
+const SignalIndicators& Twin::signalIndicators() const noexcept
+{
+  return impl_->signals.indicators();
+}
+
+const Assessment& Twin::assessment() const noexcept
+{
+  return impl_->assessor.assessment();
 }
 
 ToothForces Twin::makeToothForces() const

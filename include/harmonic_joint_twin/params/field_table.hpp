@@ -115,6 +115,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
         "sum of the ball forces with which the bearing's own outer race, bent to the ellipse, sits on the balls");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
+  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
+  visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
+        "diameter of a ball, below pitch_diameter");
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         "kinematic viscosity of the grease's base oil at viscosity_temperature");
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
@@ -188,6 +191,71 @@ void visitFields(P& p, Visitor&& visit)
   visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
         "time constant over which efficiency and stiffness forget");
 
+  visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
+        "of the readings the twin's own indicators are made of; the nearest that divides solver.rate");
+  visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
+        "motor turns at steady speed that make one window");
+  visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
+        "a window ends after this even with fewer turns");
+  visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
+        "motor speed below which the joint is taken to stand");
+  visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
+        "speed is steady while it is within this share of its mean over half a turn");
+  visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
+        "K1 is the stiffness at joint torques below this");
+  visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
+        "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round");
+  visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 3, 1000 },
+        "windows at one operating point the healthy reference is learned from");
+  visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
+        "smallest spread of an indicator, as a share of its healthy mean");
+  visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
+        "chance that a healthy window shows any indicator beyond its threshold");
+  visit("indicators.confirm_windows", "-", p.indicators.confirm_windows, Range{ 1, 1000 },
+        "windows in a row that must agree before the level changes");
+  visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
+        "a deviation of so many times the threshold is an error, not a warning");
+  visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
+        "rated output torque of the catalogue, at which the bearing's lives are given");
+  visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
+        "rated motor speed of the catalogue, at which the bearing's lives are given");
+  visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which 10 % of the wave generator's bearings have failed");
+  visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which half of them have failed; more than bearing_l10");
+  visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
+        "share of the bearing's life, in turns, from its first spall to the end of use");
+  visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
+        "standard deviation of its logarithm from drive to drive");
+  visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, "length of the flexspline's teeth");
+  visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 }, "of the flexspline");
+  visit("life.flank_wear_coefficient", "1/Pa", p.life.flank_wear_coefficient, Range{ 0.0, 1e-12 },
+        "Archard's k of the tooth flanks in fresh grease: worn volume by force times sliding");
+  visit("life.interface_wear_coefficient", "1/Pa", p.life.interface_wear_coefficient, Range{ 0.0, 1e-12 },
+        "the same between the bearing's outer race and the flexspline");
+  visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
+        "standard deviation of the logarithm of both coefficients from drive to drive");
+  visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off both flanks of a pair at which the drive is at its end");
+  visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off race and rim at which the drive is at its end");
+  visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
+        "turns of the motor between two changes of grease at grease_temperature");
+  visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
+        "temperature grease_turns holds for");
+  visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
+        "by so much warmer the grease lasts half as long");
+  visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
+        "wear in grease due for a change over wear in fresh grease");
+  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, "deepest flaw of a new tooth root");
+  visit("life.stress_concentration", "-", p.life.stress_concentration, Range{ 1.0, 10.0 },
+        "stress at the tooth root over that of the smooth rim");
+  visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
+        "C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)");
+  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
+  visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
+        "range of the stress intensity below which a flaw does not grow");
+
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         "a torque command older than this counts as zero");
   visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
@@ -210,6 +278,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         "must divide solver.rate");
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
 
   visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
         "live: a cycle of the loop that simulates an instant later than this after it was due has missed its deadline");
@@ -219,5 +288,56 @@ void visitFields(P& p, Visitor&& visit)
         "live: true: the node's memory stays in RAM (mlockall); false: it may be paged out");
   visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
         "live: processor that the loop's thread is bound to, counted from 0; -1: any");
+
+  auto& scale = p.fault_scale;
+  const Range depth{ 0.0, 1e-3 };
+  const Range part{ 0.0, 1.0 };
+  const Range factor{ 1.0, 100.0 };
+  visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
+        "interface_wear at severity 1: what rim and outer race have lost together, radially");
+  visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
+        "interface_wear at severity 1: contact.friction_coefficient times this");
+  visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
+        "rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked");
+  visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
+        "part of the cup's compliance in torsion that lies behind the teeth");
+  visit("fault_scale.flange_share", "-", scale.flange_share, part,
+        "part of the cup's compliance in torsion that lies at its flange");
+  visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
+        "rear_section_crack, flange_crack at severity 1: cup.friction_torque times this");
+  visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
+        "lubricant_degradation at severity 1: viscosity of the grease times this");
+  visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
+        "lubricant_degradation at severity 1: friction of flanks and of race in rim times this");
+  visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
+        "tooth_wear at severity 1: material off each flank, along its normal");
+  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
+        "part of a tooth pair's compliance that is bending of the flexspline's tooth");
+  visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
+        "pitting at severity 1: part of the flank's width that carries no more");
+  visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
+        "pitting at severity 1: friction of that tooth's flanks times this");
+  visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
+        "wave_generator_wear at severity 1: what the major semi-axis has lost");
+  visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
+        "what bearing.race_preload falls by with the mean radius of the wave generator");
+  visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
+        "part of bearing.race_preload that bends the race, which wear does not take away");
+  visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
+        "flexspline_crack: segments to either side over which the crack fades out");
+  visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
+        "buckling at severity 1: part of the cup's stiffness in torsion that is lost");
+  visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
+        "buckling at severity 1: radial amplitude of the waves that the free rim would keep");
+  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 }, "waves round the buckled rim");
+  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
+        "ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0");
+  visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
+        "ratcheting at severity 1: height that every tooth has lost");
+  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth, "spalls in the bearing at severity 1: depth");
+  visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
+        "spalls in the bearing: length along the race or on the ball");
+  visit("fault_scale.cage_sag", "m", scale.cage_sag, depth,
+        "bearing_cage at severity 1: by which the outer race sags where the ball fails to carry");
 }
 }  // namespace hjt

@@ -3,6 +3,9 @@
 
 #include <array>
 #include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/faults.hpp"
 
 namespace hjt
 {
@@ -122,6 +125,8 @@ struct BearingParameters
   double load_factor{};
   double race_preload{};
   double pitch_diameter{};
+  int balls{};
+  double ball_diameter{};
   double viscosity{};
   double viscosity_temperature{};
   double viscosity_slope{};
@@ -193,10 +198,54 @@ struct SensorParameters
   int noise_seed{};
 };
 
+/// Health indicators out of the drive's own signals, and what is made of them.
+struct IndicatorParameters
+{
+  double sample_rate{};
+  double window_turns{};
+  double window_time{};
+  double least_speed{};
+  double speed_change{};
+  double stiffness_torque{};
+  double lost_motion_torque{};
+  int baseline_windows{};
+  double least_spread{};
+  double false_alarm_rate{};
+  int confirm_windows{};
+  double error_factor{};
+};
+
 struct HealthParameters
 {
   double stiffness_torque_span{};
   double averaging_time{};
+};
+
+/// How fast the drive ages, and when it is worn out (health/ageing_laws.hpp).
+struct LifeParameters
+{
+  double rated_torque{};
+  double rated_speed{};
+  double bearing_l10{};
+  double bearing_l50{};
+  double spall_growth{};
+  double spall_spread{};
+  double face_width{};
+  double elastic_modulus{};
+  double flank_wear_coefficient{};
+  double interface_wear_coefficient{};
+  double wear_spread{};
+  double flank_wear_limit{};
+  double interface_wear_limit{};
+  double grease_turns{};
+  double grease_temperature{};
+  double grease_halving{};
+  double grease_wear_factor{};
+  double flaw_depth{};
+  double stress_concentration{};
+  double crack_coefficient{};
+  double crack_exponent{};
+  double crack_threshold{};
 };
 
 struct InputParameters
@@ -221,6 +270,7 @@ struct PublishParameters
   double encoders_rate{};
   double contact_forces_rate{};
   double health_rate{};
+  double indicators_rate{};
 };
 
 struct RealtimeParameters
@@ -235,6 +285,35 @@ struct JointParameters
 {
   std::string name{};
   std::string hardware_id{};
+};
+
+/// What a fault of severity 1 is, by kind.
+struct FaultScaleParameters
+{
+  double interface_wear_depth{};
+  double interface_friction_factor{};
+  double cup_crack_fraction{};
+  double rear_section_share{};
+  double flange_share{};
+  double cup_crack_friction_factor{};
+  double viscosity_factor{};
+  double boundary_friction_factor{};
+  double tooth_wear_depth{};
+  double tooth_compliance_share{};
+  double pitted_fraction{};
+  double pitted_friction_factor{};
+  double wave_generator_wear_depth{};
+  double race_fit_stiffness{};
+  double race_bending_preload{};
+  int rim_crack_segments{};
+  double buckling_stiffness_loss{};
+  double buckling_out_of_round{};
+  int buckling_waves{};
+  double ratcheting_eccentricity{};
+  double ratcheting_tip_loss{};
+  double spall_depth{};
+  double spall_length{};
+  double cage_sag{};
 };
 
 /// Everything the twin is made from.
@@ -254,9 +333,13 @@ struct Parameters
   SolverParameters solver;
   SensorParameters sensors;
   HealthParameters health;
+  IndicatorParameters indicators;
+  LifeParameters life;
   InputParameters input;
   TelemetryParameters telemetry;
   PublishParameters publish;
+  FaultScaleParameters fault_scale;
+  std::vector<Fault> faults;  ///< that it starts with, or gets on its way
   RealtimeParameters realtime;
 };
 }  // namespace hjt

@@ -13,6 +13,7 @@ namespace hjt
 class BagRecorder
 {
 public:
+  /// Indicators and assessment are only written if the twin watches its signals.
   /// `joint_namespace`: of the node, e.g. "/joint_twin".
   BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
 
@@ -24,9 +25,13 @@ private:
   OutputSchedule schedule_;
   ToothForces tooth_forces_;
   std::string prefix_;
+  JointNames names_;
+  std::uint64_t recorded_faults_;  // version of the list that was recorded last
   sensor_msgs::JointState joint_states_;
   harmonic_joint_twin::Encoders encoders_;
   harmonic_joint_twin::ContactForces contact_forces_;
   harmonic_joint_twin::Health health_;
+  harmonic_joint_twin::Indicators indicators_;
+  harmonic_joint_twin::Assessment assessment_;
 };
 }  // namespace hjt

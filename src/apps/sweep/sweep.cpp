@@ -82,7 +82,7 @@ public:
     std::optional<Twin> twin;
     try
     {
-      twin.emplace(spec.parameters, ToothFaults{}, surface_source_);
+      twin.emplace(spec.parameters, surface_source_);
     }
     catch (const ParameterError& error)
     {
@@ -403,9 +403,9 @@ RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source)
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point begin)
   { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  Twin first(spec.parameters, ToothFaults{}, surface_source);  // may have to build its surface, once for all runs
+  Twin first(spec.parameters, surface_source);  // may have to build its surface, once for all runs
   const Clock::time_point begin = Clock::now();
-  Twin twin(spec.parameters, ToothFaults{}, surface_source);
+  Twin twin(spec.parameters, surface_source);
   RunCost cost;
   cost.start = since(begin);
   twin.reset(SIMULATION_EPOCH);

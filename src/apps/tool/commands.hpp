@@ -25,6 +25,7 @@ void addInvariantsCommand(CLI::App& app, int& exit_code);
 void addManufactureCommand(CLI::App& app, int& exit_code);
 void addProfileCommand(CLI::App& app, int& exit_code);
 void addRatchetCommand(CLI::App& app, int& exit_code);
+void addLifeCommand(CLI::App& app, int& exit_code);
 void addTransientCommand(CLI::App& app, int& exit_code);
 void addDynamicsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
@@ -33,6 +34,8 @@ void addFollowCommand(CLI::App& app, int& exit_code);
 void addIdentifyCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
+void addIndicatorsCommand(CLI::App& app, int& exit_code);
+void addFaultsCommand(CLI::App& app, int& exit_code);
 void addSweepCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 }  // namespace hjt
