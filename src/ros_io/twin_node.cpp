@@ -42,10 +42,17 @@ SurfaceSource surfaceSource()
            {},
            !ros::Time::isSimTime() };
 }
+
+Twin watchedTwin(const Parameters& parameters)
+{
+  Twin twin(parameters, {}, surfaceSource());
+  twin.watchSignals(true);
+  return twin;
+}
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters, {}, surfaceSource())
+  : twin_(watchedTwin(parameters))
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, clockKind(), [this](Twin& twin) { publishers_.offer(twin); })
   , realtime_(requestRealtime(parameters.realtime, loop_))

@@ -137,7 +137,7 @@ Node SurfaceRing::measure()
   node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
   node[SurfaceTable::VISCOUS + 1] = friction_.viscous(0, 1);
   node[SurfaceTable::VISCOUS + 2] = friction_.viscous(1, 1);
-  unit_friction_.addTerms(model_.ring.mesh, ring_.shape(), ring_.position(), forces, rates, { 0.0, 0.0 }, friction_);
+  unit_friction_.addTerms(model_.ring.mesh, ring_.shape(), forces, rates, { 0.0, 0.0 }, friction_);
   groupFlanks(friction_.terms, follow, &node[SurfaceTable::FLANKS]);
   const LobeLoads lobes =
       lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles_, ring_.position().wave_generator_angle });

@@ -11,6 +11,7 @@
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 #include "harmonic_joint_twin/twin/surface_worker.hpp"
@@ -44,6 +45,9 @@ struct Twin::Impl
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
     , monitor(given.health, given.gear)
+    , signals(given)
+    , assessor(given)
+    , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
@@ -78,6 +82,8 @@ struct Twin::Impl
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
+    signals.reset();
+    assessor.reset();
     outputs = {};
     steps_at_report = {};
     fillOutputs(0.0, true);
@@ -91,6 +97,7 @@ struct Twin::Impl
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
+  void takeReadings() noexcept;
   SolverState solverState() noexcept;
   LobeLoads lobes() const noexcept;
 
@@ -114,6 +121,10 @@ struct Twin::Impl
   JointOutputs outputs;
   JointSensors sensors;
   HealthMonitor monitor;
+  SignalMonitor signals;
+  Assessor assessor;
+  Stamp steps_per_sample;
+  bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
@@ -230,6 +241,28 @@ void Twin::Impl::observe() noexcept
   sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
+  if (watching && now / step_length % steps_per_sample == 0)
+  {
+    takeReadings();
+  }
+}
+
+/// What a drive would know: readings, the load it was told, its temperature.
+void Twin::Impl::takeReadings() noexcept
+{
+  const EncoderReadings readings = sensors.encoders();
+  SignalSample sample;
+  sample.stamp = now;
+  sample.motor_angle = readings.motor_angle;
+  sample.output_angle = readings.output_angle;
+  sample.motor_velocity = readings.motor_velocity;
+  sample.motor_torque = sensors.motorTorque();
+  sample.load_torque = load_torque;
+  sample.temperature = parameters.input.temperature;
+  if (signals.update(sample))
+  {
+    assessor.take(signals.indicators());
+  }
 }
 
 SolverState Twin::Impl::solverState() noexcept
@@ -374,6 +407,26 @@ HealthReport Twin::health() noexcept
   report.solver_failures = impl_->counters.solver_failures;
   report.solver_state = impl_->solverState();
   return report;
+}
+
+void Twin::watchSignals(bool on) noexcept
+{
+  impl_->watching = on;
+}
+
+bool Twin::watchesSignals() const noexcept
+{
+  return impl_->watching;
+}
+
+const SignalIndicators& Twin::signalIndicators() const noexcept
+{
+  return impl_->signals.indicators();
+}
+
+const Assessment& Twin::assessment() const noexcept
+{
+  return impl_->assessor.assessment();
 }
 
 ToothForces Twin::makeToothForces() const
