@@ -153,8 +153,8 @@ void OutputPublishers::run()
     }
     drain();
     // While nobody hears there is nothing to drain: only to see whether somebody comes.
-    const bool heard = joint_states_.isHeard() || encoders_.isHeard() || contact_forces_.isHeard() || health_.isHeard() ||
-                       indicators_.isHeard() || assessment_.isHeard();
+    const bool heard = joint_states_.isHeard() || encoders_.isHeard() || contact_forces_.isHeard() ||
+                       health_.isHeard() || indicators_.isHeard() || assessment_.isHeard();
     std::this_thread::sleep_for(heard ? DRAIN_PERIOD : HEARD_REFRESH * DRAIN_PERIOD);
     round = heard ? (round + 1) % HEARD_REFRESH : 0;
   }
