@@ -183,6 +183,13 @@ Problem makeProblem(const std::string& name)
   throw std::runtime_error("no problem " + name);
 }
 
+const Phase& Problem::phaseAt(double time) const
+{
+  const auto holds = [&](const Phase& phase) { return time <= phase.end * (1.0 + 1e-12); };
+  const auto found = std::find_if(phases.begin(), phases.end(), holds);
+  return found == phases.end() ? phases.back() : *found;
+}
+
 Recorder::Recorder(const Problem& problem) : problem_(problem), states_(2 * problem.q.size(), problem.samples()) {}
 
 void Recorder::add(const double* state)
@@ -198,15 +205,10 @@ Series Recorder::series() const
   const int teeth = ring.teeth();
   Series series{ Eigen::MatrixXd(states_.cols(), driven ? 0 : 2), Eigen::MatrixXd(states_.cols(), n - 2),
                  Eigen::MatrixXd(states_.cols(), 2 * teeth) };
-  auto phase = problem_.phases.begin();
   for (int i = 0; i < states_.cols(); ++i)
   {
     const double time = problem_.sample_period * (i + 1);
-    while (time > phase->end * (1.0 + 1e-12))
-    {
-      ++phase;
-    }
-    ring.setWave(phase->wave);
+    ring.setWave(problem_.phaseAt(time).wave);
     const Eigen::VectorXd q = states_.col(i).head(n);
     ring.pairTeeth(q, time);
     ring.evaluate(q, states_.col(i).tail(n), time);

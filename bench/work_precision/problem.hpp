@@ -37,7 +37,8 @@ struct Problem
 
   double duration() const { return phases.back().end; }
   int samples() const { return static_cast<int>(duration() / sample_period + 0.5); }
-  DynamicRing ring() const;       ///< as it is at the start
+  const Phase& phaseAt(double time) const;  ///< that ends there or later
+  DynamicRing ring() const;                 ///< as it is at the start
   Eigen::VectorXd scale() const;  ///< of the states, what a tolerance of 1 means: 5 um of depth is a contact's force
 };
 
@@ -91,8 +92,8 @@ struct Run
   std::string failure;  ///< empty: it finished
   double time{};        ///< of the processor [s]
   long steps{};
+  double reached{};  ///< in the problem's time [s]
   long force_evaluations{};
-  long jacobians{};
   long factorisations{};
   long rejections{};
   Series series;

@@ -6,24 +6,37 @@
 #include <vector>
 
 #include "bench/work_precision/problem.hpp"
+#include "harmonic_joint_twin/solver/ring_method.hpp"
 
 namespace hjt
 {
-/// One solver with one setting: a point of the diagram.
+/// One solver with one setting on one problem, which must outlive it: a point of the diagram.
 struct Contender
 {
   std::string solver;
   std::string setting;
   /// `limit`: processor time after which it is given up [s].
-  std::function<Run(const Problem& problem, double limit)> run;
+  std::function<Run(double limit)> run;
 };
 
-/// The package's implicit methods at fixed steps, and Boost.odeint's explicit ones.
-std::vector<Contender> ownContenders();
+/// A method of the package at a fixed step [s].
+Contender fixedStep(const Problem& problem, const std::string& solver, RingMethod method, double step,
+                    double force_tolerance);
+
+/// The package's methods over their tolerances, and the thesis' way: implicit Euler at 10 us.
+std::vector<Contender> ownContenders(const Problem& problem);
+
+/// Boost.odeint's explicit methods.
 std::vector<Contender> odeintContenders(const Problem& problem);
 
 /// CVODE, IDA and ARKODE with KLU, and with the package's structured linear solver.
-std::vector<Contender> sundialsContenders();
+std::vector<Contender> sundialsContenders(const Problem& problem);
+
+/// TS of PETSc with KLU. Only where PETSc was found.
+std::vector<Contender> petscContenders(const Problem& problem);
+
+/// RADAU5 out of R's deSolve; none where that is not installed.
+std::vector<Contender> radauContenders(const Problem& problem);
 
 /// Two methods that have nothing in common, at steps far below those compared.
 std::vector<Contender> references(const Problem& problem);

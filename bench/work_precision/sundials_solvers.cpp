@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include <arkode/arkode_arkstep.h>
@@ -11,6 +10,7 @@
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
 
+#include "bench/work_precision/follow.hpp"
 #include "bench/work_precision/linear_system.hpp"
 #include "bench/work_precision/solvers.hpp"
 
@@ -24,7 +24,8 @@ struct Callbacks
   DynamicRing* ring;
   LinearSystem* linear;
   double gamma{};
-  Run* run;
+  long evaluations{};
+  long factorisations{};
   Eigen::VectorXd rates;  // of IDA's residual
 };
 
@@ -37,7 +38,7 @@ int rates(double time, N_Vector y, N_Vector derivative, void* data)
 {
   Callbacks& own = callbacks(data);
   own.ring->rates(N_VGetArrayPointer(y), time, N_VGetArrayPointer(derivative));
-  ++own.run->force_evaluations;
+  ++own.evaluations;
   return std::isfinite(N_VGetArrayPointer(derivative)[0]) ? 0 : 1;
 }
 
@@ -46,7 +47,7 @@ int residual(double time, N_Vector y, N_Vector derivative, N_Vector result, void
   Callbacks& own = callbacks(data);
   const Eigen::Index n = own.ring->states();
   own.ring->rates(N_VGetArrayPointer(y), time, own.rates.data());
-  ++own.run->force_evaluations;
+  ++own.evaluations;
   Eigen::Map<Eigen::VectorXd>(N_VGetArrayPointer(result), n) =
       Eigen::Map<Eigen::VectorXd>(N_VGetArrayPointer(derivative), n) - own.rates;
   return own.rates.allFinite() ? 0 : 1;
@@ -56,8 +57,7 @@ void linearise(Callbacks& own, double time, N_Vector y, double gamma)
 {
   own.linear->linearise(N_VGetArrayPointer(y), time);
   own.gamma = gamma;
-  ++own.run->jacobians;
-  ++own.run->force_evaluations;
+  ++own.evaluations;
 }
 
 /// CVODE and ARKODE: the system is I - gamma J. It is always made anew, at no more than the cost of a factorisation.
@@ -86,7 +86,7 @@ int residualJacobian(double time, double cj, N_Vector y, N_Vector, N_Vector, SUN
 int factor(SUNLinearSolver solver, SUNMatrix)
 {
   Callbacks& own = callbacks(solver->content);
-  ++own.run->factorisations;
+  ++own.factorisations;
   return own.linear->factor(own.gamma) ? 0 : 1;
 }
 
@@ -112,11 +112,11 @@ enum class Kind
   ARKODE
 };
 
-/// One integrator of SUNDIALS behind one face.
-class Integrator
+/// One integrator of SUNDIALS.
+class Sundials : public Integrator
 {
 public:
-  Integrator(Kind kind, int order, LinearKind linear, double tolerance, const Problem& problem)
+  Sundials(Kind kind, int order, LinearKind linear, double tolerance, const Problem& problem)
     : kind_(kind), ring_(problem.ring()), linear_(makeLinearSystem(linear, ring_))
   {
     SUNContext_Create(nullptr, &context_);
@@ -125,7 +125,7 @@ public:
     yp_ = N_VClone(y_);
     between_ = N_VClone(y_);
     map(y_) << problem.q, problem.v;
-    own_ = { &ring_, linear_.get(), 0.0, &run, Eigen::VectorXd(n) };
+    own_ = { &ring_, linear_.get(), 0.0, 0, 0, Eigen::VectorXd(n) };
     ring_.rates(N_VGetArrayPointer(y_), 0.0, N_VGetArrayPointer(yp_));
     weights_ = N_VClone(y_);
     map(weights_) = tolerance * problem.scale();
@@ -133,7 +133,7 @@ public:
     make(order);
   }
 
-  ~Integrator()
+  ~Sundials() override
   {
     switch (kind_)
     {
@@ -156,12 +156,12 @@ public:
     SUNContext_Free(&context_);
   }
 
-  Integrator(const Integrator&) = delete;
-  Integrator& operator=(const Integrator&) = delete;
+  Sundials(const Sundials&) = delete;
+  Sundials& operator=(const Sundials&) = delete;
 
-  /// Goes over to a phase that begins at a time.
-  void enter(const Phase& phase, double time)
+  void enter(const Phase& phase, double time) override
   {
+    countRejections();
     ring_.setWave(phase.wave);
     ring_.rates(N_VGetArrayPointer(y_), time, N_VGetArrayPointer(yp_));
     switch (kind_)
@@ -181,8 +181,7 @@ public:
     }
   }
 
-  /// One step of its own choice; teeth and spaces are paired after it. False on failure.
-  bool step(double end, double& time)
+  bool advance(double /*due*/, double end, double& time) override
   {
     int result = 0;
     switch (kind_)
@@ -198,12 +197,11 @@ public:
         break;
     }
     ring_.pairTeeth(map(y_).head(ring_.coordinates()), time);
-    ++run.steps;
+    ++steps_;
     return result >= 0;
   }
 
-  /// State at a time within the last step.
-  const double* at(double time)
+  const double* at(double time) override
   {
     switch (kind_)
     {
@@ -220,6 +218,17 @@ public:
     return N_VGetArrayPointer(between_);
   }
 
+  void count(Run& run) override
+  {
+    countRejections();
+    run.steps = steps_;
+    run.force_evaluations = own_.evaluations;
+    run.factorisations = own_.factorisations;
+    run.rejections = rejections_;
+  }
+
+private:
+  /// Of the phase that ends: a new one sets the counters of SUNDIALS back.
   void countRejections()
   {
     long by_error = 0;
@@ -235,16 +244,14 @@ public:
         IDAGetNumNonlinSolvConvFails(memory_, &by_newton);
         break;
       case Kind::ARKODE:
+        rejections_ = 0;  // ARKStepReset keeps its counters
         ARKStepGetNumErrTestFails(memory_, &by_error);
         ARKStepGetNumNonlinSolvConvFails(memory_, &by_newton);
         break;
     }
-    run.rejections += by_error + by_newton;
+    rejections_ += by_error + by_newton;
   }
 
-  Run run;
-
-private:
   static Eigen::Map<Eigen::VectorXd> map(N_Vector vector)
   {
     return { N_VGetArrayPointer(vector), static_cast<Eigen::Index>(N_VGetLength(vector)) };
@@ -315,40 +322,12 @@ private:
   SUNMatrix matrix_{};
   SUNLinearSolver solver_{};
   void* memory_{};
+  long steps_{};
+  long rejections_{};
 };
-
-Run integrate(Kind kind, int order, LinearKind linear, double tolerance, const Problem& problem, double limit)
-{
-  Integrator integrator(kind, order, linear, tolerance, problem);
-  Recorder recorder(problem);
-  double time = 0.0;
-  const Stopwatch watch;
-  for (const Phase& phase : problem.phases)
-  {
-    integrator.enter(phase, time);
-    while (time < phase.end)
-    {
-      if (!integrator.step(phase.end, time) || watch.elapsed() > limit)
-      {
-        char text[64];
-        std::snprintf(text, sizeof text, "%s at %.3g s", watch.elapsed() > limit ? "gave up" : "failed", time);
-        integrator.run.failure = text;
-        return integrator.run;
-      }
-      while (!recorder.done() && recorder.due() <= time * (1.0 + 1e-12))
-      {
-        recorder.add(integrator.at(std::min(recorder.due(), time)));
-      }
-    }
-    integrator.countRejections();
-  }
-  integrator.run.time = watch.elapsed();
-  integrator.run.series = recorder.series();
-  return integrator.run;
-}
 }  // namespace
 
-std::vector<Contender> sundialsContenders()
+std::vector<Contender> sundialsContenders(const Problem& problem)
 {
   struct Choice
   {
@@ -372,11 +351,12 @@ std::vector<Contender> sundialsContenders()
   {
     for (const double tolerance : { 1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6 })
     {
-      char setting[32];
-      std::snprintf(setting, sizeof setting, "tol = %.0e", tolerance);
-      contenders.push_back({ choice.name, setting, [=](const Problem& problem, double limit) {
-                              return integrate(choice.kind, choice.order, choice.linear, tolerance, problem, limit);
-                            } });
+      contenders.push_back({ choice.name, "tol = " + text("%.0e", tolerance),
+                             [=, &problem](double limit)
+                             {
+                               Sundials integrator(choice.kind, choice.order, choice.linear, tolerance, problem);
+                               return follow(problem, integrator, limit);
+                             } });
     }
   }
   return contenders;

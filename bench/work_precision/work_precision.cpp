@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Run time against error of solvers on the dynamic ring: one JSON line per solver and setting.
+// Run time against error of solvers on the ring: one JSON line per solver and setting.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/work_precision/solvers.hpp"
+#include "bench/work_precision/operating.hpp"
 
 namespace
 {
@@ -23,18 +23,29 @@ nlohmann::json toJson(const hjt::Errors& errors)
   return { { "angle", errors.angle }, { "position", errors.position }, { "force", errors.force } };
 }
 
+/// Who runs on a problem, and by whom they are judged.
+struct Field
+{
+  std::string name;
+  std::string title;
+  double duration;  ///< [s]
+  std::vector<Contender> contenders;
+  std::vector<Contender> references;
+};
+
 /// Runs both references and keeps the first; prints how far they are apart.
-void makeReference(const Problem& problem, const std::string& file)
+void makeReference(const Field& field, const std::string& file)
 {
   constexpr double NO_LIMIT = 1e9;
   std::vector<Series> series;
-  nlohmann::json line{ { "problem", problem.name }, { "title", problem.title } };
-  for (const Contender& contender : hjt::references(problem))
+  nlohmann::json line{ { "problem", field.name }, { "title", field.title } };
+  for (const Contender& contender : field.references)
   {
-    const Run run = contender.run(problem, NO_LIMIT);
+    std::cerr << field.name << ": reference, " << contender.solver << ", " << contender.setting << std::endl;
+    const Run run = contender.run(NO_LIMIT);
     if (!run.failure.empty())
     {
-      throw std::runtime_error(problem.name + ": reference " + contender.solver + " " + run.failure);
+      throw std::runtime_error(field.name + ": reference " + contender.solver + " " + run.failure);
     }
     line["methods"].push_back(contender.solver + ", " + contender.setting);
     line["processor_times"].push_back(run.time);
@@ -52,13 +63,14 @@ nlohmann::json toJson(const Contender& contender, const Run& run, std::vector<do
                        { "failure", run.failure },
                        { "steps", run.steps },
                        { "force_evaluations", run.force_evaluations },
-                       { "jacobians", run.jacobians },
                        { "factorisations", run.factorisations },
                        { "rejections", run.rejections } };
   if (run.failure.empty())
   {
     std::sort(times.begin(), times.end());
     line["processor_time"] = times[times.size() / 2];
+    line["least"] = times.front();
+    line["most"] = times.back();
     line["runs"] = times.size();
     line["series_error"] = toJson(hjt::seriesError(run.series, reference));
     line["end_error"] = toJson(hjt::endError(run.series, reference));
@@ -67,62 +79,84 @@ nlohmann::json toJson(const Contender& contender, const Run& run, std::vector<do
 }
 
 /// Every contender in turn, and that several times over: what slows the machine down meets all alike.
-void compete(const Problem& problem, const std::string& file, int runs, double limit, const std::string& only)
+void compete(const Field& field, const std::string& file, int runs, double limit)
 {
-  constexpr double WORTH_REPEATING = 0.5;  // [s]; longer runs are timed once
+  constexpr double ENOUGH = 1.5;  // processor time of all runs of one contender after which it is not timed again [s]
   const Series reference = hjt::readSeries(file);
-  std::vector<Contender> contenders = hjt::ownContenders();
-  for (const auto& more : { hjt::odeintContenders(problem), hjt::sundialsContenders() })
-  {
-    contenders.insert(contenders.end(), more.begin(), more.end());
-  }
-  contenders.erase(
-      std::remove_if(contenders.begin(), contenders.end(),
-                     [&](const Contender& contender) { return contender.solver.find(only) == std::string::npos; }),
-      contenders.end());
+  const std::vector<Contender>& contenders = field.contenders;
   std::vector<Run> results;
   std::vector<std::vector<double>> times;
   for (const Contender& contender : contenders)
   {
-    std::cerr << problem.name << ": " << contender.solver << ", " << contender.setting << std::endl;
-    // Twice given up at looser tolerances: it takes longer still at those that follow.
+    std::cerr << field.name << ": " << results.size() + 1 << " of " << contenders.size() << ", " << contender.solver
+              << ", " << contender.setting << std::endl;
+    // Given up twice at looser tolerances, or early: it takes longer still at those that follow.
+    constexpr double EARLY = 0.3;  // of the duration
     const std::size_t i = results.size();
     const auto lost = [&](std::size_t k)
     { return contenders[k].solver == contender.solver && results[k].failure.rfind("gave up", 0) == 0; };
-    const bool hopeless = i >= 2 && lost(i - 1) && lost(i - 2);
-    results.push_back(hopeless ? results.back() : contender.run(problem, limit));
+    const bool hopeless =
+        i >= 1 && lost(i - 1) && (results[i - 1].reached < EARLY * field.duration || (i >= 2 && lost(i - 2)));
+    results.push_back(hopeless ? results.back() : contender.run(limit));
     times.push_back({ results.back().time });
   }
   for (int pass = 1; pass < runs; ++pass)
   {
+    std::cerr << field.name << ": run " << pass + 1 << " of " << runs << std::endl;
     for (std::size_t i = 0; i < contenders.size(); ++i)
     {
-      if (results[i].failure.empty() && results[i].time < WORTH_REPEATING)
+      if (results[i].failure.empty() && pass * results[i].time < ENOUGH)
       {
-        times[i].push_back(contenders[i].run(problem, limit).time);
+        times[i].push_back(contenders[i].run(limit).time);
       }
     }
   }
   for (std::size_t i = 0; i < contenders.size(); ++i)
   {
     nlohmann::json line = toJson(contenders[i], results[i], times[i], reference);
-    line["problem"] = problem.name;
+    line["problem"] = field.name;
     std::cout << line.dump() << std::endl;
   }
+}
+
+/// Those of the dynamic ring.
+Field ringField(const Problem& problem)
+{
+  Field field{ problem.name, problem.title, problem.duration(), hjt::ownContenders(problem), hjt::references(problem) };
+  for (const auto& more : { hjt::odeintContenders(problem), hjt::sundialsContenders(problem),
+#ifdef HJT_WITH_PETSC
+                            hjt::petscContenders(problem),
+#endif
+                            hjt::radauContenders(problem) })
+  {
+    field.contenders.insert(field.contenders.end(), more.begin(), more.end());
+  }
+  return field;
+}
+
+void runField(Field field, bool make_reference, const std::string& file, int runs, double limit,
+              const std::string& only)
+{
+  const auto other = [&](const Contender& contender) { return contender.solver.find(only) == std::string::npos; };
+  field.contenders.erase(std::remove_if(field.contenders.begin(), field.contenders.end(), other),
+                         field.contenders.end());
+  make_reference ? makeReference(field, file) : compete(field, file, runs, limit);
 }
 }  // namespace
 
 int main(int argc, char** argv)
 {
-  CLI::App app(
-      "Run time against error of solvers on the dynamic ring; one JSON line per solver and setting on stdout.");
+  CLI::App app("Run time against error of solvers on the ring; one JSON line per solver and setting on stdout.");
+  static const std::string OPERATING = "operating";
+  std::vector<std::string> names = hjt::problemNames();
+  names.push_back(OPERATING);
   std::string name;
   std::string file;
   std::string only;
   bool reference = false;
   int runs = 3;
   double limit = 5.0;
-  app.add_option("problem", name, "problem to solve")->required()->check(CLI::IsMember(hjt::problemNames()));
+  app.add_option("problem", name, "problem to solve")->required()->check(CLI::IsMember(names));
   app.add_option("--reference", file, "file of the reference solution")->required();
   app.add_flag("--make-reference", reference, "write that file, by two methods, instead of reading it");
   app.add_option("--runs", runs, "timed runs, of which the median counts")->check(CLI::Range(1, 1000));
@@ -131,8 +165,16 @@ int main(int argc, char** argv)
   CLI11_PARSE(app, argc, argv);
   try
   {
+    if (name == OPERATING)
+    {
+      const hjt::OperatingProblem problem;
+      runField({ name, "Operating model, ring in equilibrium, reversal, 1 s", 1.0, hjt::operatingContenders(problem),
+                 hjt::operatingReferences(problem) },
+               reference, file, runs, limit, only);
+      return 0;
+    }
     const Problem problem = hjt::makeProblem(name);
-    reference ? makeReference(problem, file) : compete(problem, file, runs, limit, only);
+    runField(ringField(problem), reference, file, runs, limit, only);
   }
   catch (const std::exception& error)
   {

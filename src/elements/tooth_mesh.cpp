@@ -11,6 +11,8 @@ namespace hjt
 {
 namespace
 {
+constexpr double OUTSIDE = -1.0;  // m: the depth in a flank of a tip that is not in the circular spline
+
 /// Where a tooth stands among the axes of its space: across and along (FlankContact's xi and zeta).
 struct Stand
 {
@@ -120,46 +122,50 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
                                               Eigen::VectorXd& pressed) const noexcept
 {
-  constexpr double OUTSIDE = -1.0;  // m: the tip is not in the circular spline
   const int n = shape.teeth();
+  double* __restrict__ depth = pressed.data();
+  if (!profile_.straight())
+  {
+    for (int i = 0; i < n; ++i)
+    {
+      depth[i] = pressedBy(engage(shape, cos_output, sin_output, i), i);
+    }
+    return;
+  }
   const double* __restrict__ point = shape.points.data();
   const int* __restrict__ space = shape.space.data();
   const Space* __restrict__ spaces = space_.data();
   const double* __restrict__ ahead = tooth_across_.data();
   const double* __restrict__ clearance = clearance_.data();
   const double* __restrict__ lost = tip_loss_.data();
-  double* __restrict__ depth = pressed.data();
   const double mid_height = mid_height_;
   const double tip_offset = tip_offset_;
   const ToothProfile& profile = profile_;
-  const auto find = [&](const auto& half_width)
+  const auto find = [&](int h, int i, int j)
   {
-    const auto at = [&](int h, int i, int j)
-    {
-      const Space& own = spaces[space[i]];
-      const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
-      const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
-      const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
-      const double zeta = stand.zeta - own.along;
-      const double into = std::abs(stand.xi + ahead[i] - own.across) - half_width(zeta) - clearance[i];
-      depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
-    };
-    at(n - 1, 0, 1);
-#pragma omp simd
-    for (int i = 1; i < n - 1; ++i)
-    {
-      at(i - 1, i, i + 1);
-    }
-    at(n - 2, n - 1, 0);
+    const Space& own = spaces[space[i]];
+    const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
+    const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
+    const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
+    const double zeta = stand.zeta - own.along;
+    const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
+    depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
   };
-  if (profile.straight())
+  find(n - 1, 0, 1);
+#pragma omp simd
+  for (int i = 1; i < n - 1; ++i)
   {
-    find([&](double zeta) { return profile.straightAt(zeta); });
+    find(i - 1, i, i + 1);
   }
-  else
-  {
-    find([&](double zeta) { return profile.at(zeta).value; });
-  }
+  find(n - 2, n - 1, 0);
+}
+
+/// Depth in the nearer flank, across.
+double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
+{
+  const double zeta = tooth.zeta - tooth.space_out;
+  return zeta + tip_offset_ > tip_loss_[i] ? std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
+                                    OUTSIDE;
 }
 
 void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
@@ -309,7 +315,7 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
   {
     const ToothEngagement tooth = engage(shape, cos_output, sin_output, i);
     if (shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_ ||
-        std::abs(tooth.xi) <= half_space_ * tooth.zeta || touches(tooth, i))
+        std::abs(tooth.xi) <= half_space_ * tooth.zeta || pressedBy(tooth, i) > 0.0)
     {
       continue;
     }
@@ -319,13 +325,6 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
     jumps += tooth.zeta + tip_offset_ > tip_loss_[i] && stiffness_[i] > 0.0 ? 1 : 0;
   }
   return jumps;
-}
-
-bool ToothMesh::touches(const ToothEngagement& tooth, int i) const noexcept
-{
-  const double zeta = tooth.zeta - tooth.space_out;
-  return zeta + tip_offset_ > tip_loss_[i] &&
-         std::abs(tooth.xi + tooth.tooth_ahead) > profile_.at(zeta).value + clearance_[i];
 }
 
 ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& position, int i) const noexcept

@@ -87,6 +87,27 @@ void checkElements(const Parameters& p, Contradictions& check)
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
                 "mesh.friction_kinetic = " + numberText(p.mesh.friction_kinetic) +
                     " [-] must not exceed mesh.friction_static = " + numberText(p.mesh.friction_static) + " [-]");
+  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
+                { "bearing.ball_diameter", "bearing.pitch_diameter" },
+                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
+                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
+}
+
+void checkLife(const Parameters& p, Contradictions& check)
+{
+  check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
+                "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
+                    " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
+  const auto check_limit = [&](const std::string& limit_key, double limit, const std::string& scale_key, double scale)
+  {
+    check.require(limit <= scale, { limit_key, scale_key },
+                  limit_key + " = " + numberText(limit) + " [m] must not exceed " + scale_key + " = " +
+                      numberText(scale) + " [m]");
+  };
+  check_limit("life.flank_wear_limit", p.life.flank_wear_limit, "fault_scale.tooth_wear_depth",
+              p.fault_scale.tooth_wear_depth);
+  check_limit("life.interface_wear_limit", p.life.interface_wear_limit, "fault_scale.interface_wear_depth",
+              p.fault_scale.interface_wear_depth);
 }
 
 void checkFaults(const Parameters& p, Contradictions& check)
@@ -123,6 +144,7 @@ void checkRates(const Parameters& p, Contradictions& check)
   check_rate("publish.encoders_rate", p.publish.encoders_rate);
   check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
   check_rate("publish.health_rate", p.publish.health_rate);
+  check_rate("publish.indicators_rate", p.publish.indicators_rate);
 }
 }  // namespace
 
@@ -133,6 +155,7 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
   checkPitch(parameters.manufacture.flexspline_pitch, "flexspline", check);
   checkPitch(parameters.manufacture.circular_spline_pitch, "circular_spline", check);
   checkElements(parameters, check);
+  checkLife(parameters, check);
   checkRates(parameters, check);
   checkFaults(parameters, check);
   return check.take();

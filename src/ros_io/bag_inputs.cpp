@@ -135,8 +135,9 @@ std::vector<std::string> inputTopics(const std::string& joint_namespace)
 std::vector<std::string> outputTopics(const std::string& joint_namespace)
 {
   const std::string prefix = joint_namespace + "/";
-  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS, prefix + topics::CONTACT_FORCES,
-           prefix + topics::HEALTH, prefix + topics::FAULTS };
+  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS,   prefix + topics::CONTACT_FORCES,
+           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT,
+           prefix + topics::FAULTS };
 }
 
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters)

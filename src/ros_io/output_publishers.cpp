@@ -35,6 +35,8 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
         node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
         makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
   , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
+  , indicators_(node, topics::INDICATORS, LARGE_MESSAGE_SLOTS, makeIndicators(JointNames(twin.parameters().joint.name)))
+  , assessment_(node, topics::ASSESSMENT, LARGE_MESSAGE_SLOTS, makeAssessment(JointNames(twin.parameters().joint.name)))
   , names_(twin.parameters().joint.name)
   , faults_(FAULT_SLOTS, {})
   , faults_publisher_(node.advertise<harmonic_joint_twin::Faults>(topics::FAULTS, 1, true))
@@ -85,6 +87,14 @@ void OutputPublishers::offer(Twin& twin) noexcept
   {
     health_.write([&](auto& message) { fillHealth(outputs, twin.health(), message); });
   }
+  if (isWanted(Output::INDICATORS, indicators_.isHeard(), outputs.stamp))
+  {
+    indicators_.write([&](auto& message) { fillIndicators(outputs.stamp, twin.signalIndicators(), message); });
+  }
+  if (isWanted(Output::ASSESSMENT, assessment_.isHeard(), outputs.stamp))
+  {
+    assessment_.write([&](auto& message) { fillAssessment(outputs.stamp, twin.assessment(), message); });
+  }
 }
 
 /// The list of faults, once after each change.
@@ -129,7 +139,8 @@ std::string OutputPublishers::activeFaults() const
 
 std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
 {
-  return { joint_states_.counters(), encoders_.counters(), contact_forces_.counters(), health_.counters() };
+  return { joint_states_.counters(), encoders_.counters(),   contact_forces_.counters(),
+           health_.counters(),       indicators_.counters(), assessment_.counters() };
 }
 
 void OutputPublishers::run()
@@ -152,6 +163,8 @@ void OutputPublishers::refreshHeard()
   encoders_.refreshHeard();
   contact_forces_.refreshHeard();
   health_.refreshHeard();
+  indicators_.refreshHeard();
+  assessment_.refreshHeard();
 }
 
 void OutputPublishers::drain()
@@ -160,6 +173,8 @@ void OutputPublishers::drain()
   encoders_.drain();
   contact_forces_.drain();
   health_.drain();
+  indicators_.drain();
+  assessment_.drain();
   drainFaults();
 }
 }  // namespace hjt

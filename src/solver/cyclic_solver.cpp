@@ -28,7 +28,7 @@ CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
 
 bool CyclicSolver::factor(const RingTangent& tangent) noexcept
 {
-  const ToothBlocks& d = tangent.diagonal;
+  const SymmetricBlocks& d = tangent.diagonal;
   const ToothBlocks& n = tangent.next;
   const ToothBlocks& s = tangent.second;
   const arcs::Tangent entries{ { d.xx.data(), d.xy.data(), d.yy.data() },

@@ -5,16 +5,64 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+#include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/surface_worker.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
+std::string keyOf(const FaultList& faults, const Parameters& parameters)
+{
+  if (faults.empty())
+  {
+    return "";
+  }
+  std::ostringstream text;
+  for (const ActiveFault& active : faults)
+  {
+    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
+         << '\n';
+  }
+  std::istringstream lines(describeParameters(parameters));
+  for (std::string line; std::getline(lines, line);)
+  {
+    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
+  }
+  return text.str();
+}
+
+bool isSame(const FaultList& one, const FaultList& other) noexcept
+{
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const ActiveFault& a, const ActiveFault& b)
+                    {
+                      return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
+                             a.fault.severity == b.fault.severity;
+                    });
+}
+
+/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
+bool isOfTheBalls(const ActiveFault& active) noexcept
+{
+  const FaultKind kind = active.fault.kind;
+  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
+         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
+}
+}  // namespace
+
 struct Twin::Impl
 {
   Impl(const Parameters& given, const SurfaceSource& surface_source)
@@ -25,12 +73,17 @@ struct Twin::Impl
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
     , monitor(given.health, given.gear)
+    , signals(given)
+    , assessor(given)
+    , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && std::none_of(given.faults.begin(), given.faults.end(), setsInAtOnce))
+    if (given.solver.scene == SceneKind::AUTO)
     {
-      surface = sharedSurface(given, surface_source);
+      scheduleConfigured(0);
+      faults.apply(active);
+      prepareSurface(surface_source);
     }
     if (!reset(0))
     {
@@ -40,12 +93,42 @@ struct Twin::Impl
     }
   }
 
+  /// The surface of the drive with the faults it starts with.
+  void prepareSurface(const SurfaceSource& source)
+  {
+    surface_faults = active;
+    if (std::any_of(active.begin(), active.end(), isOfTheBalls))
+    {
+      if (source.notice)
+      {
+        source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
+      }
+    }
+    else if (source.background)
+    {
+      surface_awaited = true;
+      surface_worker =
+          std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+    else
+    {
+      surface = sharedSurface(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+  }
+
+  /// The surface while it is that of the present faults; else the full ring.
+  void useSurface() noexcept
+  {
+    const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
+    stepper.useSurface(isSame(active, surface_faults) ? ready : nullptr);
+  }
+
   bool reset(Stamp stamp) noexcept
   {
     stepper.useSurface(nullptr);
     scheduleConfigured(stamp);
     faults.apply(active);
-    stepper.useSurface(active.empty() ? surface.get() : nullptr);
+    useSurface();
     const bool settled = stepper.reset();
     queue.clear();
     counters = {};
@@ -59,6 +142,8 @@ struct Twin::Impl
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
+    signals.reset();
+    assessor.reset();
     outputs = {};
     steps_at_report = {};
     fillOutputs(0.0, true);
@@ -73,10 +158,12 @@ struct Twin::Impl
   bool takeFaults() noexcept;
   void step() noexcept;
   void takeInputs() noexcept;
+  void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
+  void takeReadings() noexcept;
   SolverState solverState() noexcept;
   LobeLoads lobes() const noexcept;
 
@@ -85,7 +172,10 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
+  FaultList surface_faults;  // that the surface is made for
   std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -101,6 +191,10 @@ struct Twin::Impl
   JointOutputs outputs;
   JointSensors sensors;
   HealthMonitor monitor;
+  SignalMonitor signals;
+  Assessor assessor;
+  Stamp steps_per_sample;
+  bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
@@ -140,7 +234,7 @@ bool Twin::Impl::takeFaults() noexcept
   stepper.useSurface(nullptr);
   faults.apply(active);
   const bool good = stepper.followModel();
-  stepper.useSurface(active.empty() ? surface.get() : nullptr);
+  useSurface();
   return good;
 }
 
@@ -176,6 +270,16 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
+/// The surface that was built beside, when it is there.
+void Twin::Impl::takeSurface() noexcept
+{
+  if (surface_awaited && surface_worker->surface() != nullptr)
+  {
+    surface_awaited = false;
+    useSurface();
+  }
+}
+
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
@@ -201,6 +305,7 @@ void Twin::Impl::step() noexcept
   simulated_until = now;
   const bool followed = takeFaults();
   takeInputs();
+  takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
   const bool converged =
       stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
@@ -246,6 +351,28 @@ void Twin::Impl::observe() noexcept
   sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
+  if (watching && now / step_length % steps_per_sample == 0)
+  {
+    takeReadings();
+  }
+}
+
+/// What a drive would know: readings, the load it was told, its temperature.
+void Twin::Impl::takeReadings() noexcept
+{
+  const EncoderReadings readings = sensors.encoders();
+  SignalSample sample;
+  sample.stamp = now;
+  sample.motor_angle = readings.motor_angle;
+  sample.output_angle = readings.output_angle;
+  sample.motor_velocity = readings.motor_velocity;
+  sample.motor_torque = sensors.motorTorque();
+  sample.load_torque = load_torque;
+  sample.temperature = parameters.input.temperature;
+  if (signals.update(sample))
+  {
+    assessor.take(signals.indicators());
+  }
 }
 
 SolverState Twin::Impl::solverState() noexcept
@@ -269,7 +396,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
   loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
-  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
   loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);
@@ -423,6 +550,26 @@ HealthReport Twin::health() noexcept
   report.solver_failures = impl_->counters.solver_failures;
   report.solver_state = impl_->solverState();
   return report;
+}
+
+void Twin::watchSignals(bool on) noexcept
+{
+  impl_->watching = on;
+}
+
+bool Twin::watchesSignals() const noexcept
+{
+  return impl_->watching;
+}
+
+const SignalIndicators& Twin::signalIndicators() const noexcept
+{
+  return impl_->signals.indicators();
+}
+
+const Assessment& Twin::assessment() const noexcept
+{
+  return impl_->assessor.assessment();
 }
 
 ToothForces Twin::makeToothForces() const

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const fs::path CONFIG(HJT_TEST_CONFIG_DIR);
 const std::vector<std::string> STAGES{ "gear",    "manufacture", "elements", "joint", "solver",
-                                       "sensors", "health",      "faults",   "node" };
+                                       "sensors", "health",      "life",     "faults", "node" };
 
 ParameterMap defaultMap()
 {

@@ -14,7 +14,7 @@ inline Parameters shippedParameters(const std::vector<std::string>& assignments 
 {
   ParameterMap map;
   std::vector<std::string> files{ "gear",    "manufacture", "elements", "joint", "solver",
-                                  "sensors", "health",      "faults",   "node" };
+                                  "sensors", "health",      "life",     "faults", "node" };
   files.insert(files.end(), overlays.begin(), overlays.end());
   for (const std::string& file : files)
   {

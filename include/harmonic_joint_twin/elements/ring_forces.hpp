@@ -114,6 +114,38 @@ struct ToothBlocks
   Eigen::VectorXd yy;
 };
 
+/// The same for symmetric blocks.
+struct SymmetricBlocks
+{
+  explicit SymmetricBlocks(int teeth) : xx(teeth), xy(teeth), yy(teeth) {}
+
+  void setZero() noexcept
+  {
+    xx.setZero();
+    xy.setZero();
+    yy.setZero();
+  }
+
+  /// Of a symmetric block.
+  void add(int i, const Block2& block) noexcept
+  {
+    xx[i] += block(0, 0);
+    xy[i] += block(0, 1);
+    yy[i] += block(1, 1);
+  }
+
+  Block2 at(int i) const noexcept
+  {
+    Block2 block;
+    block << xx[i], xy[i], xy[i], yy[i];
+    return block;
+  }
+
+  Eigen::VectorXd xx;
+  Eigen::VectorXd xy;
+  Eigen::VectorXd yy;
+};
+
 /// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
 ///
 /// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup adds
@@ -154,16 +186,10 @@ struct RingTangent
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  /// Adds the symmetric blocks of `segment` (xx, xy, yy): springs between teeth i and i+1.
-  void addSegments() noexcept
-  {
-    addSpring(segment.xx, diagonal.xx, next.xx);
-    addSpring(segment.xy, diagonal.xy, next.xy);
-    addSpring(segment.xy, diagonal.yx, next.yx);
-    addSpring(segment.yy, diagonal.yy, next.yy);
-  }
+  /// Adds the blocks of `segment`: springs between teeth i and i+1.
+  void addSegments() noexcept;
 
-  ToothBlocks diagonal;               ///< at (i, i); symmetric
+  SymmetricBlocks diagonal;           ///< at (i, i)
   ToothBlocks next;                   ///< at (i, i+1), cyclic
   ToothBlocks second;                 ///< at (i, i+2), cyclic
   Eigen::VectorXd cup_direction;      ///< 2 N, gradient of the mean rotation [rad/m]
@@ -172,16 +198,6 @@ struct RingTangent
   Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
-  ToothBlocks segment;                ///< what an element does between teeth i and i+1, before `addSegments`
-
-private:
-  static void addSpring(const Eigen::VectorXd& spring, Eigen::VectorXd& at_tooth, Eigen::VectorXd& to_next) noexcept
-  {
-    const Eigen::Index n = spring.size();
-    at_tooth[0] += spring[n - 1];
-    at_tooth.tail(n - 1) += spring.head(n - 1);
-    at_tooth += spring;
-    to_next -= spring;
-  }
+  SymmetricBlocks segment;            ///< what an element does between teeth i and i+1, before `addSegments`
 };
 }  // namespace hjt

@@ -72,7 +72,7 @@ private:
     double along;
   };
   ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
-  bool touches(const ToothEngagement& tooth, int i) const noexcept;
+  double pressedBy(const ToothEngagement& tooth, int i) const noexcept;
   FlankLaw law(const ToothEngagement& tooth, int i) const noexcept;
   void findPressed(const RingShape& shape, double cos_output, double sin_output,
                    Eigen::VectorXd& pressed) const noexcept;

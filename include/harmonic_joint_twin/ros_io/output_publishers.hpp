@@ -54,6 +54,8 @@ private:
   OutputChannel<harmonic_joint_twin::Encoders> encoders_;
   OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;
   OutputChannel<harmonic_joint_twin::Health> health_;
+  OutputChannel<harmonic_joint_twin::Indicators> indicators_;
+  OutputChannel<harmonic_joint_twin::Assessment> assessment_;
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
   ros::Publisher faults_publisher_;

@@ -78,7 +78,8 @@ struct Kernels
 
 extern const Kernels BASELINE;  ///< for every processor of the architecture
 #ifdef HJT_AVX2
-extern const Kernels AVX2;  ///< x86-64 with AVX2 and FMA
+extern const Kernels AVX2;    ///< x86-64 with AVX2 and FMA
+extern const Kernels AVX512;  ///< with AVX-512 VL and DQ: the same vectors, twice the registers
 #endif
 
 /// The fastest that this processor can run.

@@ -80,8 +80,11 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
-inline void factor(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums)
+inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
+  // Copies: what is stored through a vector's pointer might else be them.
+  const Layout layout = where;
+  const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);
   // What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
   Lanes d_xx{}, d_xy{}, d_yy{};
@@ -224,15 +227,23 @@ inline void factor(const Layout& layout, const Tangent& tangent, double* factors
 }
 
 template <int COLUMNS>
-void forward(const Layout& layout, const double* factors, const double* const* b, double* rows, double* before,
+void forward(const Layout& where, const double* factors, const double* const* columns, double* rows, double* before,
              double* after)
 {
+  const Layout layout = where;
+  const double* b[COLUMNS];
+#pragma GCC unroll 8
+  for (int c = 0; c < COLUMNS; ++c)
+  {
+    b[c] = columns[c];
+  }
   Lanes px[COLUMNS]{}, py[COLUMNS]{}, qx[COLUMNS]{}, qy[COLUMNS]{};
   Lanes sum[BORDER][COLUMNS]{};
   const Factors* f = reinterpret_cast<const Factors*>(factors);
   Lanes* row = lanes(rows);
   for (int t = 0; t < layout.steps; ++t, ++f, row += 2 * COLUMNS)
   {
+#pragma GCC unroll 8
     for (int c = 0; c < COLUMNS; ++c)
     {
       Lanes x = gather(layout, b[c] + 2 * t, 2);
@@ -250,14 +261,17 @@ void forward(const Layout& layout, const double* factors, const double* const* b
       py[c] = qy[c] - (f->next_xy * x + f->next_yy * y);
       qx[c] = -(f->second_xx * x + f->second_yx * y);
       qy[c] = -(f->second_xy * x + f->second_yy * y);
+#pragma GCC unroll 8
       for (int e = 0; e < BORDER; ++e)
       {
         sum[e][c] -= f->border_x[e] * x + f->border_y[e] * y;
       }
     }
   }
+#pragma GCC unroll 8
   for (int c = 0; c < COLUMNS; ++c)
   {
+#pragma GCC unroll 8
     for (int e = 0; e < BORDER; ++e)
     {
       lanes(before)[BORDER * c + e] = sum[e][c];
@@ -270,10 +284,18 @@ void forward(const Layout& layout, const double* factors, const double* const* b
 }
 
 template <int COLUMNS>
-void backward(const Layout& layout, const double* factors, const double* rows, const double* before,
-              const double* after, double* const* x)
+void backward(const Layout& where, const double* factors, const double* rows, const double* before, const double* after,
+              double* const* columns)
 {
+  const Layout layout = where;
+  double* x[COLUMNS];
+#pragma GCC unroll 8
+  for (int c = 0; c < COLUMNS; ++c)
+  {
+    x[c] = columns[c];
+  }
   Lanes px[COLUMNS], py[COLUMNS], qx[COLUMNS], qy[COLUMNS];
+#pragma GCC unroll 8
   for (int c = 0; c < COLUMNS; ++c)
   {
     px[c] = lanes(after)[4 * c];
@@ -287,25 +309,29 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
   {
     --f;
     row -= 2 * COLUMNS;
+#pragma GCC unroll 8
     for (int c = 0; c < COLUMNS; ++c)
     {
       const Lanes rx = row[2 * c];
       const Lanes ry = row[2 * c + 1];
       Lanes vx = f->inverse_xx * rx + f->inverse_xy * ry;
       Lanes vy = f->inverse_xy * rx + f->inverse_yy * ry;
-      vx -= f->next_xx * px[c] + f->next_xy * py[c];
-      vy -= f->next_yx * px[c] + f->next_yy * py[c];
-      vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
-      vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
+#pragma GCC unroll 8
       for (int e = 0; e < BORDER; ++e)
       {
         vx -= f->border_x[e] * lanes(before)[BORDER * c + e];
         vy -= f->border_y[e] * lanes(before)[BORDER * c + e];
       }
+      // What the next step waits for comes last.
+      vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
+      vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
+      vx -= f->next_xx * px[c] + f->next_xy * py[c];
+      vy -= f->next_yx * px[c] + f->next_yy * py[c];
       qx[c] = px[c];
       qy[c] = py[c];
       px[c] = vx;
       py[c] = vy;
+#pragma GCC unroll 8
       for (int k = 0; k < COUNT; ++k)
       {
         if (t > 0 || !layout.idle[k])
@@ -323,6 +349,7 @@ inline bool factorCorner(double* matrix, CornerFactors& factors)
 {
   constexpr int LANES = CORNER / COUNT;  // a row
   bool positive = true;
+#pragma GCC unroll 16
   for (int k = 0; k < CORNER; ++k)
   {
     const double* row = matrix + CORNER * k;
@@ -339,6 +366,7 @@ inline bool factorCorner(double* matrix, CornerFactors& factors)
     for (int i = k + 1; i < CORNER; ++i)
     {
       const double share = factors.upper[k][i];
+#pragma GCC unroll 16
       for (int v = i / COUNT; v < LANES; ++v)
       {
         lanes(matrix + CORNER * i)[v] -= share * lanes(row)[v];
@@ -351,21 +379,26 @@ inline bool factorCorner(double* matrix, CornerFactors& factors)
 inline void solveCorner(const CornerFactors& factors, double* b)
 {
   constexpr int LANES = CORNER / COUNT;
+#pragma GCC unroll 16
   for (int k = 0; k < CORNER; ++k)
   {
     const double value = b[k];
+#pragma GCC unroll 16
     for (int v = k / COUNT; v < LANES; ++v)
     {
       lanes(b)[v] -= value * lanes(factors.upper[k])[v];
     }
   }
+#pragma GCC unroll 16
   for (int v = 0; v < LANES; ++v)
   {
     lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
   }
+#pragma GCC unroll 16
   for (int k = CORNER - 1; k > 0; --k)
   {
     const double value = b[k];
+#pragma GCC unroll 16
     for (int v = 0; v <= k / COUNT; ++v)
     {
       lanes(b)[v] -= value * lanes(factors.lower[k])[v];

@@ -106,6 +106,8 @@ private:
   void turnSpaces(int pitches) noexcept;
   void shift(int pitches) noexcept;
   void predict(const DrivePosition& target) noexcept;
+  void guess(const DrivePosition& target) noexcept;
+  void forgetGuess() noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
   bool slopesChanged() const noexcept;
@@ -133,7 +135,12 @@ private:
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
-  std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
+  std::vector<char> factored_meshed_;  // when the tangent was factored
+  Eigen::VectorXd factored_depth_;     // of the wave generator's contact then
+  // Of the last move, where it has led to the present state.
+  bool guessed_{ false };
+  Eigen::VectorXd guess_;        // without what the guess before was off by
+  Eigen::VectorXd guess_error_;  // of the guess before
   Eigen::VectorXd step_;
   Eigen::VectorXd start_forces_;
   // Of the last factored tangent, once known.

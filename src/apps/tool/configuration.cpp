@@ -16,9 +16,10 @@ namespace fs = std::filesystem;
 constexpr const char* GROUP = "Common options";
 
 /// The default configuration, one file per stage.
-constexpr std::array<const char*, 9> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml",
+constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml",
                                              "joint.yaml",  "solver.yaml",      "sensors.yaml",
-                                             "health.yaml", "faults.yaml",      "node.yaml" };
+                                             "health.yaml", "life.yaml",        "faults.yaml",
+                                             "node.yaml" };
 
 fs::path installedConfigDirectory()
 {

@@ -60,4 +60,19 @@ void JointFaults::edit() noexcept
   model_.bearing.scaleViscosity(edits_.viscosity);
   model_.bearing.loosen(edits_.preload_loss, parameters_.fault_scale.race_bending_preload);
 }
+
+JointModel startingJoint(const Parameters& parameters)
+{
+  JointModel model(parameters);
+  FaultList faults;
+  for (const Fault& fault : parameters.faults)
+  {
+    if (fault.onset == 0.0)
+    {
+      faults.set(fault, 0);
+    }
+  }
+  JointFaults(parameters, model).apply(faults);
+  return model;
+}
 }  // namespace hjt

@@ -34,4 +34,7 @@ private:
   Eigen::VectorXd tension_stiffness_;
   Eigen::VectorXd bending_stiffness_;
 };
+
+/// The joint of these parameters with the faults that it has from the start.
+JointModel startingJoint(const Parameters& parameters);
 }  // namespace hjt

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/work_precision/operating.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+
+#include "bench/work_precision/follow.hpp"
+#include "harmonic_joint_twin/solver/leapfrog.hpp"
+#include "test/core/test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+using namespace boost::numeric::odeint;
+
+constexpr double DURATION = 1.0;        // [s]
+constexpr double SAMPLE_PERIOD = 0.01;  // [s]
+constexpr double REVERSAL = 0.3;        // the motor's torque changes its sign [s]
+constexpr double TORQUE = 0.25;         // [N.m]
+constexpr double LOAD = 5.0;            // [N.m]
+
+double motorTorque(double time)
+{
+  return time < REVERSAL ? TORQUE : -TORQUE;
+}
+
+/// The joint on its way, with the samples it has left behind.
+class Journey
+{
+public:
+  explicit Journey(const OperatingProblem& problem)
+    : dynamics(problem.model, problem.parameters.solver)
+    , samples_(static_cast<int>(DURATION / SAMPLE_PERIOD + 0.5))
+    , series_{ Eigen::MatrixXd(samples_, 2), Eigen::MatrixXd(samples_, 2 * teeth()),
+               Eigen::MatrixXd(samples_, 2 * teeth()) }
+  {
+    dynamics.inputs.load_torque = LOAD;
+    if (!dynamics.settle().ok())
+    {
+      throw std::runtime_error("operating: no equilibrium to start from");
+    }
+    x[joint_state::OUTPUT_ANGLE] = dynamics.outputAngle();
+  }
+
+  bool done() const { return taken_ == samples_; }
+  double due() const { return SAMPLE_PERIOD * (taken_ + 1); }
+
+  /// The state at the time due.
+  void sample(const JointState& state)
+  {
+    (void)dynamics.place(state[joint_state::MOTOR_ANGLE], state[joint_state::OUTPUT_ANGLE]);  // its status is kept
+    series_.angles.row(taken_) = state.head<2>();
+    series_.positions.row(taken_) = dynamics.ring().shape().points;
+    series_.forces.row(taken_) << dynamics.ring().forces().contact_force.transpose(),
+        dynamics.ring().forces().flank_force.transpose();
+    ++taken_;
+  }
+
+  const Series& series() const { return series_; }
+
+  JointDynamics dynamics;
+  JointState x{ JointState::Zero() };
+
+private:
+  int teeth() const { return dynamics.ring().shape().teeth(); }
+
+  int samples_;
+  Series series_;
+  int taken_{};
+};
+
+/// Samples that `advance` reaches one after the other; it steps up to a time and gives false if it fails.
+template <class Advance>
+Run travel(Journey& journey, double limit, Advance&& advance)
+{
+  Run run;
+  const Stopwatch watch;
+  while (!journey.done() && run.failure.empty())
+  {
+    const double due = journey.due();
+    journey.dynamics.inputs.motor_torque = motorTorque(due - 0.5 * SAMPLE_PERIOD);
+    const bool good = advance(due, run) && journey.dynamics.status.ok();
+    run.time = watch.elapsed();
+    if (!good || run.time > limit)
+    {
+      run.failure = (good ? "gave up at " : "failed at ") + text("%.3g s", due);
+    }
+    journey.sample(journey.x);
+  }
+  run.reached = journey.due();
+  run.series = journey.series();
+  return run;
+}
+
+int stepsToASample(double step)
+{
+  return static_cast<int>(std::lround(SAMPLE_PERIOD / step));
+}
+
+/// The twin's own. Its speeds belong half a step ahead of its angles: a first kick of half a step from rest brings them there.
+Run leapfrog(const OperatingProblem& problem, double step, double limit)
+{
+  Journey journey(problem);
+  Leapfrog stepper;
+  journey.dynamics.inputs.motor_torque = motorTorque(0.0);
+  stepper.do_step(journey.dynamics, journey.x, 0.0, 0.5 * step);
+  return travel(journey, limit,
+                [&](double due, Run& run)
+                {
+                  const int steps = stepsToASample(step);
+                  for (int k = 0; k < steps; ++k)
+                  {
+                    const double end = due - SAMPLE_PERIOD + (k + 1) * step;
+                    journey.dynamics.inputs.motor_torque =
+                        0.5 * (motorTorque(end - 0.5 * step) + motorTorque(end + 0.5 * step));  // over the kick
+                    stepper.do_step(journey.dynamics, journey.x, end - step, step);
+                  }
+                  run.steps += steps;
+                  run.force_evaluations += steps;
+                  return journey.x.allFinite();
+                });
+}
+
+Run rungeKutta4(const OperatingProblem& problem, double step, double limit)
+{
+  Journey journey(problem);
+  runge_kutta4<JointState, double, JointState, double, vector_space_algebra> stepper;
+  return travel(journey, limit,
+                [&](double due, Run& run)
+                {
+                  const int steps = stepsToASample(step);
+                  for (int k = 0; k < steps; ++k)
+                  {
+                    stepper.do_step(journey.dynamics, journey.x, due - SAMPLE_PERIOD + k * step, step);
+                  }
+                  run.steps += steps;
+                  run.force_evaluations += 4 * steps;
+                  return journey.x.allFinite();
+                });
+}
+
+/// Units that a tolerance of 1 means: 1 mrad at the motor, 10 urad at the output, their speeds, and joules.
+JointState scale()
+{
+  JointState scale;
+  scale << 1e-3, 1e-5, 1.0, 1e-2, 1.0, 1.0, 1.0;
+  return scale;
+}
+
+Run dopri5(const OperatingProblem& problem, double tolerance, double limit)
+{
+  using State = std::array<double, 7>;
+  Journey journey(problem);
+  auto stepper = make_controlled(tolerance, 0.0, runge_kutta_dopri5<State>());
+  const JointState unit = scale();
+  long evaluations = 0;
+  const auto unscaled = [&](const State& scaled)
+  { return JointState(Eigen::Map<const JointState>(scaled.data()).cwiseProduct(unit)); };
+  const auto system = [&](const State& scaled, State& derivative, double time)
+  {
+    JointState rate;
+    journey.dynamics(unscaled(scaled), rate, time);
+    Eigen::Map<JointState>(derivative.data()) = rate.cwiseQuotient(unit);
+    ++evaluations;
+  };
+  State scaled{};
+  Eigen::Map<JointState>(scaled.data()) = journey.x.cwiseQuotient(unit);
+  double time = 0.0;
+  double step = 1e-5;
+  return travel(journey, limit,
+                [&](double due, Run& run)
+                {
+                  stepper.reset();
+                  while (time < due * (1.0 - 1e-14))
+                  {
+                    double next = std::min(step, due - time);
+                    const bool cut = next < step;
+                    const bool good = stepper.try_step(system, scaled, time, next) == success;
+                    step = good && cut ? step : next;
+                    ++(good ? run.steps : run.rejections);
+                    if (step < 1e-12)
+                    {
+                      return false;
+                    }
+                  }
+                  time = due;
+                  journey.x = unscaled(scaled);
+                  run.force_evaluations = evaluations;
+                  return true;
+                });
+}
+
+/// CVODE on the four states of the joint (the ledger's three are left out), dense Jacobian by differences.
+Run cvode(const OperatingProblem& problem, int method, double tolerance, double limit)
+{
+  constexpr int STATES = 4;
+  Journey journey(problem);
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  N_Vector y = N_VNew_Serial(STATES, context);
+  N_Vector weights = N_VNew_Serial(STATES, context);
+  using State = Eigen::Map<Eigen::Vector4d>;
+  State(N_VGetArrayPointer(y)) = journey.x.head<STATES>();
+  State(N_VGetArrayPointer(weights)) = tolerance * scale().head<STATES>();
+  void* memory = CVodeCreate(method, context);
+  const auto rates = [](double time, N_Vector from, N_Vector derivative, void* data)
+  {
+    JointState x = JointState::Zero();
+    JointState rate;
+    x.head<STATES>() = State(N_VGetArrayPointer(from));
+    (*static_cast<JointDynamics*>(data))(x, rate, time);
+    State(N_VGetArrayPointer(derivative)) = rate.head<STATES>();
+    return 0;
+  };
+  CVodeInit(memory, rates, 0.0, y);
+  CVodeSVtolerances(memory, 0.0, weights);
+  CVodeSetUserData(memory, &journey.dynamics);
+  CVodeSetMaxNumSteps(memory, 100000000);
+  CVodeSetErrFile(memory, nullptr);
+  SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
+  SUNLinearSolver linear = SUNLinSol_Dense(y, matrix, context);
+  CVodeSetLinearSolver(memory, linear, matrix);
+  Run run = travel(journey, limit,
+                   [&](double due, Run& so_far)
+                   {
+                     double time = 0.0;
+                     if (due - SAMPLE_PERIOD < REVERSAL + 0.5 * SAMPLE_PERIOD && due > REVERSAL + 0.5 * SAMPLE_PERIOD)
+                     {
+                       CVodeReInit(memory, due - SAMPLE_PERIOD, y);  // the torque has changed
+                     }
+                     CVodeSetStopTime(memory, due);
+                     while (time < due)
+                     {
+                       if (CVode(memory, due, y, &time, CV_ONE_STEP) < 0)
+                       {
+                         return false;
+                       }
+                       ++so_far.steps;
+                     }
+                     journey.x.head<STATES>() = State(N_VGetArrayPointer(y));
+                     return true;
+                   });
+  CVodeGetNumRhsEvals(memory, &run.force_evaluations);
+  CVodeGetNumErrTestFails(memory, &run.rejections);
+  CVodeFree(&memory);
+  SUNLinSolFree(linear);
+  SUNMatDestroy(matrix);
+  N_VDestroy(y);
+  N_VDestroy(weights);
+  SUNContext_Free(&context);
+  return run;
+}
+
+Parameters parameters()
+{
+  Parameters parameters = shippedParameters();
+  parameters.solver.force_tolerance = 1e-6;    // below what any of these steps leaves
+  parameters.solver.stiction_velocity = 1e-3;  // the others take friction at rest for a slope as steep as this
+  parameters.cup.friction_torque = 0.0;
+  return parameters;
+}
+}  // namespace
+
+OperatingProblem::OperatingProblem() : parameters(hjt::parameters()), model(parameters) {}
+
+std::vector<Contender> operatingContenders(const OperatingProblem& problem)
+{
+  std::vector<Contender> contenders;
+  const double steps[] = { 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
+  for (const double step : steps)
+  {
+    contenders.push_back({ "ours, leapfrog", "h = " + text("%.3g us", 1e6 * step),
+                           [=, &problem](double limit) { return leapfrog(problem, step, limit); } });
+  }
+  for (const double step : steps)
+  {
+    contenders.push_back({ "odeint RK4", "h = " + text("%.3g us", 1e6 * step),
+                           [=, &problem](double limit) { return rungeKutta4(problem, step, limit); } });
+  }
+  for (const double tolerance : { 1e-1, 1e-2, 1e-3, 1e-4, 1e-5 })
+  {
+    const std::string setting = "tol = " + text("%.0e", tolerance);
+    contenders.push_back(
+        { "odeint dopri5", setting, [=, &problem](double limit) { return dopri5(problem, tolerance, limit); } });
+    contenders.push_back({ "CVODE, BDF, dense", setting,
+                           [=, &problem](double limit) { return cvode(problem, CV_BDF, tolerance, limit); } });
+    contenders.push_back({ "CVODE, Adams", setting,
+                           [=, &problem](double limit) { return cvode(problem, CV_ADAMS, tolerance, limit); } });
+  }
+  return contenders;
+}
+
+std::vector<Contender> operatingReferences(const OperatingProblem& problem)
+{
+  constexpr double TOLERANCE = 1e-9;
+  const std::string setting = "tol = " + text("%.0e", TOLERANCE);
+  return { { "odeint dopri5", setting, [=, &problem](double limit) { return dopri5(problem, TOLERANCE, limit); } },
+           { "CVODE, Adams", setting,
+             [=, &problem](double limit) { return cvode(problem, CV_ADAMS, TOLERANCE, limit); } } };
+}
+}  // namespace hjt
