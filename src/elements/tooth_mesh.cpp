@@ -164,8 +164,9 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
 double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
 {
   const double zeta = tooth.zeta - tooth.space_out;
-  return zeta + tip_offset_ > tip_loss_[i] ? std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
-                                    OUTSIDE;
+  return zeta + tip_offset_ > tip_loss_[i] ?
+             std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
+             OUTSIDE;
 }
 
 void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept

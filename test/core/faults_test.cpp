@@ -143,7 +143,7 @@ TEST_P(EveryKind, EnergyBalancesWhenItSetsIn)
   Twin twin(shippedParameters(RUN));
   twin.commandMotorTorque(0, 2.0);
   twin.commandLoadTorque(0, 60.0);
-  // A rim cut right through snaps from one equilibrium to another as it goes round.
+  // Not a rim cut right through: its balance does not close, see docs/faults.md.
   const double severity = GetParam() == FaultKind::FLEXSPLINE_CRACK ? 0.5 : 1.0;
   twin.injectFault(20 * MILLISECOND, { GetParam(), severity, loadedPlace(GetParam()), 0.0 });
   twin.injectFault(40 * MILLISECOND, { GetParam(), 0.0, loadedPlace(GetParam()), 0.0 });
