@@ -39,6 +39,7 @@ struct Scene
   std::string name;
   double load_torque;                              // [N.m]
   std::function<double(double time)> motor_speed;  // wanted [rad/s]
+  bool brake{ false };                             // engaged, and the motor without current
 };
 
 // At 10 kHz a step at 157 rad/s turns the wave generator by half a tooth pitch: farthest from any shape met before.
@@ -47,6 +48,7 @@ const std::vector<Scene> SCENES{
   { "157 rad/s, load 40 N.m", 40.0, [](double) { return 157.0; } },
   { "full speed 300 rad/s, load 40 N.m", 40.0, [](double) { return 300.0; } },
   { "reversing at 2 Hz, load 100 N.m", 100.0, [](double time) { return 60.0 * std::sin(2.0 * hjt::TWO_PI * time); } },
+  { "standstill, brake on, load 40 N.m", 40.0, [](double) { return 0.0; }, true },
 };
 
 struct Result
@@ -85,6 +87,7 @@ public:
     , health_interval_(std::max(1ll, std::llround(parameters.solver.rate / parameters.publish.health_rate)))
     , reduced_load_(scene.load_torque / hjt::nominalRatio(parameters.gear))
   {
+    twin_.commandBrake(0, scene.brake);
   }
 
   void run() noexcept
@@ -93,7 +96,7 @@ public:
     const double time = 1e-9 * static_cast<double>(twin_.stamp());
     const double error = scene_.motor_speed(time) - twin_.outputs().motor_velocity;
     const hjt::Stamp next = twin_.stamp() + twin_.stepLength();
-    twin_.commandMotorTorque(next, reduced_load_ + GAIN * error);
+    twin_.commandMotorTorque(next, scene_.brake ? 0.0 : reduced_load_ + GAIN * error);
     twin_.commandLoadTorque(next, scene_.load_torque);
     twin_.step(next);
     if (watch_ == Watch::TEETH)
@@ -126,23 +129,39 @@ private:
 
 /// `clock`: what single cycles are timed with.
 /// On the surface a cycle is no longer than a look at the clock, so there a hundred are timed at once.
-Result measure(const hjt::Parameters& parameters, const Scene& scene, Watch watch, double duration, clockid_t clock)
+/// `joints`: so many twins that all make a cycle before the next.
+Result measure(const hjt::Parameters& parameters, const Scene& scene, Watch watch, int joints, double duration,
+               clockid_t clock)
 {
   const std::size_t cycles = watch == Watch::TEETH ? 1 : 100;
-  constexpr double RUN_UP = 0.25;  // [s] simulated, until the speed is reached; timed is what comes after
-  const auto run_up_steps = static_cast<int>(RUN_UP * parameters.solver.rate);
+  // Simulated until the speed is reached, or the swing has died away; timed is what comes after [s].
+  const double run_up = scene.brake ? 2.0 : 0.25;
+  const auto run_up_steps = static_cast<int>(run_up * parameters.solver.rate);
   const auto timed =
       static_cast<std::size_t>(std::max(1.0, duration * parameters.solver.rate / static_cast<double>(cycles)));
   const std::size_t steps = timed * cycles;
   std::vector<double> times(timed);
   Result result;
-  Cycle cycle(parameters, scene, watch);
+  std::vector<Cycle> twins;
+  twins.reserve(static_cast<std::size_t>(joints));
+  while (twins.size() < twins.capacity())
+  {
+    twins.emplace_back(parameters, scene, watch);
+  }
+  const Cycle& cycle = twins.front();
+  const auto run = [&]
+  {
+    for (Cycle& each : twins)
+    {
+      each.run();
+    }
+  };
   std::uint64_t iterations = 0;
 
   const std::size_t allocations_before = hjt::allocationCount();
   for (int i = 0; i < run_up_steps; ++i)
   {
-    cycle.run();
+    run();
   }
   const double processor_start = readClock(CLOCK_THREAD_CPUTIME_ID);
   const double start = readClock(CLOCK_MONOTONIC);
@@ -151,7 +170,7 @@ Result measure(const hjt::Parameters& parameters, const Scene& scene, Watch watc
   {
     for (std::size_t i = 0; i < cycles; ++i)
     {
-      cycle.run();
+      run();
       iterations += cycle.twin().outputs().iterations;
     }
     const double after = readClock(clock);
@@ -218,6 +237,7 @@ int main(int argc, char** argv)
   std::vector<std::string> assignments;
   double duration = 5.0;
   double least_speed = 0.0;
+  int joints = 1;
   std::vector<Watch> watches{ Watch::TEETH, Watch::ENCODERS };
   bool processor = false;
   bool json = false;
@@ -225,6 +245,8 @@ int main(int argc, char** argv)
   app.add_option("--duration", duration, "simulated time measured, per scene [s]")->check(CLI::Range(1e-3, 1e4));
   app.add_option("--least-speed", least_speed, "times real time that every scene must reach, by processor time")
       ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--joints", joints, "twins in one thread, one after the other at every step; a cycle is all of theirs")
+      ->check(CLI::Range(1, 100));
   app.add_option("--watch", watches, "what is asked of the twin [both]")
       ->delimiter(',')
       ->transform(CLI::CheckedTransformer(
@@ -244,7 +266,7 @@ int main(int argc, char** argv)
       {
         hjt::Parameters given = parameters;
         given.solver.scene = watch == Watch::TEETH ? hjt::SceneKind::FULL_RING : hjt::SceneKind::AUTO;
-        results.push_back(measure(given, scene, watch, watch == Watch::TEETH ? duration : 20.0 * duration,
+        results.push_back(measure(given, scene, watch, joints, watch == Watch::TEETH ? duration : 20.0 * duration,
                                   processor ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC));
       }
     }

@@ -96,7 +96,7 @@ struct RingOf
     , solver(shape.teeth())
   {
     model.forces(shape, position, forces);
-    model.tangent(shape, position, forces, tangent);
+    model.tangent(shape, forces, tangent);
   }
 
   Parameters parameters;
@@ -117,7 +117,7 @@ void newtonIteration(benchmark::State& state)
   {
     ring.shape.updateGeometry();
     ring.model.forces(ring.shape, ring.position, ring.forces);
-    ring.model.tangent(ring.shape, ring.position, ring.forces, ring.tangent);
+    ring.model.tangent(ring.shape, ring.forces, ring.tangent);
     benchmark::DoNotOptimize(ring.solver.factor(ring.tangent));
     step = ring.forces.teeth;
     ring.solver.solve<1>(step);
@@ -132,7 +132,7 @@ void ringTangent(benchmark::State& state)
   RingOf ring(state);
   for (auto _ : state)
   {
-    ring.model.tangent(ring.shape, ring.position, ring.forces, ring.tangent);
+    ring.model.tangent(ring.shape, ring.forces, ring.tangent);
     benchmark::ClobberMemory();
   }
 }

@@ -38,6 +38,7 @@ def main():
     parser.add_argument("--column", required=True)
     parser.add_argument("--label", required=True, help="column of the index that names the curves")
     parser.add_argument("--select", action="append", default=[], metavar="COLUMN=VALUE", help="of the index; repeatable")
+    parser.add_argument("--until", type=float, help="last instant drawn [s]")
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()
 
@@ -51,7 +52,9 @@ def main():
         axes.plot(time, values, linewidth=0.9, label=row[arguments.label] or "none")
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{arguments.column} [{unit}]")
-    axes.legend(title=arguments.label, fontsize="small", loc="upper right")
+    axes.set_xlim(right=arguments.until)
+    axes.grid(linewidth=0.4)
+    axes.legend(title=arguments.label, fontsize="small", loc="upper left", bbox_to_anchor=(1.01, 1.0))
     figure.savefig(arguments.out, dpi=110)
 
 

@@ -22,12 +22,14 @@ int main(int argc, char** argv)
   hjt::addManufactureCommand(app, exit_code);
   hjt::addProfileCommand(app, exit_code);
   hjt::addRatchetCommand(app, exit_code);
+  hjt::addLifeCommand(app, exit_code);
   hjt::addTransientCommand(app, exit_code);
   hjt::addDynamicsCommand(app, exit_code);
   hjt::addSimulateCommand(app, exit_code);
   hjt::addTrialCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);
+  hjt::addIndicatorsCommand(app, exit_code);
   hjt::addSweepCommand(app, exit_code);
   hjt::addParametersCommand(app, exit_code);
 

@@ -126,7 +126,6 @@ HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Ring
   double* __restrict__ cup = tangent.cup_direction.data();
   double* __restrict__ xx = tangent.diagonal.xx.data();
   double* __restrict__ xy = tangent.diagonal.xy.data();
-  double* __restrict__ yx = tangent.diagonal.yx.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   tangent.cup_stiffness = stiffness(rotation);
 #pragma omp simd
@@ -142,7 +141,6 @@ HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Ring
     const double difference = scale * (y * y - x * x);
     xx[i] += product;
     xy[i] += difference;
-    yx[i] += difference;
     yy[i] -= product;
   }
 }

@@ -70,18 +70,6 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
   forces.energy += energy;
 }
 
-/// Couple that turns segment i back [N.m].
-double RimBending::couple(const RingForces& forces, int i, int next) const noexcept
-{
-  return law_ == BendingLaw::ABSOLUTE ? forces.bending_moment[i] :
-                                        forces.bending_moment[i] - forces.bending_moment[next];
-}
-
-double RimBending::bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept
-{
-  return couple(forces, i, shape.next(i)) / shape.lengths[i];
-}
-
 HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces& forces) const noexcept
 {
   addMoments(shape, forces);
@@ -167,7 +155,6 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
   }
   double* __restrict__ d_xx = tangent.diagonal.xx.data();
   double* __restrict__ d_xy = tangent.diagonal.xy.data();
-  double* __restrict__ d_yx = tangent.diagonal.yx.data();
   double* __restrict__ d_yy = tangent.diagonal.yy.data();
   double* __restrict__ n_xx = tangent.next.xx.data();
   double* __restrict__ n_xy = tangent.next.xy.data();
@@ -183,10 +170,8 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
     const double before_y = gy[i] + gy[h];
     const double after_x = gx[i] + gx[j];
     const double after_y = gy[i] + gy[j];
-    const double mixed = k[h] * gx[h] * gy[h] + k[i] * before_x * before_y + k[j] * gx[i] * gy[i];
     d_xx[i] += k[h] * gx[h] * gx[h] + k[i] * before_x * before_x + k[j] * gx[i] * gx[i];
-    d_xy[i] += mixed;
-    d_yx[i] += mixed;
+    d_xy[i] += k[h] * gx[h] * gy[h] + k[i] * before_x * before_y + k[j] * gx[i] * gy[i];
     d_yy[i] += k[h] * gy[h] * gy[h] + k[i] * before_y * before_y + k[j] * gy[i] * gy[i];
     n_xx[i] -= k[i] * before_x * gx[i] + k[j] * gx[i] * after_x;
     n_xy[i] -= k[i] * before_x * gy[i] + k[j] * gx[i] * after_y;

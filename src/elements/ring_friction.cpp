@@ -7,20 +7,19 @@
 
 namespace hjt
 {
-void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const DrivePosition& position,
-                            const RingForces& forces, const RingRates& rates, const Eigen::Vector2d& speeds,
+void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces,
+                            const RingRates& rates, const Eigen::Vector2d& speeds,
                             JointFriction& friction) const noexcept
 {
-  for (int i = 0; i < shape.teeth(); ++i)
+  for (const FlankContact& contact : forces.flanks)
   {
-    const double force = forces.flank_force[i];
+    const double force = forces.flank_force[contact.tooth];
     if (force == 0.0)
     {
       continue;
     }
-    const bool leading = force > 0.0;
-    const Eigen::Vector2d slip(mesh.slidingSpeed(shape, position, i, rates.by_motor, 0.0, leading),
-                               mesh.slidingSpeed(shape, position, i, rates.by_output, 1.0, leading));
+    const Eigen::Vector2d slip(mesh.slidingSpeed(shape, contact, rates.by_motor, 0.0),
+                               mesh.slidingSpeed(shape, contact, rates.by_output, 1.0));
     friction.terms.push_back({ coefficient(slip.dot(speeds)) * std::abs(force), slip });
   }
 }

@@ -5,32 +5,32 @@
 
 #include "harmonic_joint_twin/elements/contact_ramp.hpp"
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
 
 namespace hjt
 {
-/// A tooth in the axes of its space.
-struct ToothMesh::Engagement
+namespace
 {
-  Eigen::Vector2d radial;  // axis of the space
-  Eigen::Vector2d across;  // counter-clockwise of it
-  Chord chord;
-  double xi;  // from where the space would be in the perfect gear
+constexpr double OUTSIDE = -1.0;  // m: the depth in a flank of a tip that is not in the circular spline
+
+/// Where a tooth stands among the axes of its space: across and along (FlankContact's xi and zeta).
+struct Stand
+{
+  double xi;
   double zeta;
-  double tooth_ahead;  // by errors of manufacture: the tooth's less the space's, across [m]
-  double space_out;    // by errors of manufacture: the space's, along its axis [m]
 };
 
-/// Derivatives of the tooth's energy by xi and zeta.
-struct ToothMesh::Law
+/// Of tooth i between its neighbours h and j, at mid-height; axis: of its space, a unit vector.
+inline Stand standOf(const double* point, double mid_height, int h, int i, int j, double axis_x, double axis_y) noexcept
 {
-  double energy{};
-  double by_xi{};
-  double by_zeta{};
-  double by_xi_xi{};
-  double by_xi_zeta{};
-  double by_zeta_zeta{};
-  double cosine{};  // of the flank's angle where the tooth touches
-};
+  const double dx = point[2 * j] - point[2 * h];
+  const double dy = point[2 * j + 1] - point[2 * h + 1];
+  const double lever = mid_height / std::sqrt(dx * dx + dy * dy);
+  const double px = point[2 * i] + lever * dy;
+  const double py = point[2 * i + 1] - lever * dx;
+  return { py * axis_x - px * axis_y, px * axis_x + py * axis_y };
+}
+}  // namespace
 
 ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors)
   : spaces_(gear.teeth_circular_spline)
@@ -53,10 +53,9 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   }
 }
 
-[[gnu::always_inline]] inline ToothMesh::Engagement ToothMesh::engage(const RingShape& shape, double cos_output,
-                                                                      double sin_output, int i) const noexcept
+ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept
 {
-  const Space& space = space_[shape.space[i]];
+  const Space& space = space_[static_cast<std::size_t>(shape.space[i])];
   const double rx = cos_output * space.axis_x - sin_output * space.axis_y;
   const double ry = sin_output * space.axis_x + cos_output * space.axis_y;
   const Chord chord = shape.chord(i);
@@ -66,24 +65,9 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
            space.along };
 }
 
-/// A tooth whose tip does not reach the circular spline however it is tilted.
-bool ToothMesh::outOfReach(const RingShape& shape, int i) const noexcept
-{
-  return shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_;
-}
-
-/// Whether the tooth touches a flank: most that reach the circular spline do not.
-[[gnu::always_inline]] inline bool ToothMesh::touches(const Engagement& tooth, int i) const noexcept
-{
-  const double zeta = tooth.zeta - tooth.space_out;
-  return !(zeta + tip_offset_ <= 0.0 ||
-           std::abs(tooth.xi + tooth.tooth_ahead) <= profile_.at(zeta).value + clearance_[i]);
-}
-
 /// Of a tooth that touches.
-ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
+FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 {
-  Law law;
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
   const double depth = zeta + tip_offset_;
@@ -108,7 +92,7 @@ ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
   }
   const double k = stiffness_[i] * cos_flank_ * cos_flank_;
   const double slope = flank.slope;
-  law.cosine = flank.cosine;
+  FlankLaw law;
   law.energy = k * s * energy;
   law.by_xi = k * s * difference;
   law.by_zeta = k * (slope * s * force + s1 * energy);
@@ -116,25 +100,77 @@ ToothMesh::Law ToothMesh::law(const Engagement& tooth, int i) const noexcept
   law.by_xi_zeta = k * (slope * s * (leading.tangent - trailing.tangent) + s1 * difference);
   law.by_zeta_zeta =
       k * (slope * slope * s * tangent + 2.0 * slope * s1 * force + s2 * energy + flank.curvature * s * force);
+  law.slope = slope;
+  law.cosine = flank.cosine;
   return law;
+}
+
+/// Depth of every tooth in the nearer flank; most that reach the circular spline do not touch.
+HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
+                                              Eigen::VectorXd& pressed) const noexcept
+{
+  const int n = shape.teeth();
+  double* __restrict__ depth = pressed.data();
+  if (!profile_.straight())
+  {
+    for (int i = 0; i < n; ++i)
+    {
+      depth[i] = pressedBy(engage(shape, cos_output, sin_output, i), i);
+    }
+    return;
+  }
+  const double* __restrict__ point = shape.points.data();
+  const int* __restrict__ space = shape.space.data();
+  const Space* __restrict__ spaces = space_.data();
+  const double* __restrict__ ahead = tooth_across_.data();
+  const double* __restrict__ clearance = clearance_.data();
+  const double mid_height = mid_height_;
+  const double tip_offset = tip_offset_;
+  const ToothProfile& profile = profile_;
+  const auto find = [&](int h, int i, int j)
+  {
+    const Space& own = spaces[space[i]];
+    const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
+    const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
+    const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
+    const double zeta = stand.zeta - own.along;
+    const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
+    depth[i] = zeta + tip_offset > 0.0 ? into : OUTSIDE;
+  };
+  find(n - 1, 0, 1);
+#pragma omp simd
+  for (int i = 1; i < n - 1; ++i)
+  {
+    find(i - 1, i, i + 1);
+  }
+  find(n - 2, n - 1, 0);
+}
+
+/// Depth in the nearer flank, across.
+double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
+{
+  const double zeta = tooth.zeta - tooth.space_out;
+  return zeta + tip_offset_ > 0.0 ? std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
+                                    OUTSIDE;
 }
 
 void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
+  findPressed(shape, cos_output, sin_output, forces.pressed);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    if (outOfReach(shape, i))
+    if (!(forces.pressed[i] > 0.0))
     {
       continue;
     }
-    const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    if (!touches(tooth, i))
-    {
-      continue;
-    }
-    const Law at = law(tooth, i);
+    FlankContact& contact = forces.flanks.add();
+    contact.tooth = i;
+    contact.place = engage(shape, cos_output, sin_output, i);
+    contact.law = law(contact.place, i);
+    const ToothEngagement& tooth = contact.place;
+    const FlankLaw& at = contact.law;
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
     // The tooth tilts with the chord: its couple acts on the two neighbours, along the chord's normal.
     const Eigen::Vector2d& normal = tooth.chord.normal;
@@ -142,26 +178,19 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     forces.teeth.segment<2>(2 * i) -= gradient;
     forces.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
     forces.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
-    forces.meshed[i] = 1;
+    forces.meshed[static_cast<std::size_t>(i)] = 1;
     forces.flank_force[i] = at.by_xi / at.cosine;
     forces.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
     forces.energy += at.energy;
   }
 }
 
-void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                           RingTangent& tangent) const noexcept
+void ToothMesh::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
-  const double cos_output = std::cos(position.output_angle);
-  const double sin_output = std::sin(position.output_angle);
-  for (int i = 0; i < shape.teeth(); ++i)
+  for (const FlankContact& contact : forces.flanks)
   {
-    if (!forces.meshed[i])
-    {
-      continue;
-    }
-    const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    const Law at = law(tooth, i);
+    const ToothEngagement& tooth = contact.place;
+    const FlankLaw& at = contact.law;
     const Eigen::Vector2d& er = tooth.radial;
     const Eigen::Vector2d& et = tooth.across;
     const Eigen::Vector2d gradient = at.by_xi * et + at.by_zeta * er;
@@ -179,6 +208,7 @@ void ToothMesh::addTangent(const RingShape& shape, const DrivePosition& position
     const double by_turn = lever * lever * q.dot(hq) - lever / tooth.chord.length * outward;
     const Block2 chord =
         by_turn * n * n.transpose() + lever / tooth.chord.length * along * (n * q.transpose() + q * n.transpose());
+    const int i = contact.tooth;
     const int h = shape.previous(i);
     const int j = shape.next(i);
     tangent.addDiagonal(i, hessian);
@@ -210,43 +240,74 @@ double ToothMesh::firstSpace(double output_angle) const noexcept
   return 0.5 + spaces_ * (part >= 0.0 && part <= 1.0 ? 1.0 - part : 0.0);
 }
 
-/// Space nearest to the angle at rest of tooth i of `teeth`.
-int ToothMesh::spaceAtRest(double first, int i, int teeth) const noexcept
-{
-  const double spaces_a_tooth = static_cast<double>(spaces_) / teeth;
-  return static_cast<int>(first + i * spaces_a_tooth) % spaces_;
-}
-
 void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept
 {
   const double first = firstSpace(position.output_angle);
+  const double spaces_a_tooth = static_cast<double>(spaces_) / shape.teeth();
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    shape.space[i] = spaceAtRest(first, i, shape.teeth());
+    shape.space[static_cast<std::size_t>(i)] = static_cast<int>(first + i * spaces_a_tooth) % spaces_;
   }
+}
+
+/// Pairs every tooth whose tip does not reach the circular spline, however it is tilted, with the space nearest to its
+/// angle at rest: near enough while it cannot touch. @returns how many of the others are not within their space.
+HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept
+{
+  const double cos_output = std::cos(position.output_angle);
+  const double sin_output = std::sin(position.output_angle);
+  const int n = shape.teeth();
+  const int spaces = spaces_;
+  const double first = firstSpace(position.output_angle);
+  const double spaces_a_tooth = static_cast<double>(spaces) / n;
+  const double mid_height = mid_height_;
+  const double reach = reach_ * reach_;
+  const double half_space = half_space_;
+  const double* __restrict__ point = shape.points.data();
+  const Space* __restrict__ axes = space_.data();
+  int* __restrict__ space = shape.space.data();
+  const auto outside = [&](int h, int i, int j)
+  {
+    const Space& own = axes[space[i]];
+    const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
+    const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
+    const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
+    const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
+    int rest = static_cast<int>(first + i * spaces_a_tooth);  // below three times the number of spaces
+    rest -= rest >= spaces ? spaces : 0;
+    rest -= rest >= spaces ? spaces : 0;
+    space[i] = reaches ? space[i] : rest;
+    return reaches && !(std::abs(stand.xi) <= half_space * stand.zeta) ? 1.0 : 0.0;
+  };
+  double sum = outside(n - 1, 0, 1) + outside(n - 2, n - 1, 0);
+#pragma omp simd reduction(+ : sum)
+  for (int i = 1; i < n - 1; ++i)
+  {
+    sum += outside(i - 1, i, i + 1);
+  }
+  return sum;
 }
 
 int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) const noexcept
 {
+  if (pairOutOfReach(position, shape) == 0.0)
+  {
+    return 0;
+  }
   int jumps = 0;
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  const double first = firstSpace(position.output_angle);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    if (outOfReach(shape, i))
-    {
-      // The tooth's angle at rest is near enough while it cannot touch.
-      shape.space[i] = spaceAtRest(first, i, shape.teeth());
-      continue;
-    }
-    const Engagement tooth = engage(shape, cos_output, sin_output, i);
-    if (std::abs(tooth.xi) <= half_space_ * tooth.zeta || touches(tooth, i))
+    const ToothEngagement tooth = engage(shape, cos_output, sin_output, i);
+    if (shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_ ||
+        std::abs(tooth.xi) <= half_space_ * tooth.zeta || pressedBy(tooth, i) > 0.0)
     {
       continue;
     }
     const int shift = static_cast<int>(std::lround(std::atan2(tooth.xi, tooth.zeta) * spaces_ / TWO_PI));
-    shape.space[i] = ((shape.space[i] + shift) % spaces_ + spaces_) % spaces_;
+    int& space = shape.space[static_cast<std::size_t>(i)];
+    space = ((space + shift) % spaces_ + spaces_) % spaces_;
     jumps += tooth.zeta + tip_offset_ > 0.0 && stiffness_[i] > 0.0 ? 1 : 0;
   }
   return jumps;
@@ -254,25 +315,25 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
 
 ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& position, int i) const noexcept
 {
-  const Engagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
+  const ToothEngagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
   return { xi, zeta + tip_offset_, std::asin(tooth.across.dot(tooth.chord.normal)),
            profile_.at(zeta).value + clearance_[i] - std::abs(xi) };
 }
 
-double ToothMesh::slidingSpeed(const RingShape& shape, const DrivePosition& position, int i,
-                               const Eigen::VectorXd& speeds, double output_speed, bool leading) const noexcept
+double ToothMesh::slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,
+                               double output_speed) const noexcept
 {
-  const Engagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
+  const ToothEngagement& tooth = contact.place;
+  const int i = contact.tooth;
   const Eigen::Vector2d& n = tooth.chord.normal;
   const Eigen::Vector2d chord_speed = speeds.segment<2>(2 * shape.next(i)) - speeds.segment<2>(2 * shape.previous(i));
   const double tilt = n.dot(chord_speed) / tooth.chord.length;
   const Eigen::Vector2d speed = speeds.segment<2>(2 * i) - mid_height_ * tilt * Eigen::Vector2d(-n.y(), n.x());
   const double xi_speed = tooth.across.dot(speed) - output_speed * tooth.zeta;
   const double zeta_speed = tooth.radial.dot(speed) + output_speed * tooth.xi;
-  const HalfClearance flank = profile_.at(tooth.zeta - tooth.space_out);
-  const double sin_flank = flank.slope * flank.cosine;
-  return flank.cosine * zeta_speed + (leading ? -sin_flank : sin_flank) * xi_speed;
+  const double sin_flank = contact.law.slope * contact.law.cosine;
+  return contact.law.cosine * zeta_speed + (contact.law.by_xi > 0.0 ? -sin_flank : sin_flank) * xi_speed;
 }
 }  // namespace hjt

@@ -141,7 +141,6 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
   const double* __restrict__ contact_force = forces.contact_force.data();
   double* __restrict__ xx = tangent.diagonal.xx.data();
   double* __restrict__ xy = tangent.diagonal.xy.data();
-  double* __restrict__ yx = tangent.diagonal.yx.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   double* __restrict__ by_angle = tangent.wave_generator.data();
   const double smoothing = smoothing_;
@@ -158,10 +157,8 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     // The normal turns with the point at this rate; the force follows it.
     const double turn = curvature[i] / (1.0 - curvature[i] * depth[i]);
     const double across = -force * turn;
-    const double mixed = (stiffness - across) * nx * ny;
     xx[i] += stiffness * nx * nx + across * ny * ny;
-    xy[i] += mixed;
-    yx[i] += mixed;
+    xy[i] += (stiffness - across) * nx * ny;
     yy[i] += stiffness * ny * ny + across * nx * nx;
 
     const double lever = x * ny - y * nx;

@@ -85,7 +85,7 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
 
 void DynamicRing::tangent(double by_speed, RingTangent& tangent) const noexcept
 {
-  model_.ring.tangent(shape_, position_, forces_, tangent);
+  model_.ring.tangent(shape_, forces_, tangent);
   model_.damping.addTangent(shape_, forces_, by_speed, tangent);
   tangent.wave_generator_stiffness += by_speed * model_.motor.viscousFriction();
   tangent.output_stiffness +=

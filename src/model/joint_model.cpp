@@ -16,17 +16,17 @@ JointModel::JointModel(const Parameters& parameters)
 {
 }
 
-void JointModel::friction(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                          const RingRates& rates, double follow, const Eigen::Vector2d& speeds,
-                          const JointInputs& inputs, Eigen::VectorXd& running, JointFriction& friction) const noexcept
+void JointModel::friction(const RingShape& shape, const RingForces& forces, const RingRates& rates, double follow,
+                          const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
+                          Eigen::VectorXd& running, JointFriction& friction) const noexcept
 {
   friction.setZero();
   running = rates.by_motor + follow * rates.by_output;
   const double shaft = motor.coulombTorque() + (inputs.brake_engaged ? brake_torque : 0.0) +
-                       bearing.torque(speeds[0], forces.contact_force.sum(), inputs.temperature) +
+                       bearing.torqueAtViscosity(speeds[0], forces.contact_force.sum(), viscosity) +
                        interface_friction.torque(shape, forces, running);
   friction.terms.push_back({ shaft, { 1.0, 0.0 } });
-  mesh_friction.addTerms(ring.mesh, shape, position, forces, rates, speeds, friction);
+  mesh_friction.addTerms(ring.mesh, shape, forces, rates, speeds, friction);
   cup_friction.addTerm(shape, rates, friction);
   friction.viscous(0, 0) += motor.viscousFriction();
   friction.viscous(1, 1) += load.viscousFriction();

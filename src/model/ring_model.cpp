@@ -28,8 +28,7 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
   }
 }
 
-void RingModel::tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                        RingTangent& tangent) const noexcept
+void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   tangent.setZero();
   tension.addTangent(shape, tangent);
@@ -38,7 +37,7 @@ void RingModel::tangent(const RingShape& shape, const DrivePosition& position, c
   cup.addTangent(shape, forces, tangent);
   if (meshed)
   {
-    mesh.addTangent(shape, position, forces, tangent);
+    mesh.addTangent(shape, forces, tangent);
   }
 }
 

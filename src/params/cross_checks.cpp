@@ -87,6 +87,17 @@ void checkElements(const Parameters& p, Contradictions& check)
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
                 "mesh.friction_kinetic = " + numberText(p.mesh.friction_kinetic) +
                     " [-] must not exceed mesh.friction_static = " + numberText(p.mesh.friction_static) + " [-]");
+  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
+                { "bearing.ball_diameter", "bearing.pitch_diameter" },
+                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
+                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
+}
+
+void checkLife(const Parameters& p, Contradictions& check)
+{
+  check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
+                "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
+                    " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
 }
 
 void checkRates(const Parameters& p, Contradictions& check)
@@ -107,6 +118,7 @@ void checkRates(const Parameters& p, Contradictions& check)
   check_rate("publish.encoders_rate", p.publish.encoders_rate);
   check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
   check_rate("publish.health_rate", p.publish.health_rate);
+  check_rate("publish.indicators_rate", p.publish.indicators_rate);
 }
 }  // namespace
 
@@ -117,6 +129,7 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
   checkPitch(parameters.manufacture.flexspline_pitch, "flexspline", check);
   checkPitch(parameters.manufacture.circular_spline_pitch, "circular_spline", check);
   checkElements(parameters, check);
+  checkLife(parameters, check);
   checkRates(parameters, check);
   return check.take();
 }

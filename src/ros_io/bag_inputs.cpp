@@ -110,8 +110,8 @@ std::vector<std::string> inputTopics(const std::string& joint_namespace)
 std::vector<std::string> outputTopics(const std::string& joint_namespace)
 {
   const std::string prefix = joint_namespace + "/";
-  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS, prefix + topics::CONTACT_FORCES,
-           prefix + topics::HEALTH };
+  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS,   prefix + topics::CONTACT_FORCES,
+           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT };
 }
 
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const JointNames& names)

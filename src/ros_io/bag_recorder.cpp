@@ -15,6 +15,8 @@ BagRecorder::BagRecorder(const Twin& twin, const std::string& joint_namespace, B
   , contact_forces_(
         makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
   , health_(makeHealth(JointNames(twin.parameters().joint.name)))
+  , indicators_(makeIndicators(JointNames(twin.parameters().joint.name)))
+  , assessment_(makeAssessment(JointNames(twin.parameters().joint.name)))
 {
 }
 
@@ -48,6 +50,13 @@ void BagRecorder::record(Twin& twin)
   {
     fillHealth(outputs, twin.health(), health_);
     bag_.write(prefix_ + topics::HEALTH, stamp, health_);
+  }
+  if (twin.watchesSignals() && schedule_.isDue(Output::INDICATORS, stamp))
+  {
+    fillIndicators(stamp, twin.signalIndicators(), indicators_);
+    bag_.write(prefix_ + topics::INDICATORS, stamp, indicators_);
+    fillAssessment(stamp, twin.assessment(), assessment_);
+    bag_.write(prefix_ + topics::ASSESSMENT, stamp, assessment_);
   }
 }
 }  // namespace hjt

@@ -2,6 +2,8 @@
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <vector>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
@@ -137,6 +139,114 @@ void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmoni
   message.solver_iterations = report.solver_iterations;
   message.solver_residual = report.solver_residual;
   message.solver_failures = report.solver_failures;
+}
+
+std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept
+{
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < assessment.evidence_count && length < size; ++i)
+  {
+    const Evidence& evidence = assessment.evidence[i];
+    const int written = std::snprintf(text + length, size - length, "%s%s %.3g %s, healthy %.3g (score %.1f)",
+                                      i == 0 ? "" : "; ", indicatorName(evidence.indicator), evidence.value,
+                                      indicatorUnit(evidence.indicator), evidence.expected, evidence.score);
+    length = std::min(length + static_cast<std::size_t>(std::max(written, 0)), size - 1);
+  }
+  return length;
+}
+
+harmonic_joint_twin::Assessment makeAssessment(const JointNames& names)
+{
+  harmonic_joint_twin::Assessment message;
+  message.header.frame_id = names.joint;
+  message.cause.assign(EVIDENCE_LENGTH, ' ');
+  message.evidence.assign(EVIDENCE_LENGTH, ' ');
+  return message;
+}
+
+void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept
+{
+  message.header.stamp = toRosTime(stamp);
+  message.window_end = toRosTime(assessment.stamp);
+  message.windows = assessment.windows;
+  message.state = static_cast<std::uint8_t>(assessment.state);
+  message.level = static_cast<std::uint8_t>(assessment.level);
+  message.cause.assign(causeName(assessment.cause));
+  message.confidence = assessment.confidence;
+  message.largest_score = assessment.largest_score;
+  std::array<char, EVIDENCE_LENGTH> text{};
+  message.evidence.assign(text.data(), writeEvidence(assessment, text.data(), text.size()));
+}
+
+harmonic_joint_twin::Indicators makeIndicators(const JointNames& names)
+{
+  harmonic_joint_twin::Indicators message;
+  message.header.frame_id = names.joint;
+  return message;
+}
+
+void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept
+{
+  message.header.stamp = toRosTime(stamp);
+  message.window_end = toRosTime(indicators.stamp);
+  message.windows = indicators.windows;
+  message.turns = indicators.turns;
+  message.speed = indicators.point.speed;
+  message.direction = indicators.point.direction;
+  message.load = indicators.point.load;
+  message.temperature = indicators.point.temperature;
+  message.ratio_deviation = indicators[ScalarIndicator::RATIO_DEVIATION];
+  message.kinematic_error = indicators[ScalarIndicator::KINEMATIC_ERROR];
+  message.torsional_stiffness = indicators[ScalarIndicator::TORSIONAL_STIFFNESS];
+  message.lost_motion = indicators[ScalarIndicator::LOST_MOTION];
+  message.hysteresis_area = indicators[ScalarIndicator::HYSTERESIS_AREA];
+  message.running_torque = indicators[ScalarIndicator::RUNNING_TORQUE];
+  message.coulomb_torque = indicators[ScalarIndicator::COULOMB_TORQUE];
+  message.viscous_friction = indicators[ScalarIndicator::VISCOUS_FRICTION];
+  message.efficiency = indicators[ScalarIndicator::EFFICIENCY];
+  message.residual_rms = indicators[ScalarIndicator::RESIDUAL_RMS];
+  message.residual_kurtosis = indicators[ScalarIndicator::RESIDUAL_KURTOSIS];
+  message.residual_crest = indicators[ScalarIndicator::RESIDUAL_CREST];
+  const LineSignal error = LineSignal::KINEMATIC_ERROR;
+  message.error_wave_generator_1 = indicators.amplitude(error, Line::WAVE_GENERATOR_1);
+  message.error_wave_generator_2 = indicators.amplitude(error, Line::WAVE_GENERATOR_2);
+  message.error_wave_generator_4 = indicators.amplitude(error, Line::WAVE_GENERATOR_4);
+  message.error_circular_spline_2 = indicators.amplitude(error, Line::CIRCULAR_SPLINE_2);
+  message.error_cage = indicators.amplitude(error, Line::CAGE);
+  message.error_ball = indicators.amplitude(error, Line::BALL);
+  message.error_ball_double = indicators.amplitude(error, Line::BALL_DOUBLE);
+  message.error_outer = indicators.amplitude(error, Line::OUTER);
+  message.error_outer_below = indicators.amplitude(error, Line::OUTER_BELOW);
+  message.error_outer_above = indicators.amplitude(error, Line::OUTER_ABOVE);
+  message.error_inner = indicators.amplitude(error, Line::INNER);
+  message.error_inner_below = indicators.amplitude(error, Line::INNER_BELOW);
+  message.error_inner_above = indicators.amplitude(error, Line::INNER_ABOVE);
+  message.error_tooth_pass = indicators.amplitude(error, Line::TOOTH_PASS);
+  message.error_tooth_pass_above = indicators.amplitude(error, Line::TOOTH_PASS_ABOVE);
+  message.error_wave_generator_1_phase = indicators.phase(error, Line::WAVE_GENERATOR_1);
+  message.error_wave_generator_2_phase = indicators.phase(error, Line::WAVE_GENERATOR_2);
+  message.error_wave_generator_4_phase = indicators.phase(error, Line::WAVE_GENERATOR_4);
+  message.error_circular_spline_2_phase = indicators.phase(error, Line::CIRCULAR_SPLINE_2);
+  const LineSignal torque = LineSignal::MOTOR_TORQUE;
+  message.torque_wave_generator_1 = indicators.amplitude(torque, Line::WAVE_GENERATOR_1);
+  message.torque_wave_generator_2 = indicators.amplitude(torque, Line::WAVE_GENERATOR_2);
+  message.torque_wave_generator_4 = indicators.amplitude(torque, Line::WAVE_GENERATOR_4);
+  message.torque_circular_spline_2 = indicators.amplitude(torque, Line::CIRCULAR_SPLINE_2);
+  message.torque_cage = indicators.amplitude(torque, Line::CAGE);
+  message.torque_ball = indicators.amplitude(torque, Line::BALL);
+  message.torque_ball_double = indicators.amplitude(torque, Line::BALL_DOUBLE);
+  message.torque_outer = indicators.amplitude(torque, Line::OUTER);
+  message.torque_outer_below = indicators.amplitude(torque, Line::OUTER_BELOW);
+  message.torque_outer_above = indicators.amplitude(torque, Line::OUTER_ABOVE);
+  message.torque_inner = indicators.amplitude(torque, Line::INNER);
+  message.torque_inner_below = indicators.amplitude(torque, Line::INNER_BELOW);
+  message.torque_inner_above = indicators.amplitude(torque, Line::INNER_ABOVE);
+  message.torque_tooth_pass = indicators.amplitude(torque, Line::TOOTH_PASS);
+  message.torque_tooth_pass_above = indicators.amplitude(torque, Line::TOOTH_PASS_ABOVE);
+  message.torque_wave_generator_1_phase = indicators.phase(torque, Line::WAVE_GENERATOR_1);
+  message.torque_wave_generator_2_phase = indicators.phase(torque, Line::WAVE_GENERATOR_2);
+  message.torque_wave_generator_4_phase = indicators.phase(torque, Line::WAVE_GENERATOR_4);
+  message.torque_circular_spline_2_phase = indicators.phase(torque, Line::CIRCULAR_SPLINE_2);
 }
 
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/diagnostics.hpp"
 
+#include <cmath>
+#include <sstream>
+
 #include <ros/console.h>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
@@ -24,6 +27,7 @@ constexpr double AHEAD_WARNING = 1.0;
 constexpr std::size_t DRIVE = 0;
 constexpr std::size_t INPUT = 1;
 constexpr std::size_t TIMING = 2;
+constexpr std::size_t HEALTH = 3;
 
 const char* stateText(LoopState state)
 {
@@ -40,7 +44,32 @@ const char* stateText(LoopState state)
 }
 
 /// Keys of one output's counters, in the order of `Output`.
-constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders", "contact_forces", "health" };
+constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders",   "contact_forces",
+                                                              "health",       "indicators", "assessment" };
+
+/// What the indicators say, whether or not they are up to date. A fault told once stands until windows say otherwise.
+std::string verdictText(const Assessment& assessment)
+{
+  if (assessment.level != HealthLevel::OK)
+  {
+    std::ostringstream text;
+    text << "Most likely " << causeName(assessment.cause) << " (" << std::lround(100.0 * assessment.confidence)
+         << " %)";
+    return text.str();
+  }
+  switch (assessment.state)
+  {
+    case AssessmentState::WAITING:
+      return "No window of the indicators is complete yet";
+    case AssessmentState::LEARNING:
+      return "The healthy reference is being learned";
+    case AssessmentState::NO_REFERENCE:
+      return "No healthy reference for this operating point";
+    case AssessmentState::ASSESSED:
+      break;
+  }
+  return "Nothing out of the ordinary";
+}
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop,
@@ -59,6 +88,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
   updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportDrive(status); });
   updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportInput(status); });
   updater_.add("Timing", [this](DiagnosticStatusWrapper& status) { reportTiming(status); });
+  updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
   timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
 }
 
@@ -66,7 +96,7 @@ void Diagnostics::look()
 {
   readSnapshot();
   logClockJumps();
-  const std::array<Verdict, 3> verdicts{ judgeDrive(), judgeInput(), judgeTiming() };
+  const std::array<Verdict, 4> verdicts{ judgeDrive(), judgeInput(), judgeTiming(), judgeHealth() };
   bool changed = false;
   for (std::size_t task = 0; task < verdicts.size(); ++task)
   {
@@ -215,6 +245,17 @@ Verdict Diagnostics::judgeTiming() const
   return { DiagnosticStatus::OK, "In time" };
 }
 
+Verdict Diagnostics::judgeHealth() const
+{
+  const LoopStatus& loop = snapshot_.loop;
+  const bool input = loop.command_seen && toSeconds(loop.clock - loop.last_command) <= command_timeout_;
+  if (!input)
+  {
+    return { DiagnosticStatus::STALE, "The input has stopped. Last: " + verdictText(loop.assessment) };
+  }
+  return { static_cast<std::uint8_t>(loop.assessment.level), verdictText(loop.assessment) };
+}
+
 void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
 {
   const JointOutputs& outputs = snapshot_.loop.outputs;
@@ -292,5 +333,19 @@ void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
     status.add(name + " computed", snapshot_.outputs[output].computed);
     status.add(name + " dropped", snapshot_.outputs[output].dropped);
   }
+}
+
+void Diagnostics::reportHealth(DiagnosticStatusWrapper& status) const
+{
+  const Assessment& assessment = snapshot_.loop.assessment;
+  std::array<char, EVIDENCE_LENGTH> evidence{};
+  writeEvidence(assessment, evidence.data(), evidence.size());
+  status.summary(verdicts_[HEALTH].level, verdicts_[HEALTH].text);
+  status.add("Cause", causeName(assessment.cause));
+  status.add("Confidence [-]", assessment.confidence);
+  status.add("Evidence", evidence.data());
+  status.add("Largest score over threshold [-]", assessment.largest_score);
+  status.add("Windows", assessment.windows);
+  status.add("End of the last window [s]", toSeconds(assessment.stamp));
 }
 }  // namespace hjt

@@ -31,6 +31,8 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
         node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
         makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
   , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
+  , indicators_(node, topics::INDICATORS, LARGE_MESSAGE_SLOTS, makeIndicators(JointNames(twin.parameters().joint.name)))
+  , assessment_(node, topics::ASSESSMENT, LARGE_MESSAGE_SLOTS, makeAssessment(JointNames(twin.parameters().joint.name)))
   , thread_([this] { run(); })
 {
 }
@@ -76,11 +78,20 @@ void OutputPublishers::offer(Twin& twin) noexcept
   {
     health_.write([&](auto& message) { fillHealth(outputs, twin.health(), message); });
   }
+  if (isWanted(Output::INDICATORS, indicators_.isHeard(), outputs.stamp))
+  {
+    indicators_.write([&](auto& message) { fillIndicators(outputs.stamp, twin.signalIndicators(), message); });
+  }
+  if (isWanted(Output::ASSESSMENT, assessment_.isHeard(), outputs.stamp))
+  {
+    assessment_.write([&](auto& message) { fillAssessment(outputs.stamp, twin.assessment(), message); });
+  }
 }
 
 std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
 {
-  return { joint_states_.counters(), encoders_.counters(), contact_forces_.counters(), health_.counters() };
+  return { joint_states_.counters(), encoders_.counters(),   contact_forces_.counters(),
+           health_.counters(),       indicators_.counters(), assessment_.counters() };
 }
 
 void OutputPublishers::run()
@@ -103,6 +114,8 @@ void OutputPublishers::refreshHeard()
   encoders_.refreshHeard();
   contact_forces_.refreshHeard();
   health_.refreshHeard();
+  indicators_.refreshHeard();
+  assessment_.refreshHeard();
 }
 
 void OutputPublishers::drain()
@@ -111,5 +124,7 @@ void OutputPublishers::drain()
   encoders_.drain();
   contact_forces_.drain();
   health_.drain();
+  indicators_.drain();
+  assessment_.drain();
 }
 }  // namespace hjt

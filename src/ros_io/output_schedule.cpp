@@ -19,7 +19,9 @@ OutputSchedule::OutputSchedule(const Parameters& parameters)
   : periods_{ makePeriod(parameters.publish.joint_states_rate, parameters.solver.rate),
               makePeriod(parameters.publish.encoders_rate, parameters.solver.rate),
               makePeriod(parameters.publish.contact_forces_rate, parameters.solver.rate),
-              makePeriod(parameters.publish.health_rate, parameters.solver.rate) }
+              makePeriod(parameters.publish.health_rate, parameters.solver.rate),
+              makePeriod(parameters.publish.indicators_rate, parameters.solver.rate),
+              makePeriod(parameters.publish.indicators_rate, parameters.solver.rate) }
 {
 }
 }  // namespace hjt

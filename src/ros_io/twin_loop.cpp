@@ -129,6 +129,7 @@ void TwinLoop::cycle() noexcept
   status_.twin_stamp = twin_.stamp();
   status_.outputs = twin_.outputs();
   status_.counters = twin_.counters();
+  status_.assessment = twin_.assessment();
 }
 
 void TwinLoop::readClock(Stamp now) noexcept

@@ -32,17 +32,27 @@ RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& lo
   return state;
 }
 
-/// Response surfaces from the user's cache; building tells how far it is.
+/// Response surfaces from the user's cache; building tells how far it is. By the wall clock it goes on beside the loop; in
+/// simulated time the twin waits for it, so that a replay gives the same bits every time.
 SurfaceSource surfaceSource()
 {
   return { surfaceCacheDirectory(),
            [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
-           [](const std::string& what) { ROS_WARN_STREAM(what); } };
+           [](const std::string& what) { ROS_WARN_STREAM(what); },
+           {},
+           !ros::Time::isSimTime() };
+}
+
+Twin watchedTwin(const Parameters& parameters)
+{
+  Twin twin(parameters, {}, surfaceSource());
+  twin.watchSignals(true);
+  return twin;
 }
 }  // namespace
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
-  : twin_(parameters, {}, surfaceSource())
+  : twin_(watchedTwin(parameters))
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, clockKind(), [this](Twin& twin) { publishers_.offer(twin); })
   , realtime_(requestRealtime(parameters.realtime, loop_))

@@ -10,6 +10,10 @@ const Kernels BASELINE = kernels();
 const Kernels& fastest() noexcept
 {
 #ifdef HJT_AVX2
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+  {
+    return AVX512;
+  }
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
   {
     return AVX2;

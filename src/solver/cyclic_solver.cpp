@@ -12,6 +12,8 @@ CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
   , separator_{}
   , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * layout_.steps))
   , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * layout_.steps))
+  , corner_{}
+  , cup_(Separators::Zero())
 {
   int tooth = 0;
   for (int k = 0; k < COUNT; ++k)
@@ -26,7 +28,7 @@ CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
 
 bool CyclicSolver::factor(const RingTangent& tangent) noexcept
 {
-  const ToothBlocks& d = tangent.diagonal;
+  const SymmetricBlocks& d = tangent.diagonal;
   const ToothBlocks& n = tangent.next;
   const ToothBlocks& s = tangent.second;
   const arcs::Tangent entries{ { d.xx.data(), d.xy.data(), d.yy.data() },
@@ -38,28 +40,38 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
   Entry between[arcs::BETWEEN_ENTRIES];
   kernels_.factor(layout_, entries, factors_.data()->lane, { before->lane, after->lane, between->lane });
 
-  // The upper triangle; the lower follows.
-  Corner corner = Corner::Zero();
-  const int cup = SEPARATORS;
-  corner(cup, cup) = -1.0 / tangent.cup_stiffness;
+  return factorCorner(tangent, before, after, between);
+}
+
+/// The matrix of the separators and the cup: their own entries, and what the arcs add.
+bool CyclicSolver::factorCorner(const RingTangent& tangent, const Entry* before, const Entry* after,
+                                const Entry* between) noexcept
+{
+  alignas(32) Corner corner = Corner::Zero();  // the upper triangle
+  Separators cup = Separators::Zero();
+  double pivot = -1.0 / tangent.cup_stiffness;
   for (int k = 0; k < COUNT; ++k)
   {
     const int a = separator_[k];
     const int own = 4 * k;
-    corner.block<2, 2>(own, own) += d.at(a);
-    corner.block<2, 2>(own, own + 2) += n.at(a);
-    corner.block<2, 2>(own + 2, own + 2) += d.at(a + 1);
-    corner.block<4, 1>(own, cup) += tangent.cup_direction.segment<4>(2 * a);
-    const auto index = [&](int c) { return c < 4 ? own + c : cup; };
+    const int next = 4 * ((k + 1) % COUNT);
+    corner.block<2, 2>(own, own) += tangent.diagonal.at(a);
+    corner.block<2, 2>(own, own + 2) += tangent.next.at(a);
+    corner.block<2, 2>(own + 2, own + 2) += tangent.diagonal.at(a + 1);
+    cup.segment<4>(own) += tangent.cup_direction.segment<4>(2 * a);
     const Entry* sum = before;
-    for (int c = 0; c < BORDER; ++c)
+    for (int c = 0; c < 4; ++c)
     {
       for (int r = 0; r <= c; ++r)
       {
-        corner(index(r), index(c)) += (sum++)->lane[k];
+        corner(own + r, own + c) += (sum++)->lane[k];
       }
     }
-    const int next = 4 * ((k + 1) % COUNT);
+    for (int r = 0; r < 4; ++r)
+    {
+      cup[own + r] += (sum++)->lane[k];
+    }
+    pivot += sum->lane[k];
     constexpr int ROWS[arcs::AFTER_ENTRIES] = { 0, 0, 1, 0, 0, 1, 1, 2, 2, 3 };
     constexpr int COLS[arcs::AFTER_ENTRIES] = { 0, 1, 1, 2, 3, 2, 3, 2, 3, 3 };
     for (int e = 0; e < arcs::AFTER_ENTRIES; ++e)
@@ -68,53 +80,83 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
     }
     for (int r = 0; r < 4; ++r)
     {
-      for (int c = 0; c < BORDER; ++c)
+      for (int c = 0; c < 4; ++c)
       {
         const double value = between[BORDER * r + c].lane[k];
-        const int i = next + r;
-        const int j = index(c);
-        corner(std::min(i, j), std::max(i, j)) += value;
+        (own < next ? corner(own + c, next + r) : corner(next + r, own + c)) += value;
       }
+      cup[next + r] += between[BORDER * r + 4].lane[k];
     }
   }
-  corner.triangularView<Eigen::StrictlyLower>() = corner.transpose();
-  corner_.compute(corner);
-  const Corner& lu = corner_.matrixLU();
+  cup_ = cup;
+  cup_inverse_ = 1.0 / pivot;
+  alignas(32) Corner without_cup = corner;
+  without_cup.noalias() -= cup_inverse_ * cup * cup.transpose();
+  pivoting_ = !(pivot < 0.0 && kernels_.factor_corner(without_cup.data(), corner_));
+  if (!pivoting_)
+  {
+    return true;
+  }
+  CornerWithCup whole;
+  whole.topLeftCorner<CORNER, CORNER>() = corner.selfadjointView<Eigen::Upper>();
+  whole.topRightCorner<CORNER, 1>() = cup;
+  whole.bottomLeftCorner<1, CORNER>() = cup.transpose();
+  whole(CORNER, CORNER) = pivot;
+  lu_.compute(whole);
+  const CornerWithCup& lu = lu_.matrixLU();
   return lu.allFinite() && (lu.diagonal().array() != 0.0).all();
 }
 
-void CyclicSolver::solve(double* b, int columns) noexcept
+/// Separators and the cup's multiplier, in place.
+void CyclicSolver::solveCorner(Separators& x, double& multiplier) const noexcept
+{
+  if (pivoting_)
+  {
+    Eigen::Matrix<double, CORNER + 1, 1> whole;
+    whole << x, multiplier;
+    whole = lu_.solve(whole);
+    x = whole.head<CORNER>();
+    multiplier = whole[CORNER];
+    return;
+  }
+  alignas(32) Separators inner = x - cup_inverse_ * multiplier * cup_;
+  kernels_.solve_corner(corner_, inner.data());
+  multiplier = cup_inverse_ * (multiplier - cup_.dot(inner));
+  x = inner;
+}
+
+void CyclicSolver::solve(double* const* columns, int count) noexcept
 {
   Entry before[BORDER * MAX_COLUMNS];
   Entry after[4 * MAX_COLUMNS];
-  kernels_.forward[columns - 1](layout_, factors_.data()->lane, b, rows_.data()->lane, before->lane, after->lane);
-  for (int c = 0; c < columns; ++c)
+  kernels_.forward[count - 1](layout_, factors_.data()->lane, columns, rows_.data()->lane, before->lane, after->lane);
+  for (int c = 0; c < count; ++c)
   {
-    Eigen::Matrix<double, CORNER, 1> x;
-    x[SEPARATORS] = 0.0;
+    double* b = columns[c];
+    Separators x;
+    double multiplier = 0.0;
     for (int k = 0; k < COUNT; ++k)
     {
       const int previous = (k + COUNT - 1) % COUNT;
       for (int r = 0; r < 4; ++r)
       {
-        x[4 * k + r] =
-            b[(2 * separator_[k] + r) * columns + c] + before[BORDER * c + r].lane[k] + after[4 * c + r].lane[previous];
+        x[4 * k + r] = b[2 * separator_[k] + r] + before[BORDER * c + r].lane[k] + after[4 * c + r].lane[previous];
       }
-      x[SEPARATORS] += before[BORDER * c + 4].lane[k];
+      multiplier += before[BORDER * c + 4].lane[k];
     }
-    x = corner_.solve(x);
+    solveCorner(x, multiplier);
     for (int k = 0; k < COUNT; ++k)
     {
       const int previous = (k + COUNT - 1) % COUNT;
       for (int r = 0; r < 4; ++r)
       {
-        b[(2 * separator_[k] + r) * columns + c] = x[4 * k + r];
+        b[2 * separator_[k] + r] = x[4 * k + r];
         before[BORDER * c + r].lane[k] = x[4 * k + r];
         after[4 * c + r].lane[previous] = x[4 * k + r];
       }
-      before[BORDER * c + 4].lane[k] = x[SEPARATORS];
+      before[BORDER * c + 4].lane[k] = multiplier;
     }
   }
-  kernels_.backward[columns - 1](layout_, factors_.data()->lane, rows_.data()->lane, before->lane, after->lane, b);
+  kernels_.backward[count - 1](layout_, factors_.data()->lane, rows_.data()->lane, before->lane, after->lane, columns);
 }
 }  // namespace hjt

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace hjt
 {
@@ -150,16 +149,16 @@ bool DryFriction::slide(const JointFriction& friction, double follow, const Eige
   std::array<double, MOST_TERMS> widths{};
   std::array<double, MOST_TERMS> senses{};
   std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::max();
+  double least = 0.0;  // slip of the nearest
   for (std::size_t j = 0; j < count; ++j)
   {
     const double slip = friction.terms[j].slip.dot(old_speeds);
     widths[j] = width(friction.terms[j], follow);
     senses[j] = slip < 0.0 ? -1.0 : 1.0;
-    const double closeness = std::abs(slip) / widths[j];
-    if (closeness < least)
+    // Against its width, without dividing.
+    if (j == 0 || std::abs(slip) * widths[nearest] < least * widths[j])
     {
-      least = closeness;
+      least = std::abs(slip);
       nearest = j;
     }
   }

@@ -146,8 +146,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     return;
   }
   const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.shape(), ring_.position(), ring_.forces(), rates, follow(), speeds, inputs, running_,
-                  friction_);
+  model_.friction(ring_.shape(), ring_.forces(), rates, follow(), speeds, inputs, viscosity(), running_, friction_);
 }
 
 /// Of the bearing's grease, at the present temperature.

@@ -69,13 +69,27 @@ bool JointStepper::reset() noexcept
   speeds_.setZero();
   friction_.setZero();
   balance_ = 0.0;
+  rest_steps_ = 0;
   throughput_ = 0.0;
   stored_at_start_ = dynamics_.storedEnergy();
   return settled;
 }
 
+bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
+{
+  const JointInputs& last = dynamics_.inputs;
+  return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
+         inputs.load_torque == last.load_torque && inputs.brake_engaged == last.brake_engaged &&
+         inputs.temperature == last.temperature;
+}
+
 bool JointStepper::step(const JointInputs& inputs) noexcept
 {
+  if (staysAtRest(inputs))
+  {
+    dynamics_.status.iterations = 0;
+    return true;
+  }
   dynamics_.inputs = inputs;
   dynamics_.status = {};
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
@@ -93,6 +107,8 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
     good = stepRungeKutta();
   }
   throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
+  const bool rests = good && x_[MOTOR_SPEED] == 0.0 && std::abs(x_[OUTPUT_SPEED]) <= REST_SPEED;
+  rest_steps_ = rests ? rest_steps_ + 1 : 0;
   return good;
 }
 

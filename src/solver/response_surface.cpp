@@ -35,27 +35,87 @@ private:
 };
 }  // namespace
 
-ResponseSurface::ResponseSurface(SurfaceTable table)
-  : table_(std::move(table)), pitches_per_radian_(1.0 / table_.pitch), inverse_ratio_(1.0 / table_.ratio)
+LineIndex::LineIndex(const std::vector<double>& lines)
 {
-  double least = highest() - lowest();
-  for (std::size_t i = 0; i + 1 < table_.lines.size(); ++i)
+  if (lines.empty())
   {
-    const double height = table_.lines[i + 1] - table_.lines[i];
-    inverse_height_.push_back(1.0 / height);
-    least = std::min(least, height);
+    return;
   }
-  const auto bins = static_cast<std::size_t>(std::ceil((highest() - lowest()) / least)) + 1;
-  bins_per_radian_ = static_cast<double>(bins) / (highest() - lowest());
+  const double range = lines.back() - lines.front();
+  double least = range;
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i)
+  {
+    least = std::min(least, lines[i + 1] - lines[i]);
+  }
+  const auto bins = static_cast<std::size_t>(std::ceil(range / least)) + 1;
+  bins_per_unit_ = static_cast<double>(bins) / range;
   std::uint32_t line = 0;
   for (std::size_t bin = 0; bin <= bins; ++bin)
   {
-    const double edge = lowest() + static_cast<double>(bin) / bins_per_radian_;
-    while (line + 2 < table_.lines.size() && table_.lines[line + 1] <= edge)
+    const double edge = lines.front() + static_cast<double>(bin) / bins_per_unit_;
+    while (line + 2 < lines.size() && lines[line + 1] <= edge)
     {
       ++line;
     }
     line_.push_back(line);
+  }
+}
+
+SurfaceCell::Energy SurfaceCell::energy() const noexcept
+{
+  using Table = SurfaceTable;
+  const Hermite along_v(v);
+  const Hermite along_u(u);
+  const double h = height;
+  const double w = width;
+  // At the lower and the higher u, at this v; derivatives by the place within the cell.
+  std::array<double, 2> energy;
+  std::array<double, 2> by_u;
+  std::array<double, 2> by_v;
+  std::array<double, 2> by_uv;
+  std::array<double, 2> by_vv;
+  std::array<double, 2> by_uvv;
+  for (int i = 0; i < 2; ++i)
+  {
+    const Node& a = below[i];
+    const Node& b = above[i];
+    const std::array<double, 4> values{ a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY],
+                                        h * b[Table::ENERGY_BY_V] };
+    const std::array<double, 4> slopes{ w * a[Table::ENERGY_BY_U], w * h * a[Table::ENERGY_BY_UV],
+                                        w * b[Table::ENERGY_BY_U], w * h * b[Table::ENERGY_BY_UV] };
+    energy[i] = along_v.value(values);
+    by_v[i] = along_v.rate(values);
+    by_vv[i] = along_v.curvature(values);
+    by_u[i] = along_v.value(slopes);
+    by_uv[i] = along_v.rate(slopes);
+    by_uvv[i] = along_v.curvature(slopes);
+  }
+  const std::array<double, 4> energies{ energy[0], by_u[0], energy[1], by_u[1] };
+  const std::array<double, 4> rates{ by_v[0], by_uv[0], by_v[1], by_uv[1] };
+  const double per_width = 1.0 / w;
+  const double per_height = 1.0 / h;
+  return { along_u.value(energies),
+           along_u.rate(energies) * per_width,
+           along_u.value(rates) * per_height,
+           along_u.curvature(energies) * per_width * per_width,
+           along_u.rate(rates) * per_width * per_height,
+           along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height };
+}
+
+ResponseSurface::ResponseSurface(SurfaceTable table, DepartureTable departures)
+  : table_(std::move(table))
+  , departures_(std::move(departures))
+  , pitches_per_radian_(1.0 / table_.pitch)
+  , inverse_ratio_(1.0 / table_.ratio)
+  , line_index_(table_.lines)
+{
+  for (const DepartureTable::Pitch& pitch : departures_.pitches)
+  {
+    departure_index_.emplace_back(pitch.lines);
+  }
+  for (std::size_t i = 0; i + 1 < table_.lines.size(); ++i)
+  {
+    inverse_height_.push_back(1.0 / (table_.lines[i + 1] - table_.lines[i]));
   }
 }
 
@@ -68,70 +128,91 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   {
     return false;
   }
-  const auto truncated = static_cast<double>(static_cast<std::int64_t>(pitches));
-  const double part = pitches - truncated + (pitches < truncated ? 1.0 : 0.0);
+  const auto truncated = static_cast<std::int64_t>(pitches);
+  const std::int64_t pitch = truncated - (pitches < static_cast<double>(truncated) ? 1 : 0);
+  const double part = pitches - static_cast<double>(pitch);
   const double columns = part * table_.columns;
   const int column = std::min(static_cast<int>(columns), table_.columns - 1);
-  // Bins are narrower than the intervals between lines, so at most one line lies within a bin.
-  std::uint32_t line = line_[static_cast<std::size_t>((v - lowest()) * bins_per_radian_)];
-  line += line + 2 < table_.lines.size() && v >= table_.lines[line + 1] ? 1 : 0;
+  const std::size_t line = line_index_.below(table_.lines, v);
   const std::size_t stride = static_cast<std::size_t>(table_.columns) + 1;
-  place.below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
-  place.above = place.below + stride;
-  place.u = columns - column;
+  SurfaceCell& cell = place.cell;
+  cell.below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
+  cell.above = cell.below + stride;
+  cell.u = columns - column;
+  cell.v = (v - table_.lines[line]) * inverse_height_[line];
+  cell.width = 1.0 / table_.columns;
+  cell.height = table_.lines[line + 1] - table_.lines[line];
   place.at = v;
-  place.height = table_.lines[line + 1] - table_.lines[line];
-  place.v = (v - table_.lines[line]) * inverse_height_[line];
+  place.departure.below = nullptr;
+  if (!departures_.pitches.empty())
+  {
+    locateDeparture(pitch, part, place);
+  }
   return true;
+}
+
+/// `part` of a pitch beyond a whole one.
+void ResponseSurface::locateDeparture(std::int64_t pitch, double part, Place& place) const noexcept
+{
+  const auto count = static_cast<std::int64_t>(departures_.pitches.size());
+  const std::int64_t turns = pitch / count - (pitch % count < 0 ? 1 : 0);
+  const auto within = static_cast<std::size_t>(pitch - turns * count);
+  const DepartureTable::Pitch& table = departures_.pitches[within];
+  if (table.lines.empty())
+  {
+    return;
+  }
+  const double columns = part * table.columns;
+  const int column = std::min(static_cast<int>(columns), table.columns - 1);
+  const std::size_t line = departure_index_[within].below(table.lines, place.at);
+  const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
+  const double height = table.lines[line + 1] - table.lines[line];
+  const SurfaceTable::Node* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
+  place.departure = {
+    below, below + stride, columns - column, (place.at - table.lines[line]) / height, 1.0 / table.columns, height
+  };
+  place.lobes_swapped = departures_.swaps_lobes && turns % 2 != 0;
+}
+
+std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept
+{
+  std::array<double, 2> forces{ place.cell.value(SurfaceTable::LOBE_FORCE),
+                                place.cell.value(SurfaceTable::LOBE_FORCE + 1) };
+  if (place.departure.below != nullptr)
+  {
+    forces[place.lobes_swapped ? 1 : 0] += place.departure.value(SurfaceTable::LOBE_FORCE);
+    forces[place.lobes_swapped ? 0 : 1] += place.departure.value(SurfaceTable::LOBE_FORCE + 1);
+  }
+  return forces;
 }
 
 RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& housing_stiffness) const noexcept
 {
-  using Table = SurfaceTable;
-  const Hermite along_v(place.v);
-  const Hermite along_u(place.u);
-  const double h = place.height;
-  const double width = 1.0 / table_.columns;  // of an interval in u [pitches]
-  const double per_height = 1.0 / h;
-  const double per_width = table_.columns * pitches_per_radian_;  // [1/rad]
-  // At the lower and the higher u, at this v; derivatives by the place within the interval.
-  std::array<double, 2> energy;
-  std::array<double, 2> by_u;
-  std::array<double, 2> by_v;
-  std::array<double, 2> by_uv;
-  std::array<double, 2> by_vv;
-  std::array<double, 2> by_uvv;
-  for (int i = 0; i < 2; ++i)
-  {
-    const Table::Node& a = place.below[i];
-    const Table::Node& b = place.above[i];
-    const std::array<double, 4> values{ a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY],
-                                        h * b[Table::ENERGY_BY_V] };
-    const std::array<double, 4> slopes{ width * a[Table::ENERGY_BY_U], width * h * a[Table::ENERGY_BY_UV],
-                                        width * b[Table::ENERGY_BY_U], width * h * b[Table::ENERGY_BY_UV] };
-    energy[i] = along_v.value(values);
-    by_v[i] = along_v.rate(values);
-    by_vv[i] = along_v.curvature(values);
-    by_u[i] = along_v.value(slopes);
-    by_uv[i] = along_v.rate(slopes);
-    by_uvv[i] = along_v.curvature(slopes);
-  }
-  const std::array<double, 4> energies{ energy[0], by_u[0], energy[1], by_u[1] };
-  const std::array<double, 4> rates{ by_v[0], by_uv[0], by_v[1], by_uv[1] };
-  const double slope_u = along_u.rate(energies) * per_width;
-  const double slope_v = along_u.value(rates) * per_height;
-  const double k_uu = along_u.curvature(energies) * per_width * per_width;
-  const double k_uv = along_u.rate(rates) * per_width * per_height;
-  const double k_vv = along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height;
+  SurfaceCell::Energy energy = place.cell.energy();
   RingResponse response;
-  response.energy = along_u.value(energies);
-  response.output_torque = -slope_v;
-  response.wave_generator_torque = slope_v * inverse_ratio_ - slope_u;
-  response.follow = value(place, Table::FOLLOW);
-  response.output_stiffness = value(place, Table::OUTPUT_STIFFNESS);
-  response.motor_stiffness = k_uu - inverse_ratio_ * (2.0 * k_uv - inverse_ratio_ * k_vv);
+  response.follow = place.cell.value(SurfaceTable::FOLLOW);
+  response.output_stiffness = place.cell.value(SurfaceTable::OUTPUT_STIFFNESS);
+  if (place.departure.below != nullptr)
+  {
+    const SurfaceCell::Energy more = place.departure.energy();
+    energy.value += more.value;
+    energy.by_u += more.by_u;
+    energy.by_v += more.by_v;
+    energy.by_uu += more.by_uu;
+    energy.by_uv += more.by_uv;
+    energy.by_vv += more.by_vv;
+    response.follow += place.departure.value(SurfaceTable::FOLLOW);
+    response.output_stiffness += place.departure.value(SurfaceTable::OUTPUT_STIFFNESS);
+  }
+  const double per_pitch = pitches_per_radian_;
+  const double k_uu = energy.by_uu * per_pitch * per_pitch;
+  const double k_uv = energy.by_uv * per_pitch;
+  response.energy = energy.value;
+  response.output_torque = -energy.by_v;
+  response.wave_generator_torque = energy.by_v * inverse_ratio_ - energy.by_u * per_pitch;
+  response.motor_stiffness = k_uu - inverse_ratio_ * (2.0 * k_uv - inverse_ratio_ * energy.by_vv);
   // The housing holds what wave generator and output bring: (1 - 1/ratio) dU/dv + dU/du.
-  const double by_output = (1.0 - inverse_ratio_) * k_vv + k_uv;
+  const double by_output = (1.0 - inverse_ratio_) * energy.by_vv + k_uv;
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
   housing_stiffness[1] = by_output;
   return response;
@@ -144,12 +225,19 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
   constexpr int COUNT = Table::TEETH_LOADED - FIRST;
   using Values = Eigen::Array<double, COUNT, 1>;
   const auto at = [](const Table::Node& node) { return Eigen::Map<const Values>(node.data() + FIRST); };
-  const double w11 = place.u * place.v;
-  const double w10 = place.v - w11;
-  const double w01 = place.u - w11;
-  const double w00 = 1.0 - place.u - w10;
-  const Values x =
-      w00 * at(place.below[0]) + w01 * at(place.below[1]) + w10 * at(place.above[0]) + w11 * at(place.above[1]);
+  const auto bilinear = [&](const SurfaceCell& cell) -> Values
+  {
+    const double w11 = cell.u * cell.v;
+    const double w10 = cell.v - w11;
+    const double w01 = cell.u - w11;
+    const double w00 = 1.0 - cell.u - w10;
+    return w00 * at(cell.below[0]) + w01 * at(cell.below[1]) + w10 * at(cell.above[0]) + w11 * at(cell.above[1]);
+  };
+  Values x = bilinear(place.cell);
+  if (place.departure.below != nullptr)
+  {
+    x += bilinear(place.departure);
+  }
   friction.contact_force = x[Table::CONTACT_FORCE - FIRST];
   friction.interface_torque = x[Table::INTERFACE_TORQUE - FIRST];
   friction.viscous << x[Table::VISCOUS - FIRST], x[Table::VISCOUS - FIRST + 1], x[Table::VISCOUS - FIRST + 2];

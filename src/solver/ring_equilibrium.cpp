@@ -6,9 +6,12 @@
 #include <limits>
 
 #include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/solver/ring_vectors.hpp"
 
 namespace hjt
 {
+using ring_vectors::largest;
+
 namespace
 {
 DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fraction) noexcept
@@ -18,16 +21,16 @@ DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fra
            a.wave_amplitude + fraction * (b.wave_amplitude - a.wave_amplitude) };
 }
 
-/// Which of its two contacts a tooth is in, as bits.
-char contactsOf(const RingForces& forces, int i) noexcept
-{
-  return static_cast<char>((forces.meshed[i] != 0 ? 1 : 0) + (forces.contact_depth[i] > 0.0 ? 2 : 0));
-}
-
 /// Largest entry on the tangent's diagonal [N/m].
 double stiffest(const RingTangent& tangent) noexcept
 {
   return std::max(tangent.diagonal.xx.maxCoeff(), tangent.diagonal.yy.maxCoeff());
+}
+
+/// `number` less a multiple of `size`: 0 ... size - 1.
+int wrapped(int number, int size) noexcept
+{
+  return (number % size + size) % size;
 }
 
 /// One attempt after another: the second's outcome, the effort of both.
@@ -36,11 +39,6 @@ SolveStatus add(const SolveStatus& first, SolveStatus second) noexcept
   second.iterations += first.iterations;
   second.cuts += first.cuts;
   return second;
-}
-
-double largest(const Eigen::VectorXd& forces) noexcept
-{
-  return forces.lpNorm<Eigen::Infinity>();
 }
 }  // namespace
 
@@ -66,10 +64,14 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , start_points_(now_.shape.points)
   , scratch_(now_.shape.points)
   , old_space_(now_.shape.space)
-  , factored_contacts_(static_cast<std::size_t>(model.rest.teeth()))
+  , factored_meshed_(forces_.meshed)
+  , factored_depth_(forces_.contact_depth)
+  , guess_(now_.shape.points)
+  , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , step_(now_.shape.points)
   , start_forces_(now_.shape.points)
-  , columns_(2 * model.rest.teeth(), 2)
+  , by_wave_generator_(now_.by_wave_generator)
+  , by_output_(now_.by_output)
 {
   parameters_.force_tolerance = std::max(parameters_.force_tolerance, rounding());
 }
@@ -79,7 +81,7 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 double RingEquilibrium::rounding() noexcept
 {
   model_.forces(now_.shape, now_.position, forces_);
-  model_.tangent(now_.shape, now_.position, forces_, tangent_);
+  model_.tangent(now_.shape, forces_, tangent_);
   return std::numeric_limits<double>::epsilon() * model_.gear.flexspline_inner_radius * stiffest(tangent_);
 }
 
@@ -144,6 +146,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.position = position;
   now_.shape.points = points;
   now_.shape.updateGeometry();
+  forgetGuess();
   model_.mesh.pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
@@ -164,6 +167,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = kept_;
+    forgetGuess();
     updateForces();
   }
   return status;
@@ -182,6 +186,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   if (!status.ok())
   {
     now_ = start_;
+    forgetGuess();
     updateForces();
     status.residual = std::isfinite(status.residual) ? status.residual : now_.residual;
   }
@@ -195,6 +200,7 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
   constexpr double LEAST_DAMPING = 1e-3;
   constexpr double MOST_DAMPING = 1e16;
   start_ = now_;
+  forgetGuess();
   now_.position = target;
   SolveStatus status;
   double damping = FIRST_DAMPING;
@@ -242,7 +248,7 @@ bool RingEquilibrium::descend(double damping) noexcept
   constexpr double ROUNDING = 1e-12;  // of the energy
   const double energy = forces_.energy;
   const double residual = largest(forces_.teeth);
-  model_.tangent(now_.shape, now_.position, forces_, tangent_);
+  model_.tangent(now_.shape, forces_, tangent_);
   for (int i = 0; i < now_.shape.teeth(); ++i)
   {
     tangent_.addDiagonal(i, damping * Block2::Identity());
@@ -296,6 +302,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
       break;
     }
     now_ = done > 0.0 ? halfway_ : start_;
+    forgetGuess();
     stride *= 0.5;
   }
   return total;
@@ -304,16 +311,8 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 /// Values of a ring turned by `pitches` tooth pitches: those of tooth i, rotated, take the place of tooth i + pitches.
 void RingEquilibrium::turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept
 {
-  const int n = now_.shape.teeth();
-  const double c = std::cos(pitches * model_.rest.pitchAngle());
-  const double s = std::sin(pitches * model_.rest.pitchAngle());
-  int j = (pitches % n + n) % n;
-  for (int i = 0; i < n; ++i)
-  {
-    turned[2 * j] = c * values[2 * i] - s * values[2 * i + 1];
-    turned[2 * j + 1] = s * values[2 * i] + c * values[2 * i + 1];
-    j = j + 1 == n ? 0 : j + 1;
-  }
+  const double angle = pitches * model_.rest.pitchAngle();
+  ring_vectors::turn(values, wrapped(pitches, now_.shape.teeth()), std::cos(angle), std::sin(angle), turned);
 }
 
 /// The spaces turned likewise.
@@ -321,9 +320,13 @@ void RingEquilibrium::turnSpaces(int pitches) noexcept
 {
   const int n = now_.shape.teeth();
   const int spaces = model_.gear.teeth_circular_spline;
-  for (int i = 0; i < n; ++i)
+  const int places = wrapped(pitches, n);
+  const int further = wrapped(pitches, spaces);
+  const std::vector<int>& space = now_.shape.space;
+  std::rotate_copy(space.begin(), space.end() - places, space.end(), old_space_.begin());
+  for (int& turned : old_space_)
   {
-    old_space_[((i + pitches) % n + n) % n] = ((now_.shape.space[i] + pitches) % spaces + spaces) % spaces;
+    turned += turned + further < spaces ? further : further - spaces;
   }
   now_.shape.space.swap(old_space_);
 }
@@ -342,10 +345,40 @@ void RingEquilibrium::shift(int pitches) noexcept
   now_.position.output_angle += pitches * pitch_output_angle_;
 }
 
-/// First guess at the target. Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is
-/// a cubic between the state and its copy one pitch on, with the tangents at both ends; the rest of the output's angle
-/// goes along its own tangent.
+/// What the last guess was off by is what the next one will be, as far as the one before was off alike: errors of single
+/// teeth stay where they are, while the guess takes them for turning with the wave generator.
 void RingEquilibrium::predict(const DrivePosition& target) noexcept
+{
+  constexpr double ALIKE = 0.8;  // less has come about by chance
+  double share = 0.0;
+  if (guessed_)
+  {
+    ring_vectors::addScaled(now_.shape.points, -1.0, guess_, scratch_);
+    const double size = ring_vectors::dot(guess_error_, guess_error_);
+    share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_) / size) : 0.0;
+    guess_error_.swap(scratch_);
+  }
+  guess(target);
+  guess_ = now_.shape.points;
+  guessed_ = true;
+  if (share > ALIKE)
+  {
+    ring_vectors::addScaled(guess_, share, guess_error_, now_.shape.points);
+  }
+  now_.shape.updateGeometry();
+  now_.position = target;
+}
+
+void RingEquilibrium::forgetGuess() noexcept
+{
+  guessed_ = false;
+  guess_error_.setZero();
+}
+
+/// First guess at the target. Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is
+/// a cubic between the state and its copy one pitch on, forwards or back, with the tangents at both ends; the rest of the
+/// output's angle goes along its own tangent.
+void RingEquilibrium::guess(const DrivePosition& target) noexcept
 {
   constexpr double SMALL = 0.02;        // of a pitch; below it the tangent alone is as good
   constexpr double MOST_PITCHES = 1e9;  // counted as an int
@@ -353,24 +386,25 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
   const double pitches = (target.wave_generator_angle - now_.position.wave_generator_angle) / pitch;
   if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
   {
-    const int whole = static_cast<int>(std::floor(pitches));
+    const int whole = static_cast<int>(pitches);
     if (whole != 0)
     {
       shift(whole);
     }
-    const double u = pitches - whole;
+    const int sense = pitches < 0.0 ? -1 : 1;
+    const double u = std::abs(pitches - whole);
     const double blend = u * u * (3.0 - 2.0 * u);
-    const double start_slope = u * (1.0 - u) * (1.0 - u);
-    const double end_slope = -u * u * (1.0 - u);
-    const Eigen::VectorXd& slope = step_ = pitch * now_.by_wave_generator + pitch_output_angle_ * now_.by_output;
-    turn(slope, 1, scratch_);
-    scratch_ = start_slope * slope + end_slope * scratch_;
-    turn(now_.shape.points, 1, start_points_);
-    now_.shape.points += blend * (start_points_ - now_.shape.points) + scratch_;
-    now_.shape.points += (target.output_angle - now_.position.output_angle - u * pitch_output_angle_) * now_.by_output;
+    const double start_slope = sense * u * (1.0 - u) * (1.0 - u);
+    const double end_slope = -sense * u * u * (1.0 - u);
+    const double rest = target.output_angle - now_.position.output_angle - sense * u * pitch_output_angle_;
+    ring_vectors::addTurned({ now_.shape.points, now_.by_wave_generator, now_.by_output },
+                            { 1.0 - blend, start_slope * pitch, start_slope * pitch_output_angle_ + rest },
+                            { blend, end_slope * pitch, end_slope * pitch_output_angle_ },
+                            wrapped(sense, now_.shape.teeth()), std::cos(pitch), sense * std::sin(pitch), scratch_);
+    now_.shape.points.swap(scratch_);
     if (u > 0.5)
     {
-      turnSpaces(1);  // the copy is the nearer one
+      turnSpaces(sense);  // the copy is the nearer one
     }
   }
   else
@@ -378,8 +412,6 @@ void RingEquilibrium::predict(const DrivePosition& target) noexcept
     now_.shape.points += (target.wave_generator_angle - now_.position.wave_generator_angle) * now_.by_wave_generator +
                          (target.output_angle - now_.position.output_angle) * now_.by_output;
   }
-  now_.shape.updateGeometry();
-  now_.position = target;
 }
 
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
@@ -443,37 +475,43 @@ bool RingEquilibrium::slopesChanged() const noexcept
   {
     return true;
   }
-  for (int i = 0; i < now_.shape.teeth(); ++i)
-  {
-    if (factored_contacts_[i] != contactsOf(forces_, i))
-    {
-      return true;
-    }
-  }
-  return false;
+  return forces_.meshed != factored_meshed_ || ring_vectors::signsChanged(forces_.contact_depth, factored_depth_) != 0;
 }
 
 bool RingEquilibrium::refactor() noexcept
 {
-  for (int i = 0; i < now_.shape.teeth(); ++i)
-  {
-    factored_contacts_[i] = contactsOf(forces_, i);
-  }
-  model_.tangent(now_.shape, now_.position, forces_, tangent_);
+  factored_meshed_ = forces_.meshed;
+  factored_depth_ = forces_.contact_depth;
+  model_.tangent(now_.shape, forces_, tangent_);
+  rates_known_ = false;
   return solver_.factor(tangent_);
+}
+
+/// The Newton step; with it, once a tangent, the rates by both angles: a sweep costs little more for three columns.
+void RingEquilibrium::solveStep() noexcept
+{
+  step_ = forces_.teeth;
+  if (rates_known_)
+  {
+    solver_.solve<1>(step_);
+    return;
+  }
+  by_wave_generator_ = -tangent_.wave_generator;
+  by_output_ = -tangent_.output;
+  solver_.solve(step_, by_wave_generator_, by_output_);
+  rates_known_ = true;
 }
 
 /// One Newton step, shortened until the largest force falls (or is at the level of rounding).
 bool RingEquilibrium::searchLine(double residual) noexcept
 {
   constexpr int MAX_HALVINGS = 7;
-  step_ = forces_.teeth;
-  solver_.solve<1>(step_);
-  start_points_ = now_.shape.points;
+  solveStep();
+  start_points_.swap(now_.shape.points);
   double length = 1.0;
   for (int i = 0; i < MAX_HALVINGS; ++i, length *= 0.5)
   {
-    now_.shape.points = start_points_ + length * step_;
+    ring_vectors::addScaled(start_points_, length, step_, now_.shape.points);
     now_.shape.updateGeometry();
     updateForces();
     const double trial = largest(forces_.teeth);
@@ -553,14 +591,17 @@ bool RingEquilibrium::stepDownhill() noexcept
 
 void RingEquilibrium::updateSensitivities() noexcept
 {
-  columns_.col(0) = -tangent_.wave_generator;
-  columns_.col(1) = -tangent_.output;
-  solver_.solve<2>(columns_);
-  now_.by_wave_generator = columns_.col(0);
-  now_.by_output = columns_.col(1);
-  const double cross = tangent_.wave_generator.dot(now_.by_output);
-  now_.stiffness(0, 0) = tangent_.wave_generator_stiffness + tangent_.wave_generator.dot(now_.by_wave_generator);
-  now_.stiffness(1, 1) = tangent_.output_stiffness + tangent_.output.dot(now_.by_output);
+  if (!rates_known_)
+  {
+    solveStep();
+  }
+  now_.by_wave_generator.swap(by_wave_generator_);
+  now_.by_output.swap(by_output_);
+  rates_known_ = false;
+  const double cross = ring_vectors::dot(tangent_.wave_generator, now_.by_output);
+  now_.stiffness(0, 0) =
+      tangent_.wave_generator_stiffness + ring_vectors::dot(tangent_.wave_generator, now_.by_wave_generator);
+  now_.stiffness(1, 1) = tangent_.output_stiffness + ring_vectors::dot(tangent_.output, now_.by_output);
   now_.stiffness(0, 1) = now_.stiffness(1, 0) = cross;
 }
 }  // namespace hjt

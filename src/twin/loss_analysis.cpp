@@ -4,88 +4,64 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/model/joint_model.hpp"
-#include "harmonic_joint_twin/solver/output_balance.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
-#include "harmonic_joint_twin/twin/static_solver.hpp"
+#include "harmonic_joint_twin/twin/pitch_walk.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// The joint led through one tooth pitch at constant load, its friction asked for at every position.
+/// The frictions of the joint along its walk through one tooth pitch.
 class LossMeter
 {
 public:
   LossMeter(const Parameters& parameters, int positions)
-    : model_(parameters)
-    , ring_(model_.ring, staticSolver(parameters.solver))
+    : walk_(parameters, positions)
     , friction_(parameters.gear.teeth_flexspline)
     , running_(2 * parameters.gear.teeth_flexspline)
     , temperature_(parameters.input.temperature)
-    , pitch_(TWO_PI / parameters.gear.teeth_flexspline)
-    , positions_(positions)
-    , status_(ring_.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }))
   {
   }
 
-  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. On failure it stops.
-  template <class Visit>
-  void overPitch(double load, Visit&& visit)
-  {
-    for (int i = 0; i < positions_ && status_.ok(); ++i)
-    {
-      status_ = balanceOutput(ring_, pitch_ * i / positions_, load);
-      if (status_.ok())
-      {
-        visit(ring_.follow());
-      }
-    }
-  }
+  PitchWalk& walk() { return walk_; }
+  const SolveStatus& status() const { return walk_.status(); }
 
   /// What each friction takes at this position, per motor speed [N.m].
   LossShares shares(double speed, double follow)
   {
     const Eigen::Vector2d rates(1.0, follow);  // of both angles by the motor's
-    const RingRates by_angle{ ring_.byWaveGenerator(), ring_.byOutput() };
+    const JointModel& model = walk_.model();
+    const RingEquilibrium& ring = walk_.ring();
+    const RingRates by_angle{ ring.byWaveGenerator(), ring.byOutput() };
     running_ = by_angle.by_motor + follow * by_angle.by_output;
     LossShares shares;
-    shares.bearing = model_.bearing.torque(speed, ring_.forces().contact_force.sum(), temperature_);
-    shares.interface = model_.interface_friction.torque(ring_.shape(), ring_.forces(), running_);
-    shares.motor = model_.motor.coulombTorque() + model_.motor.viscousFriction() * std::abs(speed) +
-                   model_.load.viscousFriction() * follow * follow * std::abs(speed);
+    shares.bearing = model.bearing.torque(speed, ring.forces().contact_force.sum(), temperature_);
+    shares.interface = model.interface_friction.torque(ring.shape(), ring.forces(), running_);
+    shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
+                   model.load.viscousFriction() * follow * follow * std::abs(speed);
     friction_.setZero();
-    model_.mesh_friction.addTerms(model_.ring.mesh, ring_.shape(), ring_.position(), ring_.forces(), by_angle,
-                                  speed * rates, friction_);
+    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), by_angle, speed * rates, friction_);
     shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
-    model_.cup_friction.addTerm(ring_.shape(), by_angle, friction_);
+    model.cup_friction.addTerm(ring.shape(), by_angle, friction_);
     shares.cup = friction_.dryPower(rates);
-    model_.damping.add(ring_.shape(), ring_.forces(), by_angle, friction_);
+    model.damping.add(ring.shape(), ring.forces(), by_angle, friction_);
     shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
     return shares;
   }
 
-  const SolveStatus& status() const { return status_; }
-
 private:
-  JointModel model_;
-  RingEquilibrium ring_;
+  PitchWalk walk_;
   JointFriction friction_;
   Eigen::VectorXd running_;
   double temperature_;
-  double pitch_;
-  int positions_;
-  SolveStatus status_;
 };
 
 /// Friction of the gear at the wave generator as motion begins: the largest over a tooth pitch [N.m].
 double breakaway(LossMeter& meter, double load)
 {
   double largest = 0.0;
-  meter.overPitch(load, [&](double follow) { largest = std::max(largest, meter.shares(0.0, follow).gear()); });
+  meter.walk().under(load, [&](double follow) { largest = std::max(largest, meter.shares(0.0, follow).gear()); });
   return largest;
 }
 }  // namespace
@@ -106,22 +82,22 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
       rows.back().load_torque = load;
     }
     const double part = 1.0 / positions;
-    meter.overPitch(load,
-                    [&](double follow)
-                    {
-                      for (std::size_t i = first; i < rows.size(); ++i)
-                      {
-                        const LossShares at = meter.shares(rows[i].motor_speed, follow);
-                        LossShares& mean = rows[i].loss;
-                        mean.bearing += part * at.bearing;
-                        mean.interface += part * at.interface;
-                        mean.mesh += part * at.mesh;
-                        mean.cup += part * at.cup;
-                        mean.damping += part * at.damping;
-                        mean.motor += part * at.motor;
-                        rows[i].load_reduced += part * load * follow;
-                      }
-                    });
+    meter.walk().under(load,
+                       [&](double follow)
+                       {
+                         for (std::size_t i = first; i < rows.size(); ++i)
+                         {
+                           const LossShares at = meter.shares(rows[i].motor_speed, follow);
+                           LossShares& mean = rows[i].loss;
+                           mean.bearing += part * at.bearing;
+                           mean.interface += part * at.interface;
+                           mean.mesh += part * at.mesh;
+                           mean.cup += part * at.cup;
+                           mean.damping += part * at.damping;
+                           mean.motor += part * at.motor;
+                           rows[i].load_reduced += part * load * follow;
+                         }
+                       });
     for (std::size_t i = first; i < rows.size(); ++i)
     {
       rows[i].converged = meter.status().ok();

@@ -49,7 +49,7 @@ double softestStiffness(const RingEquilibrium& ring)
   constexpr int ITERATIONS = 100;
   const int teeth = ring.shape().teeth();
   RingTangent tangent(teeth);
-  ring.model().tangent(ring.shape(), ring.position(), ring.forces(), tangent);
+  ring.model().tangent(ring.shape(), ring.forces(), tangent);
   CyclicSolver solver(teeth);
   if (!solver.factor(tangent))
   {

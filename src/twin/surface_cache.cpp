@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <sstream>
@@ -19,7 +20,9 @@
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/params/text_hash.hpp"
+#include "harmonic_joint_twin/twin/departure_builder.hpp"
 #include "harmonic_joint_twin/twin/surface_builder.hpp"
+#include "harmonic_joint_twin/twin/surface_ring.hpp"
 
 namespace hjt
 {
@@ -28,23 +31,76 @@ namespace
 namespace fs = std::filesystem;
 
 /// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
-constexpr const char* FORMAT = "harmonic_joint_twin response surface 1\n";
-/// Sections that the ring in equilibrium does not depend on.
-constexpr std::array<const char*, 8> OTHER_SECTIONS{ "joint.",  "brake.", "solver.",  "sensors.",
-                                                     "health.", "input.", "publish.", "realtime." };
+constexpr const char* FORMAT = "harmonic_joint_twin response surface 2\n";
+/// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
+/// the friction is added when the surface is read.
+constexpr std::array<const char*, 24> OTHER_KEYS{ "joint.",
+                                                  "brake.",
+                                                  "solver.",
+                                                  "sensors.",
+                                                  "health.",
+                                                  "input.",
+                                                  "publish.",
+                                                  "realtime.",
+                                                  "ring.mass",
+                                                  "mesh.friction_kinetic",
+                                                  "mesh.stribeck_velocity",
+                                                  "cup.friction_torque",
+                                                  "bearing.lubricant_factor",
+                                                  "bearing.viscosity",
+                                                  "motor.rotor_inertia",
+                                                  "motor.wave_generator_inertia",
+                                                  "motor.coulomb_torque",
+                                                  "motor.viscous_friction",
+                                                  "motor.speed_limit",
+                                                  "output.circular_spline_inertia",
+                                                  "output.load_inertia",
+                                                  "output.viscous_friction",
+                                                  "output.gravity_torque",
+                                                  "output.gravity_angle" };
+const std::string NO_SURFACE = "no response surface: ";
+const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Format and every parameter that the surface may depend on.
-std::string header(const Parameters& parameters)
+/// Format and every parameter that the ring may depend on.
+std::string parametersOfTheRing(const Parameters& parameters)
 {
   std::istringstream lines(describeParameters(parameters));
   std::string text = FORMAT;
   for (std::string line; std::getline(lines, line);)
   {
-    const bool other = std::any_of(OTHER_SECTIONS.begin(), OTHER_SECTIONS.end(),
-                                   [&](const char* section) { return line.rfind(section, 0) == 0; });
+    const bool other =
+        std::any_of(OTHER_KEYS.begin(), OTHER_KEYS.end(), [&](const char* key) { return line.rfind(key, 0) == 0; });
     text += other ? "" : line.substr(0, line.find("  #")) + '\n';
   }
-  return text + '\n';
+  return text;
+}
+
+/// The same with the faults, and with what stands in files that the parameters name.
+std::string header(const Parameters& parameters, const std::string& faults)
+{
+  std::string text = parametersOfTheRing(parameters) + faults + '\n';
+  for (const std::string& path :
+       { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })
+  {
+    std::ifstream file(path, std::ios::binary);
+    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    text += '\n';
+  }
+  return text;
+}
+
+/// These parameters with teeth and spaces that are all equal.
+Parameters withEqualTeeth(Parameters parameters)
+{
+  ManufactureParameters& errors = parameters.manufacture;
+  for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
+  {
+    pitch->deviation = 0.0;
+    pitch->table = "none";
+  }
+  errors.circular_spline_eccentricity = {};
+  errors.circular_spline_ellipticity = {};
+  return parameters;
 }
 
 template <class T>
@@ -65,49 +121,122 @@ std::string body(const SurfaceTable& table)
   return bytes;
 }
 
-std::optional<SurfaceTable> parseBody(std::string_view bytes)
+std::string body(const DepartureTable& table)
 {
-  constexpr double MOST = 1e6;  // lines or columns
-  std::vector<double> numbers(bytes.size() / sizeof(double));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
-  if (numbers.size() < 4 || !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) ||
-      !(numbers[2] >= 1.0 && numbers[2] < MOST && numbers[3] >= 2.0 && numbers[3] < MOST))
+  std::string bytes;
+  const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
+  append(bytes, sizes.data(), sizes.size());
+  for (const DepartureTable::Pitch& pitch : table.pitches)
   {
-    return std::nullopt;
+    const std::array<double, 2> counts{ static_cast<double>(pitch.columns), static_cast<double>(pitch.lines.size()) };
+    append(bytes, counts.data(), counts.size());
+    append(bytes, pitch.lines.data(), pitch.lines.size());
+    append(bytes, pitch.nodes.data(), pitch.nodes.size());
   }
-  SurfaceTable table;
-  table.pitch = numbers[0];
-  table.ratio = numbers[1];
-  table.columns = static_cast<int>(numbers[2]);
-  const auto lines = static_cast<std::size_t>(numbers[3]);
-  const std::size_t nodes = lines * (static_cast<std::size_t>(table.columns) + 1);
-  if (bytes.size() != sizeof(double) * (4 + lines + nodes * SurfaceTable::VALUES))
-  {
-    return std::nullopt;
-  }
-  table.lines.assign(numbers.begin() + 4, numbers.begin() + 4 + static_cast<std::ptrdiff_t>(lines));
-  table.nodes.resize(nodes);
-  std::memcpy(table.nodes.data(), bytes.data() + sizeof(double) * (4 + lines), nodes * sizeof(SurfaceTable::Node));
-  if (!std::is_sorted(table.lines.begin(), table.lines.end(), std::less_equal<>()))
-  {
-    return std::nullopt;
-  }
-  return table;
+  return bytes;
 }
 
-std::optional<SurfaceTable> readFile(const std::string& path, const std::string& wanted)
+/// Takes a body to pieces; whether there were enough bytes and numbers is known in the end.
+class BodyReader
+{
+public:
+  explicit BodyReader(std::string_view bytes) : bytes_(bytes) {}
+
+  /// A whole number not below `least`.
+  std::size_t size(double least)
+  {
+    constexpr double MOST = 1e6;
+    double value = 0.0;
+    take(&value, 1);
+    good_ = good_ && value >= least && value < MOST;
+    return good_ ? static_cast<std::size_t>(value) : 0;
+  }
+
+  template <class T>
+  void vector(std::vector<T>& values, std::size_t count)
+  {
+    good_ = good_ && count <= bytes_.size() / sizeof(T);
+    values.resize(good_ ? count : 0);
+    take(values.data(), values.size());
+  }
+
+  void number(double& value) { take(&value, 1); }
+
+  bool complete() const { return good_ && bytes_.empty(); }
+
+private:
+  template <class T>
+  void take(T* values, std::size_t count)
+  {
+    good_ = good_ && bytes_.size() >= count * sizeof(T);
+    if (good_ && count > 0)
+    {
+      std::memcpy(values, bytes_.data(), count * sizeof(T));
+      bytes_.remove_prefix(count * sizeof(T));
+    }
+  }
+
+  std::string_view bytes_;
+  bool good_{ true };
+};
+
+bool finite(const std::vector<SurfaceTable::Node>& nodes)
+{
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [](const SurfaceTable::Node& node)
+                     { return std::all_of(node.begin(), node.end(), [](double x) { return std::isfinite(x); }); });
+}
+
+bool ascending(const std::vector<double>& lines)
+{
+  return std::is_sorted(lines.begin(), lines.end(), std::less_equal<>());
+}
+
+bool parseBody(std::string_view bytes, SurfaceTable& table)
+{
+  BodyReader reader(bytes);
+  reader.number(table.pitch);
+  reader.number(table.ratio);
+  const std::size_t columns = reader.size(1.0);
+  const std::size_t lines = reader.size(2.0);
+  table.columns = static_cast<int>(columns);
+  reader.vector(table.lines, lines);
+  reader.vector(table.nodes, lines * (columns + 1));
+  return reader.complete() && ascending(table.lines) && finite(table.nodes);
+}
+
+bool parseBody(std::string_view bytes, DepartureTable& table)
+{
+  BodyReader reader(bytes);
+  table.pitches.resize(reader.size(2.0));
+  table.swaps_lobes = reader.size(0.0) != 0;
+  bool good = true;
+  for (DepartureTable::Pitch& pitch : table.pitches)
+  {
+    const std::size_t columns = reader.size(0.0);
+    const std::size_t lines = reader.size(0.0);
+    pitch.columns = static_cast<int>(columns);
+    reader.vector(pitch.lines, lines);
+    reader.vector(pitch.nodes, lines > 0 ? lines * (columns + 1) : 0);
+    good = good && lines != 1 && ascending(pitch.lines) && finite(pitch.nodes);
+  }
+  return good && reader.complete();
+}
+
+template <class Table>
+bool readFile(const std::string& path, const std::string& wanted, Table& table)
 {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   std::uint64_t sum = 0;
   if (!file || bytes.size() < wanted.size() + sizeof(sum) || bytes.compare(0, wanted.size(), wanted) != 0)
   {
-    return std::nullopt;
+    return false;
   }
   const std::string_view rest = std::string_view(bytes).substr(wanted.size());
   const std::string_view values = rest.substr(0, rest.size() - sizeof(sum));
   std::memcpy(&sum, rest.data() + values.size(), sizeof(sum));
-  return sum == textHash(values) ? parseBody(values) : std::nullopt;
+  return sum == textHash(values) && parseBody(values, table);
 }
 
 /// @returns what went wrong, or nothing.
@@ -135,6 +264,52 @@ std::string writeFile(const std::string& path, const std::string& bytes)
   }
   return {};
 }
+
+std::string fileOf(const std::string& kind, const std::string& key, const std::string& directory)
+{
+  std::ostringstream name;
+  name << directory << '/' << kind << '_' << std::hex << textHash(key) << ".bin";
+  return name.str();
+}
+
+void tell(const SurfaceSource& source, const std::string& what)
+{
+  if (source.notice)
+  {
+    source.notice(what);
+  }
+}
+
+/// A table from the cache, or built and put there. Empty: it could not be built, and why has been told.
+template <class Table, class Build>
+std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
+{
+  const bool kept = !source.cache_directory.empty();
+  const std::string path = fileOf(kind, key, source.cache_directory);
+  Table table;
+  if (kept && readFile(path, key, table))
+  {
+    return table;
+  }
+  auto built = build();
+  if (!built.obstacle.empty())
+  {
+    tell(source, NO_SURFACE + built.obstacle + FULL_RING_INSTEAD);
+    return std::nullopt;
+  }
+  if (kept)
+  {
+    std::string bytes = body(built.table);
+    const std::uint64_t sum = textHash(bytes);
+    append(bytes, &sum, 1);
+    const std::string problem = writeFile(path, key + bytes);
+    if (!problem.empty())
+    {
+      tell(source, "response surface not kept: " + problem);
+    }
+  }
+  return std::move(built.table);
+}
 }  // namespace
 
 std::string surfaceCacheDirectory()
@@ -152,55 +327,45 @@ std::string surfaceCacheDirectory()
 
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory)
 {
-  std::ostringstream name;
-  name << directory << "/surface_" << std::hex << textHash(header(parameters)) << ".bin";
-  return name.str();
+  return fileOf("surface", header(parameters, {}), directory);
 }
 
-std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const SurfaceSource& source)
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
+                                           const std::string& faults, const SurfaceSource& source)
 {
-  const auto tell = [&](const std::string& what)
+  // The cache is asked only for gears that repeat: what stops others is not in its keys.
+  const int repetition = SurfaceRing(parameters, model).repetition();
+  const Parameters equal_parameters = repetition == 1 ? parameters : withEqualTeeth(parameters);
+  const JointModel equal = repetition == 1 ? model : JointModel(equal_parameters);
+  if (repetition == 0 || (repetition > 1 && SurfaceRing(equal_parameters, equal).repetition() != 1))
   {
-    if (source.notice)
-    {
-      source.notice(what);
-    }
-  };
-  // Before the cache is asked: its key has the parameters only, not the files that they name.
-  const std::string obstacle = surfaceObstacle(parameters);
-  if (!obstacle.empty())
-  {
-    tell("no response surface: " + obstacle + "; the twin solves the full ring at every step");
+    tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
-  const bool kept = !source.cache_directory.empty();
-  const std::string key = header(parameters);
-  const std::string path = kept ? surfaceCacheFile(parameters, source.cache_directory) : "";
-  if (kept)
+  const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
+  std::optional<SurfaceTable> table = obtain<SurfaceTable>(
+      "surface", key, source, [&] { return buildSurface(equal_parameters, equal, source.progress); });
+  if (!table)
   {
-    if (std::optional<SurfaceTable> table = readFile(path, key))
-    {
-      return table;
-    }
-  }
-  SurfaceBuild build = buildSurface(parameters, source.progress);
-  if (!build.obstacle.empty())
-  {
-    tell("no response surface: " + build.obstacle + "; the twin solves the full ring at every step");
     return std::nullopt;
   }
-  if (kept)
+  SurfaceTables tables{ std::move(*table), {} };
+  if (repetition > 1)
   {
-    std::string bytes = body(build.table);
-    const std::uint64_t sum = textHash(bytes);
-    append(bytes, &sum, 1);
-    const std::string problem = writeFile(path, key + bytes);
-    if (!problem.empty())
+    std::optional<DepartureTable> departures = obtain<DepartureTable>(
+        "departures", header(parameters, faults), source,
+        [&]
+        {
+          return buildDepartures(parameters, equal, model, repetition, tables.table.lines.front(),
+                                 tables.table.lines.back(), source.progress);
+        });
+    if (!departures)
     {
-      tell("response surface not kept: " + problem);
+      return std::nullopt;
     }
+    tables.departures = std::move(*departures);
   }
-  return std::move(build.table);
+  return tables;
 }
 
 SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
@@ -241,13 +406,15 @@ SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::func
   return surface.get();
 }
 
-SurfacePool::Surface sharedSurface(const Parameters& parameters, const SurfaceSource& source)
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
+                                   const SurfaceSource& source)
 {
   const auto make = [&]() -> SurfacePool::Surface
   {
-    std::optional<SurfaceTable> table = obtainSurface(parameters, source);
-    return table ? std::make_shared<const ResponseSurface>(std::move(*table)) : nullptr;
+    std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
+    return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->departures)) :
+                    nullptr;
   };
-  return source.pool ? source.pool->obtain(header(parameters), make) : make();
+  return source.pool ? source.pool->obtain(header(parameters, faults), make) : make();
 }
 }  // namespace hjt

@@ -48,8 +48,8 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     status = balanceOutput(ring, 0.0, elastic);
     friction.setZero();
     const RingRates rates{ ring.byWaveGenerator(), ring.byOutput() };
-    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.position(), ring.forces(), rates,
-                                 Eigen::Vector2d::Zero(), friction);
+    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), rates, Eigen::Vector2d::Zero(),
+                                 friction);
     model.cup_friction.addTerm(ring.shape(), rates, friction);
     const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;

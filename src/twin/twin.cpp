@@ -5,15 +5,37 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
+#include "harmonic_joint_twin/twin/surface_worker.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// What the faults changed, for the cache of surfaces.
+std::string keyOf(const ToothFaults& faults)
+{
+  std::ostringstream text;
+  for (const int tooth : faults.missing)
+  {
+    text << "missing " << tooth << ' ';
+  }
+  for (const int tooth : faults.cut)
+  {
+    text << "cut " << tooth << ' ';
+  }
+  return text.str();
+}
+}  // namespace
+
 struct Twin::Impl
 {
   Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
@@ -23,14 +45,22 @@ struct Twin::Impl
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
     , monitor(given.health, given.gear)
+    , signals(given)
+    , assessor(given)
+    , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
     , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                               (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
   {
-    if (given.solver.scene == SceneKind::AUTO && faults.missing.empty() && faults.cut.empty())
+    if (given.solver.scene == SceneKind::AUTO)
     {
-      surface = sharedSurface(given, surface_source);
-      if (surface)
+      if (surface_source.background)
       {
+        surface_awaited = true;
+        surface_worker = std::make_unique<SurfaceWorker>(given, model, keyOf(faults), surface_source);
+      }
+      else
+      {
+        surface = sharedSurface(given, model, keyOf(faults), surface_source);
         stepper.useSurface(surface.get());
       }
     }
@@ -52,6 +82,8 @@ struct Twin::Impl
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
+    signals.reset();
+    assessor.reset();
     outputs = {};
     steps_at_report = {};
     fillOutputs(0.0, true);
@@ -60,16 +92,20 @@ struct Twin::Impl
 
   void step() noexcept;
   void takeInputs() noexcept;
+  void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
+  void takeReadings() noexcept;
   SolverState solverState() noexcept;
   LobeLoads lobes() const noexcept;
 
   Parameters parameters;
   JointModel model;
   std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
   JointStepper stepper;
   Stamp step_length;
   Stamp now{};
@@ -85,6 +121,10 @@ struct Twin::Impl
   JointOutputs outputs;
   JointSensors sensors;
   HealthMonitor monitor;
+  SignalMonitor signals;
+  Assessor assessor;
+  Stamp steps_per_sample;
+  bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
@@ -119,6 +159,20 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
+/// The surface that was built beside, when it is there.
+void Twin::Impl::takeSurface() noexcept
+{
+  if (surface_awaited)
+  {
+    const ResponseSurface* ready = surface_worker->surface();
+    if (ready != nullptr)
+    {
+      surface_awaited = false;
+      stepper.useSurface(ready);
+    }
+  }
+}
+
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
@@ -143,6 +197,7 @@ void Twin::Impl::step() noexcept
   now += step_length;
   simulated_until = now;
   takeInputs();
+  takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
   const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
   ++counters.steps;
@@ -186,6 +241,28 @@ void Twin::Impl::observe() noexcept
   sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
+  if (watching && now / step_length % steps_per_sample == 0)
+  {
+    takeReadings();
+  }
+}
+
+/// What a drive would know: readings, the load it was told, its temperature.
+void Twin::Impl::takeReadings() noexcept
+{
+  const EncoderReadings readings = sensors.encoders();
+  SignalSample sample;
+  sample.stamp = now;
+  sample.motor_angle = readings.motor_angle;
+  sample.output_angle = readings.output_angle;
+  sample.motor_velocity = readings.motor_velocity;
+  sample.motor_torque = sensors.motorTorque();
+  sample.load_torque = load_torque;
+  sample.temperature = parameters.input.temperature;
+  if (signals.update(sample))
+  {
+    assessor.take(signals.indicators());
+  }
 }
 
 SolverState Twin::Impl::solverState() noexcept
@@ -209,7 +286,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
   loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
-  loads.mesh_force = { value(SurfaceTable::LOBE_FORCE), value(SurfaceTable::LOBE_FORCE + 1) };
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
   loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);
@@ -330,6 +407,26 @@ HealthReport Twin::health() noexcept
   report.solver_failures = impl_->counters.solver_failures;
   report.solver_state = impl_->solverState();
   return report;
+}
+
+void Twin::watchSignals(bool on) noexcept
+{
+  impl_->watching = on;
+}
+
+bool Twin::watchesSignals() const noexcept
+{
+  return impl_->watching;
+}
+
+const SignalIndicators& Twin::signalIndicators() const noexcept
+{
+  return impl_->signals.indicators();
+}
+
+const Assessment& Twin::assessment() const noexcept
+{
+  return impl_->assessor.assessment();
 }
 
 ToothForces Twin::makeToothForces() const

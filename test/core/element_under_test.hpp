@@ -68,8 +68,8 @@ inline ElementUnderTest cupOf(const RingModel& model)
 inline ElementUnderTest meshOf(const RingModel& model)
 {
   return { [&model](auto& shape, auto& position, auto& forces) { model.mesh.addForces(shape, position, forces); },
-           [&model](auto& shape, auto& position, auto& forces, auto& tangent)
-           { model.mesh.addTangent(shape, position, forces, tangent); } };
+           [&model](auto& shape, auto&, auto& forces, auto& tangent)
+           { model.mesh.addTangent(shape, forces, tangent); } };
 }
 
 /// The ring's coordinates in one row: 2 N of the tooth points [m], wave generator angle, output angle [rad].

@@ -44,6 +44,42 @@ TEST(TwinRepeats, TheSameInputsGiveTheSameBits)
   EXPECT_TRUE(rows == record(second, inputs, SECOND / 2));
 }
 
+std::vector<double> withoutStamp(const JointOutputs& outputs)
+{
+  std::vector<double> values = numbers(outputs);
+  values.erase(values.begin());
+  return values;
+}
+
+/// Braked under load the joint comes to rest and stays as it is, to the last bit; a change of load finds it as if no time
+/// had passed, however long it has rested.
+TEST(TwinAtRest, StaysAsItIsUntilAnInputChanges)
+{
+  std::vector<std::vector<std::vector<double>>> runs;
+  for (const Stamp rest : { 2 * SECOND, 3 * SECOND })
+  {
+    Twin twin(shippedParameters());
+    twin.commandBrake(0, true);
+    twin.commandLoadTorque(0, 30.0);
+    advance(twin, 2 * SECOND);
+    const std::vector<double> at_rest = withoutStamp(twin.outputs());
+    while (twin.step(rest))
+    {
+      ASSERT_EQ(withoutStamp(twin.outputs()), at_rest);
+    }
+    EXPECT_NEAR(twin.outputs().joint_torque, 30.0, 0.1 + shippedParameters().cup.friction_torque);
+    twin.commandLoadTorque(rest, -10.0);
+    std::vector<std::vector<double>> rows;
+    while (twin.step(rest + 50 * MILLISECOND))
+    {
+      rows.push_back(withoutStamp(twin.outputs()));
+    }
+    EXPECT_NE(rows.front(), at_rest);
+    runs.push_back(rows);
+  }
+  EXPECT_TRUE(runs[0] == runs[1]);
+}
+
 TEST(TwinRepeats, InChunksOfAnyLength)
 {
   const std::vector<Input> inputs = randomInputs(82, SECOND / 2, 1.5, 60.0);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin simulate`."""
 import csv
+import math
 import os
 import signal
 import subprocess
@@ -42,6 +43,27 @@ class Simulate(tool.ToolTest):
             expected = (0.4, 2.5, 0.0) if row["time"] < 0.1 else (-0.2, -1.5, 0.0) if row["time"] < 0.2 else \
                        (0.3, 0.0, 1.0)
             self.assertEqual((row["motor_torque"], row["load_torque"], row["brake"]), expected, row["time"])
+
+    def test_scenes_agree(self):
+        """The same profile on the full ring and on the response surface: the torsion and the joint's torque."""
+        self.write("p.csv", "time,motor_torque,load_torque,brake\n0,0.5,0,0\n0.1,0.7,30,0\n0.3,0.2,30,0\n"
+                            "0.4,0,30,1\n0.7,-0.6,-20,0\n")
+        series = {}
+        for scene in ["full_ring", "auto"]:
+            done = self.run_tool("simulate", "--profile", "p.csv", "--duration", 1.0, "--out", f"{scene}.csv",
+                                 "--set", f"solver.scene={scene}", environment={"XDG_CACHE_HOME": self.directory})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("building the response surface" in done.stderr, scene == "auto", done.stderr)
+            series[scene] = self.rows(f"{scene}.csv")
+        self.assertNotEqual(series["full_ring"], series["auto"])
+
+        def difference(value):
+            pairs = zip(series["full_ring"], series["auto"])
+            return (sum((value(full) - value(auto)) ** 2 for full, auto in pairs) / len(series["auto"])) ** 0.5
+
+        arc_second = math.pi / 180 / 3600
+        self.assertLess(difference(lambda row: row["motor_angle"] / 101 - row["output_angle"]), 0.5 * arc_second)
+        self.assertLess(difference(lambda row: row["joint_torque"]), 1e-3 * 108)
 
     def test_duration_defaults_to_the_profiles(self):
         self.write("p.csv", "time,motor_torque\n0,0.1\n0.05,0.2\n")

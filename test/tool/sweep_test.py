@@ -165,6 +165,20 @@ record:
             for name, column in file["all"].items():
                 numpy.testing.assert_array_equal(column[:], simulated[name])
 
+    def test_the_recorded_torque_grows_as_the_grease_gets_colder(self):
+        plan = PLAN.replace("[10.0, 40.0]", "[0.0, 20.0, 40.0, 60.0]").replace("{log_uniform: [0.5, 2.0]}", "1.0")
+        plan = plan.replace("repeats: 3", "repeats: 1").replace("duration: 0.06", "duration: 0.3")
+        plan = plan.replace("{sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}",
+                            "{constant: 1.0}").replace("start: 0.01", "start: 0.2")
+        self.write("plan.yaml", plan)
+        self.sweep("a")
+        torques = []
+        for row in self.index("a"):
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                torques.append(float(numpy.mean(file["signals/motor_torque_reading"])))
+        self.assertEqual(torques, sorted(torques, reverse=True))
+        self.assertGreater(torques[0], 1.3 * torques[-1])
+
     def test_what_is_drawn_depends_on_seed_name_and_run_alone(self):
         def drawn(plan):
             self.write("other.yaml", plan)
@@ -257,7 +271,7 @@ record:
         self.assertFalse(os.path.exists(self.path("a")))
 
     def test_the_shipped_plans_are_right(self):
-        for name in ["small.yaml", "fault_grid.yaml"]:
+        for name in ["small.yaml", "temperature_grid.yaml"]:
             rows = self.sweep("unused", "--list", plan=os.path.join(tool.CHECKOUT, "plans", name)).stdout.splitlines()
             self.assertGreater(len(rows), 2)
 

@@ -25,13 +25,16 @@ public:
   void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   /// Force of the couple that turns segment i back, at its ends (thesis eq. 5.52) [N].
-  double bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept;
+  double bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept
+  {
+    const double next = law_ == BendingLaw::ABSOLUTE ? 0.0 : forces.bending_moment[shape.next(i)];
+    return (forces.bending_moment[i] - next) / shape.lengths[i];
+  }
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
 
 private:
   void addMoments(const RingShape& shape, RingForces& forces) const noexcept;
-  double couple(const RingForces& forces, int i, int next) const noexcept;
   void addTurnTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
   void addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
 

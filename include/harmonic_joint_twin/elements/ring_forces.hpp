@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/elements/flank_contact.hpp"
+
 namespace hjt
 {
 /// Sum of what the elements do, minus the gradient of the stored energy, with the contacts it came from.
@@ -20,6 +22,8 @@ struct RingForces
     , contact_normal(2 * teeth)
     , flank_force(teeth)
     , meshed(teeth)
+    , flanks(teeth)
+    , pressed(teeth)
     , bending_moment(teeth)
     , segment(2 * teeth)
   {
@@ -44,6 +48,7 @@ struct RingForces
     teeth.setZero();
     flank_force.setZero();
     std::fill(meshed.begin(), meshed.end(), 0);
+    flanks.clear();
     wave_generator_torque = 0.0;
     output_torque = 0.0;
     energy = 0.0;
@@ -59,6 +64,8 @@ struct RingForces
   Eigen::VectorXd contact_normal;     ///< 2 N, its direction, outward [-]
   Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
   std::vector<char> meshed;           ///< N, tooth touches a flank [-]
+  FlankContacts flanks;               ///< the teeth that touch, with what the mesh found
+  Eigen::VectorXd pressed;            ///< N, depth of each tooth in the nearer flank, across; touching if > 0 [m]
   Eigen::VectorXd
       bending_moment;       ///< N, moment of the rim's bending at each tooth (absolute law: on each segment) [N.m]
   double cup_rotation{};    ///< mean rotation of the tooth points [rad]
@@ -98,6 +105,38 @@ struct ToothBlocks
   Eigen::VectorXd xx;
   Eigen::VectorXd xy;
   Eigen::VectorXd yx;
+  Eigen::VectorXd yy;
+};
+
+/// The same for symmetric blocks.
+struct SymmetricBlocks
+{
+  explicit SymmetricBlocks(int teeth) : xx(teeth), xy(teeth), yy(teeth) {}
+
+  void setZero() noexcept
+  {
+    xx.setZero();
+    xy.setZero();
+    yy.setZero();
+  }
+
+  /// Of a symmetric block.
+  void add(int i, const Block2& block) noexcept
+  {
+    xx[i] += block(0, 0);
+    xy[i] += block(0, 1);
+    yy[i] += block(1, 1);
+  }
+
+  Block2 at(int i) const noexcept
+  {
+    Block2 block;
+    block << xx[i], xy[i], xy[i], yy[i];
+    return block;
+  }
+
+  Eigen::VectorXd xx;
+  Eigen::VectorXd xy;
   Eigen::VectorXd yy;
 };
 
@@ -141,16 +180,10 @@ struct RingTangent
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  /// Adds the symmetric blocks of `segment` (xx, xy, yy): springs between teeth i and i+1.
-  void addSegments() noexcept
-  {
-    addSpring(segment.xx, diagonal.xx, next.xx);
-    addSpring(segment.xy, diagonal.xy, next.xy);
-    addSpring(segment.xy, diagonal.yx, next.yx);
-    addSpring(segment.yy, diagonal.yy, next.yy);
-  }
+  /// Adds the blocks of `segment`: springs between teeth i and i+1.
+  void addSegments() noexcept;
 
-  ToothBlocks diagonal;               ///< at (i, i); symmetric
+  SymmetricBlocks diagonal;           ///< at (i, i)
   ToothBlocks next;                   ///< at (i, i+1), cyclic
   ToothBlocks second;                 ///< at (i, i+2), cyclic
   Eigen::VectorXd cup_direction;      ///< 2 N, gradient of the mean rotation [rad/m]
@@ -159,16 +192,6 @@ struct RingTangent
   Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
-  ToothBlocks segment;                ///< what an element does between teeth i and i+1, before `addSegments`
-
-private:
-  static void addSpring(const Eigen::VectorXd& spring, Eigen::VectorXd& at_tooth, Eigen::VectorXd& to_next) noexcept
-  {
-    const Eigen::Index n = spring.size();
-    at_tooth[0] += spring[n - 1];
-    at_tooth.tail(n - 1) += spring.head(n - 1);
-    at_tooth += spring;
-    to_next -= spring;
-  }
+  SymmetricBlocks segment;            ///< what an element does between teeth i and i+1, before `addSegments`
 };
 }  // namespace hjt

@@ -28,9 +28,9 @@ class MeshFriction
 public:
   explicit MeshFriction(const MeshParameters& parameters) : parameters_(parameters) {}
 
-  /// One term per loaded tooth. `speeds`: motor and output [rad/s], for the Stribeck curve.
-  void addTerms(const ToothMesh& mesh, const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                const RingRates& rates, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
+  /// One term per loaded tooth. `forces`: of the same shape; `speeds`: motor and output [rad/s], for the Stribeck curve.
+  void addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces, const RingRates& rates,
+                const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
   /// At a sliding speed along the flank [m/s]: the Stribeck curve [-].
   double coefficient(double sliding_speed) const noexcept

@@ -40,9 +40,8 @@ public:
   ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
 
   void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
-  /// `forces`: of the same shape and position.
-  void addTangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-                  RingTangent& tangent) const noexcept;
+  /// `forces`: of the same shape.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   /// Pairs every tooth with the space nearest to its angle at rest.
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
@@ -53,16 +52,14 @@ public:
 
   ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
 
-  /// Sliding of tooth i along the loaded flank [m/s] for speeds of the ring's points and of the output.
-  double slidingSpeed(const RingShape& shape, const DrivePosition& position, int i, const Eigen::VectorXd& speeds,
-                      double output_speed, bool leading) const noexcept;
+  /// Sliding of a tooth that touches along its loaded flank [m/s] for speeds of the ring's points and of the output.
+  double slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,
+                      double output_speed) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
   Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
 
 private:
-  struct Engagement;
-  struct Law;
   struct Space
   {
     double axis_x;  // unit vector at output angle 0
@@ -70,12 +67,13 @@ private:
     double across;  // errors of manufacture, see ManufactureErrors [m]
     double along;
   };
-  Engagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
-  bool touches(const Engagement& tooth, int i) const noexcept;
-  Law law(const Engagement& tooth, int i) const noexcept;
-  bool outOfReach(const RingShape& shape, int i) const noexcept;
+  ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
+  double pressedBy(const ToothEngagement& tooth, int i) const noexcept;
+  FlankLaw law(const ToothEngagement& tooth, int i) const noexcept;
+  void findPressed(const RingShape& shape, double cos_output, double sin_output,
+                   Eigen::VectorXd& pressed) const noexcept;
+  double pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept;
   double firstSpace(double output_angle) const noexcept;
-  int spaceAtRest(double first, int i, int teeth) const noexcept;
 
   int spaces_;
   double mid_height_;

@@ -35,12 +35,12 @@ public:
 
   HalfClearance at(double zeta) const noexcept
   {
-    if (cubics_.empty())
-    {
-      return { clearance_ + (full_engagement_ - zeta) * slope_, slope_, 0.0, cosine_ };
-    }
-    return tabled(zeta);
+    return straight() ? HalfClearance{ straightAt(zeta), slope_, 0.0, cosine_ } : tabled(zeta);
   }
+
+  /// Closed form: the half clearance is `straightAt`.
+  bool straight() const noexcept { return cubics_.empty(); }
+  double straightAt(double zeta) const noexcept { return clearance_ + (full_engagement_ - zeta) * slope_; }
 
 private:
   HalfClearance tabled(double zeta) const noexcept;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Before a function whose loops over the teeth vectorise: compiled for every x86-64 and once more for AVX2; the
+/// Before a function whose loops over the teeth vectorise: compiled for every x86-64, for FMA and for AVX-512; the
 /// processor decides when the library is loaded. Elsewhere it says nothing.
 #if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__)
-#define HJT_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#define HJT_VECTOR_CLONES __attribute__((target_clones("avx512f", "fma", "default")))
 #else
 #define HJT_VECTOR_CLONES
 #endif

@@ -64,13 +64,13 @@ struct JointModel
   }
 
   /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.
-  /// `follow`: output speed over motor speed at constant load, from the ring's own stiffness [-].
-  void friction(const RingShape& shape, const DrivePosition& position, const RingForces& forces, const RingRates& rates,
-                double follow, const Eigen::Vector2d& speeds, const JointInputs& inputs, Eigen::VectorXd& running,
+  /// `follow`: output speed over motor speed at constant load, from the ring's own stiffness [-]; `viscosity`: of the
+  /// bearing's grease [m^2/s].
+  void friction(const RingShape& shape, const RingForces& forces, const RingRates& rates, double follow,
+                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity, Eigen::VectorXd& running,
                 JointFriction& friction) const noexcept;
 
-  /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-];
-  /// `viscosity`: of the bearing's grease [m^2/s].
+  /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
                 const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
                 JointFriction& friction) const noexcept;

@@ -24,9 +24,8 @@ struct RingModel
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 
-  /// Hessian of the stored energy; `forces` of the same shape and position.
-  void tangent(const RingShape& shape, const DrivePosition& position, const RingForces& forces,
-               RingTangent& tangent) const noexcept;
+  /// Hessian of the stored energy; `forces` of the same shape.
+  void tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
   /// The ring at rest, every tooth paired with its nearest space.
   RingShape restShape(const DrivePosition& position) const;

@@ -115,6 +115,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
         "sum of the ball forces with which the bearing's own outer race, bent to the ellipse, sits on the balls");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
+  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
+  visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
+        "diameter of a ball, below pitch_diameter");
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         "kinematic viscosity of the grease's base oil at viscosity_temperature");
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
@@ -188,6 +191,71 @@ void visitFields(P& p, Visitor&& visit)
   visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
         "time constant over which efficiency and stiffness forget");
 
+  visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
+        "of the readings the twin's own indicators are made of; the nearest that divides solver.rate");
+  visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
+        "motor turns at steady speed that make one window");
+  visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
+        "a window ends after this even with fewer turns");
+  visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
+        "motor speed below which the joint is taken to stand");
+  visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
+        "speed is steady while it is within this share of its mean over half a turn");
+  visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
+        "K1 is the stiffness at joint torques below this");
+  visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
+        "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round");
+  visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 3, 1000 },
+        "windows at one operating point the healthy reference is learned from");
+  visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
+        "smallest spread of an indicator, as a share of its healthy mean");
+  visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
+        "chance that a healthy window shows any indicator beyond its threshold");
+  visit("indicators.confirm_windows", "-", p.indicators.confirm_windows, Range{ 1, 1000 },
+        "windows in a row that must agree before the level changes");
+  visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
+        "a deviation of so many times the threshold is an error, not a warning");
+  visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
+        "rated output torque of the catalogue, at which the bearing's lives are given");
+  visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
+        "rated motor speed of the catalogue, at which the bearing's lives are given");
+  visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which 10 % of the wave generator's bearings have failed");
+  visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
+        "hours at rated torque and speed by which half of them have failed; more than bearing_l10");
+  visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
+        "share of the bearing's life, in turns, from its first spall to the end of use");
+  visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
+        "standard deviation of its logarithm from drive to drive");
+  visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, "length of the flexspline's teeth");
+  visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 }, "of the flexspline");
+  visit("life.flank_wear_coefficient", "1/Pa", p.life.flank_wear_coefficient, Range{ 0.0, 1e-12 },
+        "Archard's k of the tooth flanks in fresh grease: worn volume by force times sliding");
+  visit("life.interface_wear_coefficient", "1/Pa", p.life.interface_wear_coefficient, Range{ 0.0, 1e-12 },
+        "the same between the bearing's outer race and the flexspline");
+  visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
+        "standard deviation of the logarithm of both coefficients from drive to drive");
+  visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off both flanks of a pair at which the drive is at its end");
+  visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
+        "depth worn off race and rim at which the drive is at its end");
+  visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
+        "turns of the motor between two changes of grease at grease_temperature");
+  visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
+        "temperature grease_turns holds for");
+  visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
+        "by so much warmer the grease lasts half as long");
+  visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
+        "wear in grease due for a change over wear in fresh grease");
+  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, "deepest flaw of a new tooth root");
+  visit("life.stress_concentration", "-", p.life.stress_concentration, Range{ 1.0, 10.0 },
+        "stress at the tooth root over that of the smooth rim");
+  visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
+        "C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)");
+  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
+  visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
+        "range of the stress intensity below which a flaw does not grow");
+
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         "a torque command older than this counts as zero");
   visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
@@ -201,6 +269,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         "must divide solver.rate");
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
 
   visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
         "live: a cycle of the loop that simulates an instant later than this after it was due has missed its deadline");

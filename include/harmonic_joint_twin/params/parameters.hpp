@@ -122,6 +122,8 @@ struct BearingParameters
   double load_factor{};
   double race_preload{};
   double pitch_diameter{};
+  int balls{};
+  double ball_diameter{};
   double viscosity{};
   double viscosity_temperature{};
   double viscosity_slope{};
@@ -193,10 +195,54 @@ struct SensorParameters
   int noise_seed{};
 };
 
+/// Health indicators out of the drive's own signals, and what is made of them.
+struct IndicatorParameters
+{
+  double sample_rate{};
+  double window_turns{};
+  double window_time{};
+  double least_speed{};
+  double speed_change{};
+  double stiffness_torque{};
+  double lost_motion_torque{};
+  int baseline_windows{};
+  double least_spread{};
+  double false_alarm_rate{};
+  int confirm_windows{};
+  double error_factor{};
+};
+
 struct HealthParameters
 {
   double stiffness_torque_span{};
   double averaging_time{};
+};
+
+/// How fast the drive ages, and when it is worn out (health/ageing_laws.hpp).
+struct LifeParameters
+{
+  double rated_torque{};
+  double rated_speed{};
+  double bearing_l10{};
+  double bearing_l50{};
+  double spall_growth{};
+  double spall_spread{};
+  double face_width{};
+  double elastic_modulus{};
+  double flank_wear_coefficient{};
+  double interface_wear_coefficient{};
+  double wear_spread{};
+  double flank_wear_limit{};
+  double interface_wear_limit{};
+  double grease_turns{};
+  double grease_temperature{};
+  double grease_halving{};
+  double grease_wear_factor{};
+  double flaw_depth{};
+  double stress_concentration{};
+  double crack_coefficient{};
+  double crack_exponent{};
+  double crack_threshold{};
 };
 
 struct InputParameters
@@ -213,6 +259,7 @@ struct PublishParameters
   double encoders_rate{};
   double contact_forces_rate{};
   double health_rate{};
+  double indicators_rate{};
 };
 
 struct RealtimeParameters
@@ -246,6 +293,8 @@ struct Parameters
   SolverParameters solver;
   SensorParameters sensors;
   HealthParameters health;
+  IndicatorParameters indicators;
+  LifeParameters life;
   InputParameters input;
   PublishParameters publish;
   RealtimeParameters realtime;

@@ -13,6 +13,7 @@ namespace hjt
 class BagRecorder
 {
 public:
+  /// Indicators and assessment are only written if the twin watches its signals.
   /// `joint_namespace`: of the node, e.g. "/joint_twin".
   BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
 
@@ -28,5 +29,7 @@ private:
   harmonic_joint_twin::Encoders encoders_;
   harmonic_joint_twin::ContactForces contact_forces_;
   harmonic_joint_twin::Health health_;
+  harmonic_joint_twin::Indicators indicators_;
+  harmonic_joint_twin::Assessment assessment_;
 };
 }  // namespace hjt

@@ -5,9 +5,11 @@
 
 #include <sensor_msgs/JointState.h>
 
+#include "harmonic_joint_twin/Assessment.h"
 #include "harmonic_joint_twin/ContactForces.h"
 #include "harmonic_joint_twin/Encoders.h"
 #include "harmonic_joint_twin/Health.h"
+#include "harmonic_joint_twin/Indicators.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
 
 namespace hjt
@@ -41,6 +43,17 @@ void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
 
 harmonic_joint_twin::Health makeHealth(const JointNames& names);
 void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmonic_joint_twin::Health& message) noexcept;
+
+harmonic_joint_twin::Indicators makeIndicators(const JointNames& names);
+void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
+
+constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closing zero included
+
+/// "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." into `text`; returns the length. Empty at level OK.
+std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
+
+harmonic_joint_twin::Assessment makeAssessment(const JointNames& names);
+void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
 
 /// What was found in a stamped torque message.
 enum class EffortStatus

@@ -26,7 +26,7 @@ struct Verdict
   std::string text;
 };
 
-/// Tells /diagnostics how the drive, the input and the timing are: about once a second by the wall clock, and at once
+/// Tells /diagnostics how the drive, the input, the timing and the health are: about once a second by the wall clock, and at once
 /// when a level changes. Also logs, once per jump, that the clock went back.
 class Diagnostics
 {
@@ -51,9 +51,11 @@ private:
   Verdict judgeDrive() const;
   Verdict judgeInput() const;
   Verdict judgeTiming() const;
+  Verdict judgeHealth() const;
   void reportDrive(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void reportInput(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void reportTiming(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportHealth(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   const TwinLoop& loop_;
   const RealtimeState& realtime_;
@@ -63,7 +65,7 @@ private:
   const double command_timeout_;
   const double deadline_;
   Snapshot snapshot_;
-  std::array<Verdict, 3> verdicts_;  ///< drive, input, timing
+  std::array<Verdict, 4> verdicts_;  ///< drive, input, timing, health
   RecentEvents solver_failures_;
   RecentEvents step_cuts_;
   RecentEvents jumps_;

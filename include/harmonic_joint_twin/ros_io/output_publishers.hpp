@@ -42,6 +42,8 @@ private:
   OutputChannel<harmonic_joint_twin::Encoders> encoders_;
   OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;
   OutputChannel<harmonic_joint_twin::Health> health_;
+  OutputChannel<harmonic_joint_twin::Indicators> indicators_;
+  OutputChannel<harmonic_joint_twin::Assessment> assessment_;
   std::atomic<bool> stopping_{ false };
   std::thread thread_;
 };

@@ -15,9 +15,11 @@ enum class Output : std::size_t
   JOINT_STATES,
   ENCODERS,
   CONTACT_FORCES,
-  HEALTH
+  HEALTH,
+  INDICATORS,
+  ASSESSMENT
 };
-constexpr std::size_t OUTPUT_COUNT = 4;
+constexpr std::size_t OUTPUT_COUNT = 6;
 
 /// Which topic is due at which simulated instant. Ask after every step of the twin.
 ///

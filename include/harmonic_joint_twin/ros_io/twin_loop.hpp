@@ -69,6 +69,7 @@ struct LoopStatus
   Stamp last_command{};              ///< latest stamp of one [ns]
   JointOutputs outputs;
   TwinCounters counters;
+  Assessment assessment;
   LoopTiming timing;
 };
 

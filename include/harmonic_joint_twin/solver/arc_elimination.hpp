@@ -19,6 +19,8 @@ constexpr int BEFORE_ENTRIES = BORDER * (BORDER + 1) / 2;
 constexpr int AFTER_ENTRIES = 10;
 constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
+constexpr int CORNER = 4 * COUNT;  ///< unknowns of the separators
+
 /// Where the arcs lie. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
 struct Layout
 {
@@ -44,24 +46,40 @@ struct Sums
   double* between;  ///< BETWEEN_ENTRIES: four rows of the separator after the arc by BORDER columns
 };
 
+/// Of the symmetric matrix of the separators; the unit triangle's diagonal and what is beyond it are left out, as zeros.
+struct alignas(32) CornerFactors
+{
+  double upper[CORNER][CORNER];
+  double lower[CORNER][CORNER];  ///< its transpose
+  double inverse_pivots[CORNER];
+};
+
 /// Code for one kind of processor.
 struct Kernels
 {
   void (*factor)(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums);
 
-  /// Eliminates right-hand sides `b` (2 rows a tooth, [0], [1], [2] for 1, 2, 3 columns, row-major).
+  /// Eliminates right-hand sides `b` (a pointer each to 2 rows a tooth; [0], [1], [2] for 1, 2, 3 of them).
   /// `rows`: 2 entries a step and column. `before`: BORDER entries a column, `after`: 4 entries a column; to add.
-  void (*forward[3])(const Layout& layout, const double* factors, const double* b, double* rows, double* before,
+  void (*forward[3])(const Layout& layout, const double* factors, const double* const* b, double* rows, double* before,
                      double* after);
 
   /// Solutions of the arcs from those of the separators. `before`, `after`: as above, the values themselves.
   void (*backward[3])(const Layout& layout, const double* factors, const double* rows, const double* before,
-                      const double* after, double* x);
+                      const double* after, double* const* x);
+
+  /// U^T D U of the symmetric matrix of the separators, CORNER x CORNER, of which the upper triangle is read and
+  /// destroyed. Without pivoting: false if a pivot is not positive, which it is while the matrix is positive definite.
+  bool (*factor_corner)(double* matrix, CornerFactors& factors);
+
+  /// Solves for CORNER unknowns, in place.
+  void (*solve_corner)(const CornerFactors& factors, double* b);
 };
 
 extern const Kernels BASELINE;  ///< for every processor of the architecture
 #ifdef HJT_AVX2
-extern const Kernels AVX2;  ///< x86-64 with AVX2 and FMA
+extern const Kernels AVX2;    ///< x86-64 with AVX2 and FMA
+extern const Kernels AVX512;  ///< with AVX-512 VL and DQ: the same vectors, twice the registers
 #endif
 
 /// The fastest that this processor can run.

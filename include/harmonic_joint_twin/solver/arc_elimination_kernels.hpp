@@ -80,8 +80,11 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
-inline void factor(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums)
+inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
+  // Copies: what is stored through a vector's pointer might else be them.
+  const Layout layout = where;
+  const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);
   // What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
   Lanes d_xx{}, d_xy{}, d_yy{};
@@ -224,18 +227,27 @@ inline void factor(const Layout& layout, const Tangent& tangent, double* factors
 }
 
 template <int COLUMNS>
-void forward(const Layout& layout, const double* factors, const double* b, double* rows, double* before, double* after)
+void forward(const Layout& where, const double* factors, const double* const* columns, double* rows, double* before,
+             double* after)
 {
+  const Layout layout = where;
+  const double* b[COLUMNS];
+#pragma GCC unroll 8
+  for (int c = 0; c < COLUMNS; ++c)
+  {
+    b[c] = columns[c];
+  }
   Lanes px[COLUMNS]{}, py[COLUMNS]{}, qx[COLUMNS]{}, qy[COLUMNS]{};
   Lanes sum[BORDER][COLUMNS]{};
   const Factors* f = reinterpret_cast<const Factors*>(factors);
   Lanes* row = lanes(rows);
   for (int t = 0; t < layout.steps; ++t, ++f, row += 2 * COLUMNS)
   {
+#pragma GCC unroll 8
     for (int c = 0; c < COLUMNS; ++c)
     {
-      Lanes x = gather(layout, b + 2 * COLUMNS * t + c, 2 * COLUMNS);
-      Lanes y = gather(layout, b + 2 * COLUMNS * t + COLUMNS + c, 2 * COLUMNS);
+      Lanes x = gather(layout, b[c] + 2 * t, 2);
+      Lanes y = gather(layout, b[c] + 2 * t + 1, 2);
       if (t == 0)
       {
         x = patch(layout, x, 0.0);
@@ -249,14 +261,17 @@ void forward(const Layout& layout, const double* factors, const double* b, doubl
       py[c] = qy[c] - (f->next_xy * x + f->next_yy * y);
       qx[c] = -(f->second_xx * x + f->second_yx * y);
       qy[c] = -(f->second_xy * x + f->second_yy * y);
+#pragma GCC unroll 8
       for (int e = 0; e < BORDER; ++e)
       {
         sum[e][c] -= f->border_x[e] * x + f->border_y[e] * y;
       }
     }
   }
+#pragma GCC unroll 8
   for (int c = 0; c < COLUMNS; ++c)
   {
+#pragma GCC unroll 8
     for (int e = 0; e < BORDER; ++e)
     {
       lanes(before)[BORDER * c + e] = sum[e][c];
@@ -269,10 +284,18 @@ void forward(const Layout& layout, const double* factors, const double* b, doubl
 }
 
 template <int COLUMNS>
-void backward(const Layout& layout, const double* factors, const double* rows, const double* before,
-              const double* after, double* x)
+void backward(const Layout& where, const double* factors, const double* rows, const double* before, const double* after,
+              double* const* columns)
 {
+  const Layout layout = where;
+  double* x[COLUMNS];
+#pragma GCC unroll 8
+  for (int c = 0; c < COLUMNS; ++c)
+  {
+    x[c] = columns[c];
+  }
   Lanes px[COLUMNS], py[COLUMNS], qx[COLUMNS], qy[COLUMNS];
+#pragma GCC unroll 8
   for (int c = 0; c < COLUMNS; ++c)
   {
     px[c] = lanes(after)[4 * c];
@@ -286,41 +309,108 @@ void backward(const Layout& layout, const double* factors, const double* rows, c
   {
     --f;
     row -= 2 * COLUMNS;
+#pragma GCC unroll 8
     for (int c = 0; c < COLUMNS; ++c)
     {
       const Lanes rx = row[2 * c];
       const Lanes ry = row[2 * c + 1];
       Lanes vx = f->inverse_xx * rx + f->inverse_xy * ry;
       Lanes vy = f->inverse_xy * rx + f->inverse_yy * ry;
-      vx -= f->next_xx * px[c] + f->next_xy * py[c];
-      vy -= f->next_yx * px[c] + f->next_yy * py[c];
-      vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
-      vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
+#pragma GCC unroll 8
       for (int e = 0; e < BORDER; ++e)
       {
         vx -= f->border_x[e] * lanes(before)[BORDER * c + e];
         vy -= f->border_y[e] * lanes(before)[BORDER * c + e];
       }
+      // What the next step waits for comes last.
+      vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
+      vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
+      vx -= f->next_xx * px[c] + f->next_xy * py[c];
+      vy -= f->next_yx * px[c] + f->next_yy * py[c];
       qx[c] = px[c];
       qy[c] = py[c];
       px[c] = vx;
       py[c] = vy;
+#pragma GCC unroll 8
       for (int k = 0; k < COUNT; ++k)
       {
         if (t > 0 || !layout.idle[k])
         {
-          double* at = x + 2 * COLUMNS * (layout.first[k] + t) + c;
+          double* at = x[c] + 2 * (layout.first[k] + t);
           at[0] = vx[k];
-          at[COLUMNS] = vy[k];
+          at[1] = vy[k];
         }
       }
     }
   }
 }
 
+inline bool factorCorner(double* matrix, CornerFactors& factors)
+{
+  constexpr int LANES = CORNER / COUNT;  // a row
+  bool positive = true;
+#pragma GCC unroll 16
+  for (int k = 0; k < CORNER; ++k)
+  {
+    const double* row = matrix + CORNER * k;
+    const double pivot = row[k];
+    const double inverse = 1.0 / pivot;
+    positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
+    factors.inverse_pivots[k] = inverse;
+    for (int i = 0; i < CORNER; ++i)
+    {
+      const double share = i > k ? row[i] * inverse : 0.0;
+      factors.upper[k][i] = share;
+      factors.lower[i][k] = share;
+    }
+    for (int i = k + 1; i < CORNER; ++i)
+    {
+      const double share = factors.upper[k][i];
+#pragma GCC unroll 16
+      for (int v = i / COUNT; v < LANES; ++v)
+      {
+        lanes(matrix + CORNER * i)[v] -= share * lanes(row)[v];
+      }
+    }
+  }
+  return positive;
+}
+
+inline void solveCorner(const CornerFactors& factors, double* b)
+{
+  constexpr int LANES = CORNER / COUNT;
+#pragma GCC unroll 16
+  for (int k = 0; k < CORNER; ++k)
+  {
+    const double value = b[k];
+#pragma GCC unroll 16
+    for (int v = k / COUNT; v < LANES; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.upper[k])[v];
+    }
+  }
+#pragma GCC unroll 16
+  for (int v = 0; v < LANES; ++v)
+  {
+    lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
+  }
+#pragma GCC unroll 16
+  for (int k = CORNER - 1; k > 0; --k)
+  {
+    const double value = b[k];
+#pragma GCC unroll 16
+    for (int v = 0; v <= k / COUNT; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.lower[k])[v];
+    }
+  }
+}
+
 constexpr Kernels kernels()
 {
-  return { factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> } };
+  return {
+    factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> }, factorCorner, solveCorner
+  };
 }
 }  // namespace
 }  // namespace arcs

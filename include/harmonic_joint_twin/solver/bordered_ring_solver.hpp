@@ -23,7 +23,7 @@ public:
   void solve(Eigen::VectorXd& b) noexcept;
 
 private:
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
   CyclicSolver teeth_;
   std::array<bool, 2> held_{};

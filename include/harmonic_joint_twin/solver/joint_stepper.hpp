@@ -16,6 +16,8 @@ public:
   /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
   /// after four swings [rad].
   static constexpr double MAX_SWING_PHASE = 0.1;
+  static constexpr double REST_SPEED = 1e-8;  ///< of the output, 0.002 seconds of arc a second [rad/s]
+  static constexpr double REST_TIME = 0.1;    ///< [s]
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
   JointStepper(const Parameters& parameters, const JointModel& model);
@@ -24,10 +26,17 @@ public:
   bool reset() noexcept;
 
   /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
+  ///
+  /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved slower
+  /// than regularised friction creeps, or than counts. Then nothing is solved.
   bool step(const JointInputs& inputs) noexcept;
 
   /// See JointDynamics.
-  void useSurface(const ResponseSurface* surface) noexcept { dynamics_.useSurface(surface); }
+  void useSurface(const ResponseSurface* surface) noexcept
+  {
+    rest_steps_ = 0;
+    dynamics_.useSurface(surface);
+  }
   SolveStatus bringRing() noexcept { return dynamics_.onSurface() ? dynamics_.bringRing() : SolveStatus{}; }
 
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
@@ -45,10 +54,12 @@ private:
   using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
                                                            boost::numeric::odeint::vector_space_algebra>;
   bool stepRungeKutta() noexcept;
+  bool staysAtRest(const JointInputs& inputs) const noexcept;
   void checkStep(const Parameters& parameters);
 
   StepperKind kind_;
-  double step_;  // [s]
+  int rest_steps_{};  // in a row at whose end the joint was at rest
+  double step_;       // [s]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
   RungeKutta4 runge_kutta_;

@@ -80,8 +80,6 @@ public:
   }
 
 private:
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-
   /// All that a failed move must bring back.
   struct Equilibrium
   {
@@ -105,9 +103,12 @@ private:
   void turnSpaces(int pitches) noexcept;
   void shift(int pitches) noexcept;
   void predict(const DrivePosition& target) noexcept;
+  void guess(const DrivePosition& target) noexcept;
+  void forgetGuess() noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
   bool refactor() noexcept;
   bool slopesChanged() const noexcept;
+  void solveStep() noexcept;
   bool searchLine(double residual) noexcept;
   double rounding() noexcept;
   bool stepDownhill() noexcept;
@@ -131,9 +132,17 @@ private:
   Eigen::VectorXd start_points_;
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
-  std::vector<char> factored_contacts_;  // which teeth touched when the tangent was factored
+  std::vector<char> factored_meshed_;  // when the tangent was factored
+  Eigen::VectorXd factored_depth_;     // of the wave generator's contact then
+  // Of the last move, where it has led to the present state.
+  bool guessed_{ false };
+  Eigen::VectorXd guess_;        // without what the guess before was off by
+  Eigen::VectorXd guess_error_;  // of the guess before
   Eigen::VectorXd step_;
   Eigen::VectorXd start_forces_;
-  Columns columns_;
+  // Of the last factored tangent, once known.
+  Eigen::VectorXd by_wave_generator_;
+  Eigen::VectorXd by_output_;
+  bool rates_known_{ false };
 };
 }  // namespace hjt

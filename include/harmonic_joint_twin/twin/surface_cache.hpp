@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "harmonic_joint_twin/model/joint_model.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/response_surface.hpp"
 
@@ -40,24 +41,38 @@ private:
 /// Where response surfaces are kept, and whom to tell.
 struct SurfaceSource
 {
-  std::string cache_directory;                     ///< made if missing; empty: nothing is kept
-  std::function<void(double)> progress;            ///< of building, 0 ... 1
-  std::function<void(const std::string&)> notice;  ///< why there is no surface, or why it could not be kept
-  std::shared_ptr<SurfacePool> pool;               ///< asked before the cache; may be none
+  std::string cache_directory;                       ///< made if missing; empty: nothing is kept
+  std::function<void(double)> progress{};            ///< of building, 0 ... 1
+  std::function<void(const std::string&)> notice{};  ///< why there is no surface, or why it could not be kept
+  std::shared_ptr<SurfacePool> pool{};               ///< asked before the cache; may be none
+  /// The twin does not wait for it but solves the full ring until it is there. From when on the surface is used then depends
+  /// on how long that takes. `progress` and `notice` are called from another thread.
+  bool background{};
 };
 
 /// $XDG_CACHE_HOME/harmonic_joint_twin, or ~/.cache/harmonic_joint_twin; empty if there is no home.
 std::string surfaceCacheDirectory();
 
-/// The surface of these parameters: from the cache, or built and put there. Nothing if the gear has none.
+/// A surface's tables.
+struct SurfaceTables
+{
+  SurfaceTable table;
+  DepartureTable departures;
+};
+
+/// The surface of a gear: from the cache, or built and put there. Nothing if the gear has none.
 ///
-/// A file counts only if it names this format, holds the very same parameters and its sum is right; else it is built
-/// anew and written over. Files appear whole or not at all.
-std::optional<SurfaceTable> obtainSurface(const Parameters& parameters, const SurfaceSource& source);
+/// `model`: the joint of these parameters with its faults; `faults`: names what they changed in it, for the cache; empty: none.
+/// Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as departure from one
+/// of equal teeth. A file counts only if it names this format, holds the very same parameters and faults and its sum is
+/// right; else it is built anew and written over. Files appear whole or not at all.
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
+                                           const std::string& faults, const SurfaceSource& source);
 
 /// The same, from the source's pool if it has one.
-SurfacePool::Surface sharedSurface(const Parameters& parameters, const SurfaceSource& source);
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
+                                   const SurfaceSource& source);
 
-/// File of these parameters within the directory.
+/// File of the surface of these parameters, all teeth equal, within the directory.
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);
 }  // namespace hjt

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/model/tooth_faults.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/sensors/joint_sensors.hpp"
@@ -104,8 +106,8 @@ struct TwinCounters
 class Twin
 {
 public:
-  /// Inserts the wave generator (some milliseconds). With solver.scene = auto and no faults also builds the response
-  /// surface (seconds) or takes it from the cache. @throws ParameterError if the parameters have no equilibrium.
+  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response
+  /// surface (seconds) or takes it from the cache, unless that is to be done beside the running twin. @throws ParameterError if the parameters have no equilibrium.
   explicit Twin(const Parameters& parameters, const ToothFaults& faults = {}, const SurfaceSource& surface_source = {});
   ~Twin();
   Twin(Twin&&) noexcept;
@@ -138,6 +140,13 @@ public:
   /// Fills the arrays at the current instant. On the response surface this solves the full ring, once.
   void toothForces(ToothForces& forces) const noexcept;
   HealthReport health() noexcept;  ///< at the current instant; clears "since last report" states
+
+  /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with
+  /// `reset`.
+  void watchSignals(bool on) noexcept;
+  bool watchesSignals() const noexcept;
+  const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
+  const Assessment& assessment() const noexcept;
 
 private:
   struct Impl;

@@ -48,6 +48,16 @@ const std::vector<Column>& columns()
   return COLUMNS;
 }
 
+std::string columnNames()
+{
+  std::string names;
+  for (const Column& column : columns())
+  {
+    names += (names.empty() ? "" : ", ") + std::string(column.name);
+  }
+  return names;
+}
+
 const Column* findColumn(const std::string& name)
 {
   const auto found = std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == name; });

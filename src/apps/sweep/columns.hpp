@@ -29,6 +29,8 @@ struct Column
 
 const std::vector<Column>& columns();
 
+std::string columnNames();  ///< all, for an error text
+
 /// None if there is no column of this name.
 const Column* findColumn(const std::string& name);
 }  // namespace hjt

@@ -10,8 +10,8 @@ DutyFeeder::DutyFeeder(const DutyCycle& duty, const Twin& twin)
   : duty_(duty), ratio_(nominalRatio(twin.parameters().gear))
 {
   const Parameters& p = twin.parameters();
-  inertia_ = p.motor.rotor_inertia + p.motor.wave_generator_inertia +
-             (p.output.circular_spline_inertia + p.output.load_inertia) / (ratio_ * ratio_);
+  motor_inertia_ = p.motor.rotor_inertia + p.motor.wave_generator_inertia;
+  inertia_ = motor_inertia_ + (p.output.circular_spline_inertia + p.output.load_inertia) / (ratio_ * ratio_);
 }
 
 void DutyFeeder::feed(Twin& twin, double time)
@@ -37,7 +37,8 @@ double DutyFeeder::controlTorque(const Twin& twin, double time)
   speed_reference_ = speed;
   last_time_ = time;
   const EncoderReadings read = twin.encoders();
-  return inertia_ * (ratio_ * duty_.speed->slope(time) + 2.0 * frequency * (ratio_ * speed - read.motor_velocity) +
-                     frequency * frequency * (ratio_ * angle_reference_ - read.motor_angle));
+  return inertia_ * ratio_ * duty_.speed->slope(time) +
+         motor_inertia_ * (2.0 * frequency * (ratio_ * speed - read.motor_velocity) +
+                           frequency * frequency * (ratio_ * angle_reference_ - read.motor_angle));
 }
 }  // namespace hjt

@@ -21,8 +21,10 @@ struct DutyCycle
 /// Gives the twin its commands of a duty cycle, step by step.
 ///
 /// The speed control works as a drive's does, from the motor encoder's readings:
-///        T = J a + 2 w J (v_r - v) + w^2 J (x_r - x)
+///        T = J a + 2 w J_m (v_r - v) + w^2 J_m (x_r - x)
 /// where  J    inertia of motor and joint, seen by the motor      [kg.m^2]
+///        J_m  of the motor alone: above the drive's resonance the joint stands still, and a gain for both would be
+///             too high there                                     [kg.m^2]
 ///        w    2 pi times the bandwidth                           [rad/s]
 ///        a, v_r, x_r   acceleration, speed, angle asked for; v, x as read   [rad/s^2], [rad/s], [rad], motor side
 class DutyFeeder
@@ -40,7 +42,8 @@ private:
 
   DutyCycle duty_;
   double ratio_;
-  double inertia_;  // [kg.m^2]
+  double motor_inertia_;  // [kg.m^2]
+  double inertia_;        // of motor and joint [kg.m^2]
   double last_load_{};
   double last_time_{};
   double angle_reference_{};  // joint side [rad]

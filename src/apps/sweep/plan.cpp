@@ -2,6 +2,7 @@
 #include "plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -23,6 +24,54 @@ const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy
 std::string fileOf(const PlanNode& csv)
 {
   return PlanValues().text(csv, "file");
+}
+
+std::string faultKey(std::size_t number, const std::string& key)
+{
+  return "faults." + std::to_string(number) + "." + key;
+}
+
+constexpr std::array<const char*, 4> FAULT_KEYS{ "kind", "severity", "place", "onset" };
+
+/// A class' list of faults in place of any other.
+void setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
+{
+  for (std::size_t i = 0; map.count(faultKey(i, "kind")) > 0; ++i)
+  {
+    for (const char* key : FAULT_KEYS)
+    {
+      map.erase(faultKey(i, key));
+    }
+  }
+  for (std::size_t i = 0; i < list.entries.size(); ++i)
+  {
+    const PlanNode& fault = list.entries[i].second;
+    allowOnly(fault, { FAULT_KEYS.begin(), FAULT_KEYS.end() });
+    for (const char* key : FAULT_KEYS)
+    {
+      const PlanNode& node = required(fault, key);
+      map[faultKey(i, key)] = { values.value(node).value, node.origin };
+    }
+  }
+}
+
+double numberOf(const ParameterValue& value)
+{
+  const auto* whole = std::get_if<std::int64_t>(&value.value);
+  return whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value.value);
+}
+
+/// The faults of checked settings.
+std::vector<FaultLabel> labelsOf(const ParameterMap& map)
+{
+  std::vector<FaultLabel> labels;
+  for (std::size_t i = 0; map.count(faultKey(i, "kind")) > 0; ++i)
+  {
+    labels.push_back(
+        { std::get<std::string>(map.at(faultKey(i, "kind")).value), numberOf(map.at(faultKey(i, "severity"))),
+          static_cast<int>(numberOf(map.at(faultKey(i, "place")))), numberOf(map.at(faultKey(i, "onset"))) });
+  }
+  return labels;
 }
 
 /// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
@@ -139,7 +188,7 @@ void Plan::readRecording()
       const Column* column = findColumn(values.text(list, key));
       if (column == nullptr)
       {
-        element.refuse("is no column; --columns lists them");
+        element.refuse("is no column; there are " + columnNames());
       }
       if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
       {
@@ -185,11 +234,7 @@ void Plan::makeBlocks()
   {
     for (const PlanNode::Entry& entry : required(root_, "classes", Kind::MAP).entries)
     {
-      const PlanNode& faults = required(*root_.find("classes"), entry.first, Kind::LIST);
-      if (!faults.entries.empty())
-      {
-        faults.refuse("lists faults, which this version does not simulate");
-      }
+      required(*root_.find("classes"), entry.first, Kind::LIST);
       classes.push_back(&entry);
     }
   }
@@ -261,12 +306,18 @@ RunSpec Plan::run(std::uint64_t number) const
   allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load" });
   spec.duty_name = values.text(*block.duty, "name");
   spec.duty = dutyOf(*block.duty, values);
-  spec.parameters = parametersOf(values, number);
+  ParameterMap map = settingsOf(values, number);
+  if (root_.find("classes") != nullptr)
+  {
+    setFaults(block.fault_class->second, values, map);
+  }
+  spec.parameters = parseParameters(map);
+  spec.faults = labelsOf(map);
   checkRates(spec.parameters);
   return spec;
 }
 
-Parameters Plan::parametersOf(const PlanValues& values, std::uint64_t number) const
+ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) const
 {
   ParameterMap map = base_;
   bool seeded = false;
@@ -283,7 +334,7 @@ Parameters Plan::parametersOf(const PlanValues& values, std::uint64_t number) co
   {
     map[NOISE_SEED].value = static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1);
   }
-  return parseParameters(map);
+  return map;
 }
 
 DutyCycle Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
@@ -301,7 +352,7 @@ DutyCycle Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
   else
   {
     cycle.speed = waveform(duty, "speed", "rad/s", values);
-    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 1000 });
+    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 });
   }
   if (duty.find("load") != nullptr)
   {

@@ -111,7 +111,7 @@ private:
   void readRecording();
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
-  Parameters parametersOf(const PlanValues& values, std::uint64_t number) const;
+  ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
   DutyCycle dutyOf(const PlanNode& duty, const PlanValues& values) const;
   std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
                                            const PlanValues& values) const;

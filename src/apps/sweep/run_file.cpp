@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "bag_run_file.hpp"
 #include "hdf5_run_file.hpp"
@@ -64,7 +65,7 @@ nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path)
 void writeTextFile(const std::string& path, const std::string& text)
 {
   // Shards may write the same file at once: each has a temporary of its own.
-  const std::string temporary = path + "." + std::to_string(getpid()) + ".part";
+  const std::string temporary = path + "." + std::to_string(std::random_device{}()) + ".part";
   std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();

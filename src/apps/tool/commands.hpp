@@ -25,12 +25,14 @@ void addInvariantsCommand(CLI::App& app, int& exit_code);
 void addManufactureCommand(CLI::App& app, int& exit_code);
 void addProfileCommand(CLI::App& app, int& exit_code);
 void addRatchetCommand(CLI::App& app, int& exit_code);
+void addLifeCommand(CLI::App& app, int& exit_code);
 void addTransientCommand(CLI::App& app, int& exit_code);
 void addDynamicsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addTrialCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
+void addIndicatorsCommand(CLI::App& app, int& exit_code);
 void addSweepCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 }  // namespace hjt

@@ -198,6 +198,7 @@ int replay(const ReplayOptions& options)
   refuseTakenTopics(bag, options);
   const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters, {}, surfaceSource());
+  twin.watchSignals(true);
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
   Replay run(bag, twin, found.inputs, options);

@@ -115,6 +115,7 @@ int simulate(const SimulateOptions& options)
   }
   else
   {
+    twin.watchSignals(true);
     BagWriter bag(options.out);
     BagRecorder recorder(twin, options.joint_namespace, bag);
     run(twin, profile, end, recorder);

@@ -11,6 +11,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "run_summary.hpp"
+#include "surface_source.hpp"
 #include "text_table.hpp"
 #include "torque_profile.hpp"
 #include "validators.hpp"
@@ -60,7 +61,7 @@ int trial(const TrialOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   TorqueProfile profile = TorqueProfile::fromFile(options.profile);
-  Twin twin(parameters, options.faults);
+  Twin twin(parameters, options.faults, surfaceSource());
   twin.reset(SIMULATION_EPOCH);
   const Stamp begin = twin.stamp();
   const Stamp end = begin + toStampLength(options.duration);

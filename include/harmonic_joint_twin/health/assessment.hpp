@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "harmonic_joint_twin/health/baseline.hpp"
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
+
+namespace hjt
+{
+/// As in diagnostic_msgs/DiagnosticStatus.
+enum class HealthLevel : std::uint8_t
+{
+  OK = 0,
+  WARN = 1,
+  ERROR = 2
+};
+
+enum class AssessmentState : std::uint8_t
+{
+  WAITING = 0,      ///< no window has been completed
+  LEARNING = 1,     ///< the reference of this operating point is being learned
+  ASSESSED = 2,     ///< the last window was held against it
+  NO_REFERENCE = 3  ///< the given reference does not know this operating point
+};
+
+/// One indicator that speaks for the level.
+struct Evidence
+{
+  std::size_t indicator{};
+  double value{};     ///< unit of the indicator
+  double expected{};  ///< healthy mean there
+  double score{};     ///< normal score of the deviation [-]
+};
+
+/// What the indicators say of the drive.
+struct Assessment
+{
+  static constexpr std::size_t MOST_EVIDENCE = 3;
+
+  std::int64_t stamp{};     ///< end of the last window [ns]
+  std::uint64_t windows{};  ///< windows seen
+  AssessmentState state{};
+  HealthLevel level{};
+  Cause cause{};           ///< NONE at level OK
+  double confidence{};     ///< probability of the cause among all of the table, 0 at level OK [-]
+  double largest_score{};  ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
+  std::size_t evidence_count{};
+  std::array<Evidence, MOST_EVIDENCE> evidence;  ///< strongest first
+};
+
+/// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
+///
+/// WARN: an indicator beyond the baseline's threshold. ERROR: beyond indicators.error_factor times it. The level changes
+/// after indicators.confirm_windows windows in a row that say the same or worse (up), or better (down). While the
+/// operating point has no reference, the last verdict stands.
+class Assessor
+{
+public:
+  explicit Assessor(const Parameters& parameters);
+
+  void reset() noexcept;
+  void give(std::vector<ReferenceBin> bins) { baseline_.give(std::move(bins)); }
+
+  /// A window was completed.
+  const Assessment& take(const SignalIndicators& indicators) noexcept;
+
+  const Assessment& assessment() const noexcept { return assessment_; }
+  const Baseline& baseline() const noexcept { return baseline_; }
+  const Deviations& deviations() const noexcept { return deviations_; }  ///< of the last window
+
+private:
+  HealthLevel levelOf(const FeatureScores& scores) noexcept;
+  void settle(HealthLevel level) noexcept;
+  void explain(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
+
+  const int confirm_windows_;
+  const double error_factor_;
+  Baseline baseline_;
+  Deviations deviations_;
+  Assessment assessment_;
+  int worse_{};   // windows in a row that say worse than the level
+  int better_{};  // and better
+  HealthLevel least_worse_{};
+  HealthLevel most_better_{};
+};
+}  // namespace hjt

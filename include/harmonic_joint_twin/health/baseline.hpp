@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1 forward),
+/// steps of 25 N.m and of 10 K. What is not measured counts as 0.
+struct OperatingBin
+{
+  int speed{};
+  int direction{};
+  int load{};
+  int temperature{};
+  bool operator==(const OperatingBin& other) const noexcept
+  {
+    return speed == other.speed && direction == other.direction && load == other.load &&
+           temperature == other.temperature;
+  }
+};
+
+OperatingBin binOf(const OperatingPoint& point) noexcept;
+
+/// Mean and spread of one healthy indicator (Welford's sums).
+struct Reference
+{
+  void add(double value) noexcept;
+  double variance() const noexcept { return count > 1 ? squares / (count - 1) : 0.0; }
+
+  int count{};       // windows that told it
+  double mean{};     // unit of the indicator
+  double squares{};  // sum of squares about the mean
+};
+
+struct ReferenceBin
+{
+  OperatingBin bin;
+  int windows{};
+  std::array<Reference, INDICATOR_COUNT> references;
+};
+
+/// One indicator against its reference.
+struct Deviation
+{
+  double expected{};
+  double spread{};
+  /// Normal score of the deviation: standard deviations a normal quantity of known spread would be as unlikely at. NaN:
+  /// not compared.
+  double score{ std::numeric_limits<double>::quiet_NaN() };
+  double threshold_factor{};  ///< deviation over spread, as a multiple of that at the threshold [-]
+};
+
+using Deviations = std::array<Deviation, INDICATOR_COUNT>;
+
+enum class BaselineState : std::uint8_t
+{
+  LEARNING,     ///< the window went into the reference of its operating point
+  COMPARED,     ///< the window was held against it
+  NO_REFERENCE  ///< no reference for this operating point, and none is learned
+};
+
+/// What a healthy joint's indicators are, by operating point: learned from the first windows there, or given.
+///
+/// Law:   t = (x - m) / sqrt(max(s^2, u^2) (1 + 1/n) + (f m)^2 + q^2),
+///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1
+/// where  m, s, n  mean, standard deviation and number of the healthy windows
+///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
+///          0.3 for kurtosis, 0.5 for crest
+/// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
+/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
+class Baseline
+{
+public:
+  static constexpr std::size_t MOST_BINS = 64;
+
+  explicit Baseline(const Parameters& parameters);
+
+  /// From a file: is held against, and learns no more.
+  void give(std::vector<ReferenceBin> bins);
+
+  void reset() noexcept;  ///< forgets what was learned, not what was given
+
+  BaselineState take(const SignalIndicators& indicators, Deviations& deviations) noexcept;
+
+  double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
+  const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
+  int windowsNeeded() const noexcept { return windows_; }
+
+private:
+  ReferenceBin* find(const OperatingBin& bin) noexcept;
+  Deviation compare(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
+
+  const int windows_;
+  const double least_spread_;
+  double threshold_;
+  std::array<double, INDICATOR_COUNT> floor_{};  // q
+  bool given_{};
+  std::vector<ReferenceBin> bins_;  // never beyond its first capacity
+};
+}  // namespace hjt

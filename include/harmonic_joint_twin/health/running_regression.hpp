@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hjt
+{
+/// Least squares over a stream, by its normal equations; memory does not grow with the rows.
+///
+/// Law:   minimise  sum w (y - x . b)^2 + ridge
+/// where  x, y  row of the design and its targets;  b  coefficients, one column per target
+///        w     weight: 1 when added, less by what `forget` keeps
+/// Columns are scaled to unit mean square before the factorisation. The ridge, 1e-9 of that, only matters where columns
+/// depend on each other: their coefficients are then shared, and `inflation` tells.
+class RunningRegression
+{
+public:
+  RunningRegression(int columns, int targets);
+
+  void reset() noexcept;
+  void forget(double kept) noexcept;
+  void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets) noexcept;
+
+  /// Fits with the first `used` columns. False: too few rows, or not solvable; the coefficients are then as before.
+  bool fit(int used) noexcept;
+
+  double weight() const noexcept { return weight_; }  ///< rows, less what was forgotten [-]
+
+  // Of the last fit.
+  double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
+  Eigen::Ref<const Eigen::VectorXd> coefficients(int target) const noexcept { return coefficients_.col(target); }
+  double standardError(int column, int target) const noexcept;
+  /// Variance of a coefficient over what it would be if its column stood alone; 1: independent of the others [-].
+  double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
+
+private:
+  double weight_{};
+  Eigen::MatrixXd normal_;   // lower triangle of sum x x'
+  Eigen::MatrixXd moments_;  // sum x y'
+  Eigen::VectorXd squares_;  // sum y^2
+  Eigen::VectorXd scale_;    // of the columns at the last fit
+  Eigen::MatrixXd factor_;
+  Eigen::MatrixXd inverse_;  // of the factor
+  Eigen::VectorXd inverse_diagonal_;
+  Eigen::MatrixXd coefficients_;
+  Eigen::VectorXd spread_;  // standard deviation of what is left, by target
+  double fitted_weight_{ 1.0 };
+};
+}  // namespace hjt

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "harmonic_joint_twin/health/tracked_lines.hpp"
+
+namespace hjt
+{
+/// Indicators out of encoders and torque alone; formulas, windows and the faults they answer to in docs/indicators.md.
+/// After these scalars come, for kinematic error and motor torque alike, the amplitude of every tracked line and the
+/// cosine and sine parts of the lines whose phase stays.
+enum class ScalarIndicator : std::size_t
+{
+  RATIO_DEVIATION,
+  KINEMATIC_ERROR,
+  TORSIONAL_STIFFNESS,
+  LOST_MOTION,
+  HYSTERESIS_AREA,
+  RUNNING_TORQUE,
+  COULOMB_TORQUE,
+  VISCOUS_FRICTION,
+  EFFICIENCY,
+  RESIDUAL_RMS,
+  RESIDUAL_KURTOSIS,
+  RESIDUAL_CREST,
+  COUNT
+};
+
+/// In which signal a line stands.
+enum class LineSignal : std::size_t
+{
+  KINEMATIC_ERROR,
+  MOTOR_TORQUE
+};
+constexpr std::size_t LINE_SIGNALS = 2;
+
+constexpr auto SCALAR_COUNT = static_cast<std::size_t>(ScalarIndicator::COUNT);
+constexpr std::size_t LINE_BLOCK = LINE_COUNT + 2 * PHASE_LOCKED;
+constexpr std::size_t INDICATOR_COUNT = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;
+
+constexpr std::size_t indexOf(ScalarIndicator indicator)
+{
+  return static_cast<std::size_t>(indicator);
+}
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)
+{
+  return SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line;
+}
+constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< line < PHASE_LOCKED
+{
+  return amplitudeIndex(signal, LINE_COUNT + 2 * line);
+}
+constexpr std::size_t sineIndex(LineSignal signal, std::size_t line)
+{
+  return cosineIndex(signal, line) + 1;
+}
+
+/// Snake case, as in Indicators.msg: "torsional_stiffness", "error_wave_generator_2", "torque_wave_generator_2_cos".
+/// Lives as long as the program.
+const char* indicatorName(std::size_t indicator) noexcept;
+const char* indicatorUnit(std::size_t indicator) noexcept;
+
+/// How the joint was run during a window; means over it.
+struct OperatingPoint
+{
+  double speed{};        ///< magnitude, motor [rad/s]
+  double direction{};    ///< share of travel forward less share back: -1 ... 1 [-]
+  double load{};         ///< magnitude of the load torque; NaN: no estimate of it [N.m]
+  double temperature{};  ///< NaN: not measured [degC]
+};
+
+/// All indicators of one window. NaN: the window did not tell.
+struct SignalIndicators
+{
+  SignalIndicators() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
+
+  double operator[](ScalarIndicator indicator) const noexcept { return values[indexOf(indicator)]; }
+  double amplitude(LineSignal signal, Line line) const noexcept { return values[amplitudeIndex(signal, index(line))]; }
+  double phase(LineSignal signal, Line line) const noexcept;  ///< of a cosine, at motor angle 0; else NaN [rad]
+
+  std::int64_t stamp{};     ///< end of the window [ns]
+  std::uint64_t windows{};  ///< completed since start or reset, this one included; 0: none yet
+  double turns{};           ///< of the motor at steady speed in the window [-]
+  OperatingPoint point;
+  std::array<double, INDICATOR_COUNT> values{};
+  std::array<double, INDICATOR_COUNT> uncertainty{};  ///< standard error by the fit, 0: not known; units as values
+};
+
+/// What `measured` differs by from the indicators of a model run alike; amplitudes of phase-locked lines become those of
+/// the difference of the lines, not the difference of amplitudes.
+SignalIndicators difference(const SignalIndicators& measured, const SignalIndicators& model) noexcept;
+}  // namespace hjt

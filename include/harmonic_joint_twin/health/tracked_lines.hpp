@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Lines by cycles per turn of the motor, flexspline held, circular spline turning. The first PHASE_LOCKED of them follow
+/// from the two angles alone, so that their phase stays from window to window; rolling elements creep, theirs does not.
+enum class Line : std::size_t
+{
+  WAVE_GENERATOR_1,   ///< once a turn: eccentric wave generator
+  WAVE_GENERATOR_2,   ///< each lobe at a place of the flexspline
+  WAVE_GENERATOR_4,   ///< its second harmonic
+  CIRCULAR_SPLINE_2,  ///< each lobe at a place of the circular spline
+  CAGE,
+  BALL,         ///< a place on a ball against one race
+  BALL_DOUBLE,  ///< against both
+  OUTER,
+  OUTER_BELOW,  ///< less two: the lobes load the races twice a turn
+  OUTER_ABOVE,
+  INNER,
+  INNER_BELOW,
+  INNER_ABOVE,
+  TOOTH_PASS,        ///< lobe over the teeth of the flexspline
+  TOOTH_PASS_ABOVE,  ///< plus two
+  COUNT
+};
+constexpr auto LINE_COUNT = static_cast<std::size_t>(Line::COUNT);
+constexpr std::size_t PHASE_LOCKED = 4;
+
+constexpr std::size_t index(Line line)
+{
+  return static_cast<std::size_t>(line);
+}
+
+using LineOrders = std::array<double, LINE_COUNT>;  ///< [1/turn of the motor]
+
+/// Law:   cage   f_c = (1 - d / D) / 2                   outer race standing, inner race with the motor
+///        outer  Z f_c,   inner  Z (1 - f_c),   ball  D / (2 d) (1 - (d / D)^2)
+///        lobe at a place of the circular spline  2 (1 - 1 / i)
+/// where  d, D, Z  ball diameter, pitch diameter [m], balls [-];  i  nominal ratio [-]
+/// Source: rolling-bearing kinematics without slip, contact angle 0 (e.g. Harris, Rolling Bearing Analysis, ch. 25).
+LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing);
+}  // namespace hjt

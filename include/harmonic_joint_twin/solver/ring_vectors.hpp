@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hjt
+{
+/// Loops over the coordinates of all teeth that the solver goes through at every step, for the compiler to vectorise.
+/// Vectors of one call have one size and are not the same, but where said.
+namespace ring_vectors
+{
+/// Largest absolute value; NaN if one is not finite.
+double largest(const Eigen::VectorXd& values) noexcept;
+
+/// result = start + length * step.
+void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step,
+               Eigen::VectorXd& result) noexcept;
+
+double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
+
+/// How many signs differ: positive in one, not in the other.
+int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
+
+/// x and y of every tooth, turned by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
+void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::VectorXd& turned) noexcept;
+
+/// A sum of three vectors with a factor each.
+struct Combination
+{
+  const Eigen::VectorXd& a;
+  const Eigen::VectorXd& b;
+  const Eigen::VectorXd& c;
+
+  struct Factors
+  {
+    double a;
+    double b;
+    double c;
+  };
+};
+
+/// result = sum with the first factors + the sum with the others, turned to the tooth `places` further as by `turn`.
+void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
+               int places, double c, double s, Eigen::VectorXd& result) noexcept;
+}  // namespace ring_vectors
+}  // namespace hjt

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harmonic_joint_twin/health/signal_sample.hpp"
+
+namespace hjt
+{
+/// Where in a recording the signals of the joint lie.
+struct SignalSource
+{
+  // Columns of a CSV file; those of `joint_twin simulate` unless told otherwise.
+  std::string time{ "time" };
+  std::string motor_torque{ "motor_torque" };
+  std::string motor_angle{ "motor_angle_encoder" };
+  std::string output_angle{ "output_angle_encoder" };
+  std::string motor_velocity{ "motor_velocity_encoder" };
+  std::string load_torque{ "load_torque" };
+  std::string temperature{ "temperature" };
+  // Topics of a bag.
+  std::string states_topic;
+  std::string load_topic;
+  std::string joint;           ///< its name in both
+  double torque_scale{ 1.0 };  ///< motor torque per unit of what is recorded for it
+};
+
+/// Gives every sample of a CSV file or a bag to `take`, in order of time, until that returns false.
+/// CSV: a column that is not there is not measured; time, torque and one angle must be.
+/// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort of
+/// NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
+/// @throws InputError
+void readSignals(const std::string& path, const SignalSource& source,
+                 const std::function<bool(const SignalSample&)>& take);
+}  // namespace hjt

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/elements/ring_forces.hpp"
+
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
+
+namespace hjt
+{
+HJT_VECTOR_CLONES void RingTangent::addSegments() noexcept
+{
+  const int n = teeth();
+  const double* __restrict__ s_xx = segment.xx.data();
+  const double* __restrict__ s_xy = segment.xy.data();
+  const double* __restrict__ s_yy = segment.yy.data();
+  double* __restrict__ d_xx = diagonal.xx.data();
+  double* __restrict__ d_xy = diagonal.xy.data();
+  double* __restrict__ d_yy = diagonal.yy.data();
+  double* __restrict__ n_xx = next.xx.data();
+  double* __restrict__ n_xy = next.xy.data();
+  double* __restrict__ n_yx = next.yx.data();
+  double* __restrict__ n_yy = next.yy.data();
+  const auto add = [&](int h, int i)
+  {
+    d_xx[i] += s_xx[h] + s_xx[i];
+    d_xy[i] += s_xy[h] + s_xy[i];
+    d_yy[i] += s_yy[h] + s_yy[i];
+    n_xx[i] -= s_xx[i];
+    n_xy[i] -= s_xy[i];
+    n_yx[i] -= s_xy[i];
+    n_yy[i] -= s_yy[i];
+  };
+  add(n - 1, 0);
+#pragma omp simd
+  for (int i = 1; i < n; ++i)
+  {
+    add(i - 1, i);
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hjt
+{
+Assessor::Assessor(const Parameters& parameters)
+  : confirm_windows_(parameters.indicators.confirm_windows)
+  , error_factor_(parameters.indicators.error_factor)
+  , baseline_(parameters)
+{
+}
+
+void Assessor::reset() noexcept
+{
+  baseline_.reset();
+  deviations_.fill({});
+  assessment_ = {};
+  worse_ = 0;
+  better_ = 0;
+}
+
+const Assessment& Assessor::take(const SignalIndicators& indicators) noexcept
+{
+  assessment_.stamp = indicators.stamp;
+  assessment_.windows = indicators.windows;
+  switch (baseline_.take(indicators, deviations_))
+  {
+    case BaselineState::LEARNING:
+      assessment_.state = AssessmentState::LEARNING;
+      return assessment_;
+    case BaselineState::NO_REFERENCE:
+      assessment_.state = AssessmentState::NO_REFERENCE;
+      return assessment_;
+    case BaselineState::COMPARED:
+      break;
+  }
+  assessment_.state = AssessmentState::ASSESSED;
+  const FeatureScores scores = featureScores(deviations_);
+  settle(levelOf(scores));
+  explain(indicators, scores);
+  return assessment_;
+}
+
+HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
+{
+  double largest = 0.0;
+  double factor = 0.0;
+  for (const FeatureScore& feature : scores)
+  {
+    largest = std::max(largest, std::abs(feature.score));
+    factor = std::max(factor, feature.threshold_factor);
+  }
+  assessment_.largest_score = largest / baseline_.threshold();
+  if (largest <= baseline_.threshold())
+  {
+    return HealthLevel::OK;
+  }
+  return factor > error_factor_ ? HealthLevel::ERROR : HealthLevel::WARN;
+}
+
+/// Lets the level follow once enough windows in a row agree.
+void Assessor::settle(HealthLevel level) noexcept
+{
+  if (level > assessment_.level)
+  {
+    least_worse_ = worse_ == 0 ? level : std::min(least_worse_, level);
+    better_ = 0;
+    if (++worse_ >= confirm_windows_)
+    {
+      assessment_.level = least_worse_;
+      worse_ = 0;
+    }
+  }
+  else if (level < assessment_.level)
+  {
+    most_better_ = better_ == 0 ? level : std::max(most_better_, level);
+    worse_ = 0;
+    if (++better_ >= confirm_windows_)
+    {
+      assessment_.level = most_better_;
+      better_ = 0;
+    }
+  }
+  else
+  {
+    worse_ = 0;
+    better_ = 0;
+  }
+}
+
+void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
+{
+  if (assessment_.level == HealthLevel::OK)
+  {
+    assessment_.cause = Cause::NONE;
+    assessment_.confidence = 0.0;
+    assessment_.evidence_count = 0;
+    return;
+  }
+  if (assessment_.largest_score <= 1.0)
+  {
+    return;  // this window says nothing; what was said stands until the level falls
+  }
+  // That something is wrong is settled: only what, is asked.
+  const std::array<double, CAUSE_COUNT> probabilities = causeProbabilities(scores);
+  const auto best = std::max_element(probabilities.begin() + 1, probabilities.end());
+  assessment_.cause = static_cast<Cause>(best - probabilities.begin());
+  assessment_.confidence = *best / (1.0 - probabilities[0]);
+  std::array<FeatureScore, FEATURE_COUNT> sorted = scores;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const FeatureScore& a, const FeatureScore& b) { return std::abs(a.score) > std::abs(b.score); });
+  assessment_.evidence_count = 0;
+  for (const FeatureScore& feature : sorted)
+  {
+    if (assessment_.evidence_count == Assessment::MOST_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
+    {
+      break;
+    }
+    assessment_.evidence[assessment_.evidence_count++] = { feature.indicator, indicators.values[feature.indicator],
+                                                           deviations_[feature.indicator].expected, feature.score };
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/baseline_file.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <yaml-cpp/yaml.h>
+
+#include "harmonic_joint_twin/params/number_text.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::size_t indicatorNamed(const std::string& name)
+{
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    if (name == indicatorName(i))
+    {
+      return i;
+    }
+  }
+  throw InputError("unknown indicator " + name);
+}
+
+ReferenceBin readBin(const YAML::Node& node)
+{
+  ReferenceBin bin;
+  bin.bin = { node["speed"].as<int>(), node["direction"].as<int>(), node["load"].as<int>(),
+              node["temperature"].as<int>() };
+  bin.windows = node["windows"].as<int>();
+  for (const auto& entry : node["indicators"])
+  {
+    const auto numbers = entry.second.as<std::vector<double>>();
+    const auto name = entry.first.as<std::string>();
+    if (numbers.size() != 3 || numbers[0] < 1.0 || !std::isfinite(numbers[1]) || !(numbers[2] >= 0.0))
+    {
+      throw InputError(name + " must be [windows >= 1, mean, spread >= 0]");
+    }
+    Reference& reference = bin.references[indicatorNamed(name)];
+    reference.count = static_cast<int>(numbers[0]);
+    reference.mean = numbers[1];
+    reference.squares = numbers[2] * numbers[2] * (numbers[0] - 1.0);
+  }
+  return bin;
+}
+}  // namespace
+
+std::vector<ReferenceBin> readBaseline(const std::string& path)
+{
+  std::vector<ReferenceBin> bins;
+  try
+  {
+    const YAML::Node list = YAML::LoadFile(path)["baseline"];
+    if (!list.IsSequence() || list.size() == 0)
+    {
+      throw InputError("no list 'baseline' of operating bins");
+    }
+    for (const YAML::Node& node : list)
+    {
+      bins.push_back(readBin(node));
+    }
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw InputError(path + " is no baseline: " + error.what());
+  }
+  catch (const InputError& error)
+  {
+    throw InputError(path + " is no baseline: " + error.what());
+  }
+  return bins;
+}
+
+void writeBaseline(const std::string& path, const std::vector<ReferenceBin>& bins)
+{
+  std::ofstream file(path);
+  file << "# Healthy indicators by operating point: octave of motor speed, direction, steps of 25 N.m and 10 K.\n"
+          "# Each indicator: [windows, mean, spread], units as in docs/indicators.md.\n"
+          "baseline:\n";
+  for (const ReferenceBin& bin : bins)
+  {
+    file << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
+         << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    indicators:\n";
+    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    {
+      const Reference& reference = bin.references[i];
+      if (reference.count > 0)
+      {
+        file << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
+             << numberText(std::sqrt(reference.variance())) << "]\n";
+      }
+    }
+  }
+  file.close();
+  if (!file)
+  {
+    throw InputError(path + " cannot be written");
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/running_regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace hjt
+{
+namespace
+{
+constexpr double RIDGE = 1e-9;  // of a column's mean square [-]
+}
+
+RunningRegression::RunningRegression(int columns, int targets)
+  : normal_(Eigen::MatrixXd::Zero(columns, columns))
+  , moments_(Eigen::MatrixXd::Zero(columns, targets))
+  , squares_(Eigen::VectorXd::Zero(targets))
+  , scale_(Eigen::VectorXd::Zero(columns))
+  , factor_(Eigen::MatrixXd::Zero(columns, columns))
+  , inverse_(Eigen::MatrixXd::Zero(columns, columns))
+  , inverse_diagonal_(Eigen::VectorXd::Zero(columns))
+  , coefficients_(Eigen::MatrixXd::Zero(columns, targets))
+  , spread_(Eigen::VectorXd::Zero(targets))
+{
+}
+
+void RunningRegression::reset() noexcept
+{
+  weight_ = 0.0;
+  normal_.setZero();
+  moments_.setZero();
+  squares_.setZero();
+}
+
+void RunningRegression::forget(double kept) noexcept
+{
+  weight_ *= kept;
+  normal_ *= kept;
+  moments_ *= kept;
+  squares_ *= kept;
+}
+
+void RunningRegression::add(const Eigen::Ref<const Eigen::VectorXd>& row,
+                            const Eigen::Ref<const Eigen::VectorXd>& targets) noexcept
+{
+  weight_ += 1.0;
+  for (Eigen::Index column = 0; column < row.size(); ++column)
+  {
+    const Eigen::Index rest = row.size() - column;
+    normal_.col(column).tail(rest) += row[column] * row.tail(rest);
+  }
+  for (Eigen::Index target = 0; target < targets.size(); ++target)
+  {
+    moments_.col(target) += targets[target] * row;
+    squares_[target] += targets[target] * targets[target];
+  }
+}
+
+bool RunningRegression::fit(int used) noexcept
+{
+  if (weight_ <= used)
+  {
+    return false;
+  }
+  // Column j times s_j has mean square 1; a column of zeros stays one, and the ridge gives it the coefficient 0.
+  for (int i = 0; i < used; ++i)
+  {
+    scale_[i] = normal_(i, i) > 0.0 ? std::sqrt(weight_ / normal_(i, i)) : 1.0;
+  }
+  for (int j = 0; j < used; ++j)
+  {
+    for (int i = j; i < used; ++i)
+    {
+      factor_(i, j) = normal_(i, j) * scale_[i] * scale_[j] / weight_;
+    }
+    factor_(j, j) += RIDGE;
+  }
+  Eigen::Ref<Eigen::MatrixXd> block = factor_.topLeftCorner(used, used);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(block);
+  if (cholesky.info() != Eigen::Success)
+  {
+    return false;
+  }
+  fitted_weight_ = weight_;
+  // The inverse of the factor, column by column: its squares sum to the diagonal of the inverse.
+  inverse_diagonal_.setZero();
+  for (int j = 0; j < used; ++j)
+  {
+    for (int i = j; i < used; ++i)
+    {
+      double sum = i == j ? 1.0 : 0.0;
+      for (int k = j; k < i; ++k)
+      {
+        sum -= factor_(i, k) * inverse_(k, j);
+      }
+      inverse_(i, j) = sum / factor_(i, i);
+      inverse_diagonal_[j] += inverse_(i, j) * inverse_(i, j);
+    }
+  }
+  coefficients_.setZero();
+  for (Eigen::Index target = 0; target < coefficients_.cols(); ++target)
+  {
+    auto solution = coefficients_.col(target).head(used);
+    solution = moments_.col(target).head(used).cwiseProduct(scale_.head(used)) / weight_;
+    const double total = squares_[target];
+    const auto right = moments_.col(target).head(used);
+    cholesky.solveInPlace(solution);
+    solution = solution.cwiseProduct(scale_.head(used));
+    const double left = std::max(total - solution.dot(right), 0.0);
+    spread_[target] = std::sqrt(left / (weight_ - used));
+  }
+  return true;
+}
+
+double RunningRegression::standardError(int column, int target) const noexcept
+{
+  return spread_[target] * scale_[column] * std::sqrt(inverse_diagonal_[column] / fitted_weight_);
+}
+}  // namespace hjt

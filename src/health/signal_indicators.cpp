@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace hjt
+{
+namespace
+{
+struct Label
+{
+  std::string name;
+  std::string unit;
+};
+
+constexpr std::array<std::array<const char*, 2>, SCALAR_COUNT> SCALARS{ {
+    { "ratio_deviation", "-" },
+    { "kinematic_error", "rad" },
+    { "torsional_stiffness", "N.m/rad" },
+    { "lost_motion", "rad" },
+    { "hysteresis_area", "J" },
+    { "running_torque", "N.m" },
+    { "coulomb_torque", "N.m" },
+    { "viscous_friction", "N.m.s/rad" },
+    { "efficiency", "-" },
+    { "residual_rms", "rad" },
+    { "residual_kurtosis", "-" },
+    { "residual_crest", "-" },
+} };
+constexpr std::array<const char*, LINE_COUNT> LINES{ "wave_generator_1",
+                                                     "wave_generator_2",
+                                                     "wave_generator_4",
+                                                     "circular_spline_2",
+                                                     "cage",
+                                                     "ball",
+                                                     "ball_double",
+                                                     "outer",
+                                                     "outer_below",
+                                                     "outer_above",
+                                                     "inner",
+                                                     "inner_below",
+                                                     "inner_above",
+                                                     "tooth_pass",
+                                                     "tooth_pass_above" };
+constexpr std::array<std::array<const char*, 2>, LINE_SIGNALS> SIGNALS{ { { "error", "rad" }, { "torque", "N.m" } } };
+
+std::array<Label, INDICATOR_COUNT> makeLabels()
+{
+  std::array<Label, INDICATOR_COUNT> labels;
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+  {
+    labels[i] = { SCALARS[i][0], SCALARS[i][1] };
+  }
+  for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
+  {
+    const auto signal = static_cast<LineSignal>(s);
+    for (std::size_t line = 0; line < LINE_COUNT; ++line)
+    {
+      const std::string name = std::string(SIGNALS[s][0]) + "_" + LINES[line];
+      labels[amplitudeIndex(signal, line)] = { name, SIGNALS[s][1] };
+      if (line < PHASE_LOCKED)
+      {
+        labels[cosineIndex(signal, line)] = { name + "_cos", SIGNALS[s][1] };
+        labels[sineIndex(signal, line)] = { name + "_sin", SIGNALS[s][1] };
+      }
+    }
+  }
+  return labels;
+}
+
+const std::array<Label, INDICATOR_COUNT> LABELS = makeLabels();
+}  // namespace
+
+const char* indicatorName(std::size_t indicator) noexcept
+{
+  return LABELS[indicator].name.c_str();
+}
+
+const char* indicatorUnit(std::size_t indicator) noexcept
+{
+  return LABELS[indicator].unit.c_str();
+}
+
+double SignalIndicators::phase(LineSignal signal, Line line) const noexcept
+{
+  if (index(line) >= PHASE_LOCKED)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  // a cos x + b sin x = A cos(x + phase)
+  return std::atan2(-values[sineIndex(signal, index(line))], values[cosineIndex(signal, index(line))]);
+}
+
+SignalIndicators difference(const SignalIndicators& measured, const SignalIndicators& model) noexcept
+{
+  SignalIndicators result = measured;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    result.values[i] -= model.values[i];
+    result.uncertainty[i] = std::hypot(measured.uncertainty[i], model.uncertainty[i]);
+  }
+  for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+  {
+    for (std::size_t line = 0; line < PHASE_LOCKED; ++line)
+    {
+      result.values[amplitudeIndex(signal, line)] =
+          std::hypot(result.values[cosineIndex(signal, line)], result.values[sineIndex(signal, line)]);
+    }
+  }
+  return result;
+}
+}  // namespace hjt

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/gear/ratio.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;  // over which the mean speed forgets [rad]
+constexpr double MEAN_TIME = 0.5;             // and the time, for a joint that stands [s]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;    // over which the residual's own mean forgets [rad]
+constexpr int LEAST_RESIDUALS = 100;          // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;     // memory of the friction estimate
+}  // namespace
+
+SignalMonitor::SignalMonitor(const Parameters& parameters)
+  : ratio_(nominalRatio(parameters.gear))
+  , output_(parameters.output)
+  , parameters_(parameters.indicators)
+  , tracker_(trackedOrders(parameters.gear, parameters.bearing))
+  , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
+  , loop_(parameters.health, parameters.indicators)
+  , turn_(parameters.gear)
+  , efficiency_(parameters.health)
+{
+}
+
+void SignalMonitor::reset() noexcept
+{
+  tracker_.reset();
+  friction_.reset();
+  loop_.reset();
+  turn_.reset();
+  efficiency_.reset();
+  indicators_ = {};
+  refused_ = 0;
+  started_ = false;
+  mean_velocity_ = 0.0;
+  turn_travel_ = 0.0;
+  tracked_ = false;
+  residual_mean_ = 0.0;
+  window_ = {};
+}
+
+double SignalMonitor::progress() const noexcept
+{
+  return std::max(window_.travel / (TWO_PI * parameters_.window_turns),
+                  1e-9 * static_cast<double>(window_.elapsed) / parameters_.window_time);
+}
+
+void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexcept
+{
+  started_ = true;
+  last_ = sample;
+  last_angle_ = motor_angle;
+  mean_velocity_ = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : 0.0;
+  torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
+}
+
+bool SignalMonitor::update(const SignalSample& given) noexcept
+{
+  SignalSample sample = given;
+  if (output_.gravity_torque != 0.0)
+  {
+    sample.load_torque += output_.gravity_torque * std::sin(given.output_angle - output_.gravity_angle);
+  }
+  // One encoder is enough to know where the motor stands.
+  const bool motor_known = std::isfinite(sample.motor_angle);
+  const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
+  if (!std::isfinite(motor_angle) || !std::isfinite(sample.motor_torque) || (started_ && sample.stamp <= last_.stamp))
+  {
+    ++refused_;
+    return false;
+  }
+  if (!started_)
+  {
+    start(sample, motor_angle);
+    return false;
+  }
+  const std::int64_t elapsed = sample.stamp - last_.stamp;
+  const double seconds = 1e-9 * static_cast<double>(elapsed);
+  const double travel = motor_angle - last_angle_;
+  const double velocity = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : travel / seconds;
+  const double kept = std::exp(-std::abs(travel) / MEAN_TRAVEL - seconds / MEAN_TIME);
+  mean_velocity_ = kept * mean_velocity_ + (1.0 - kept) * velocity;
+  window_.elapsed += elapsed;
+
+  const bool both = motor_known && std::isfinite(sample.output_angle);
+  window_.both_encoders = window_.both_encoders && both;
+  const double torsion = both ? motor_angle / ratio_ - sample.output_angle - torsion_zero_ : 0.0;
+  const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
+  const bool even = std::abs(velocity - mean_velocity_) <=
+                    parameters_.speed_change * std::abs(mean_velocity_) + parameters_.least_speed;
+  const bool load_known = std::isfinite(sample.load_torque);
+  const double joint_torque = load_known ? sample.load_torque : ratio_ * sample.motor_torque;
+  if (both)
+  {
+    addTurn(motor_angle, travel, torsion);
+    if (even)
+    {
+      loop_.add(torsion, joint_torque, moving ? std::copysign(1.0, mean_velocity_) : 0.0);
+    }
+  }
+  if (load_known)
+  {
+    efficiency_.update(elapsed, sample.motor_torque * velocity, sample.load_torque * velocity / ratio_);
+  }
+  if (moving && even)
+  {
+    addSteady(sample, motor_angle, travel, torsion);
+  }
+  if (load_known)
+  {
+    window_.load.add(std::abs(joint_torque), seconds);
+  }
+  if (std::isfinite(sample.temperature))
+  {
+    window_.temperature.add(sample.temperature, seconds);
+  }
+  last_ = sample;
+  last_angle_ = motor_angle;
+  if (progress() < 1.0)
+  {
+    return false;
+  }
+  complete(sample.stamp);
+  return true;
+}
+
+void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, double travel, double torsion) noexcept
+{
+  const double direction = std::copysign(1.0, mean_velocity_);
+  const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
+  const double load = std::isfinite(sample.load_torque) ? sample.load_torque : 0.0;
+  tracker_.add({ motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque });
+  if (tracked_ && window_.both_encoders)
+  {
+    addResidual(travel);
+  }
+  friction_.add(travel, mean_velocity_, output_angle, sample.motor_torque - load / ratio_);
+  window_.travel += std::abs(travel);
+  ++window_.samples;
+  window_.speed.add(std::abs(mean_velocity_));
+  window_.direction.add(direction);
+  window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
+}
+
+void SignalMonitor::addTurn(double motor_angle, double travel, double torsion) noexcept
+{
+  turn_.update(motor_angle, torsion);
+  turn_travel_ += std::abs(travel);
+  if (turn_travel_ < TWO_PI)
+  {
+    return;
+  }
+  turn_travel_ = 0.0;
+  const Indicator ratio = turn_.transmissionRatio();
+  if (ratio.valid)
+  {
+    window_.ratio.add(ratio.value / ratio_ - 1.0);
+  }
+  const Indicator error = turn_.kinematicError();
+  if (error.valid)
+  {
+    window_.kinematic_error.add(error.value);
+  }
+}
+
+void SignalMonitor::addResidual(double travel) noexcept
+{
+  const double residual = tracker_.residual();
+  const double kept = std::exp(-std::abs(travel) / RESIDUAL_TRAVEL);
+  residual_mean_ = window_.residuals > 0.0 ? kept * residual_mean_ + (1.0 - kept) * residual : residual;
+  const double square = (residual - residual_mean_) * (residual - residual_mean_);
+  window_.residuals += 1.0;
+  window_.residual_square += square;
+  window_.residual_fourth += square * square;
+  window_.residual_largest = std::max(window_.residual_largest, square);
+}
+
+void SignalMonitor::complete(std::int64_t stamp) noexcept
+{
+  const std::uint64_t windows = indicators_.windows + 1;
+  indicators_ = {};
+  indicators_.stamp = stamp;
+  indicators_.windows = windows;
+  indicators_.turns = window_.travel / TWO_PI;
+  indicators_.point = { window_.samples > 0 ? window_.speed.value() : 0.0,
+                        window_.samples > 0 ? window_.direction.value() : 0.0, window_.load.value(),
+                        window_.temperature.value() };
+  set(ScalarIndicator::RATIO_DEVIATION, window_.ratio.value());
+  set(ScalarIndicator::KINEMATIC_ERROR, window_.kinematic_error.value());
+  set(ScalarIndicator::RUNNING_TORQUE, window_.running_torque.value());
+  set(ScalarIndicator::EFFICIENCY, efficiency_.efficiency());
+  loop_.fit();
+  set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
+  set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
+  set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
+  friction_.fit();
+  set(ScalarIndicator::COULOMB_TORQUE, friction_.coulomb());
+  set(ScalarIndicator::VISCOUS_FRICTION, friction_.viscous());
+  if (window_.residuals >= LEAST_RESIDUALS && window_.residual_square > 0.0)
+  {
+    const double mean_square = window_.residual_square / window_.residuals;
+    set(ScalarIndicator::RESIDUAL_RMS, std::sqrt(mean_square));
+    set(ScalarIndicator::RESIDUAL_KURTOSIS, window_.residual_fourth / window_.residuals / (mean_square * mean_square));
+    set(ScalarIndicator::RESIDUAL_CREST, std::sqrt(window_.residual_largest / mean_square));
+  }
+  if (window_.samples > 0 && tracker_.fit(window_.travel / window_.samples))
+  {
+    tracked_ = true;
+    fillLines(LineSignal::MOTOR_TORQUE);
+    if (window_.both_encoders)
+    {
+      fillLines(LineSignal::KINEMATIC_ERROR);
+    }
+  }
+  tracker_.reset();
+  loop_.reset();
+  window_ = {};
+}
+
+void SignalMonitor::fillLines(LineSignal signal) noexcept
+{
+  for (std::size_t line = 0; line < LINE_COUNT; ++line)
+  {
+    const LineFit fit = tracker_.line(signal, line);
+    if (!fit.valid)
+    {
+      continue;
+    }
+    const auto put = [&](std::size_t indicator, double value)
+    {
+      indicators_.values[indicator] = value;
+      indicators_.uncertainty[indicator] = fit.error;
+    };
+    put(amplitudeIndex(signal, line), fit.amplitude());
+    if (line < PHASE_LOCKED)
+    {
+      put(cosineIndex(signal, line), fit.cosine);
+      put(sineIndex(signal, line), fit.sine);
+    }
+  }
+}
+
+void SignalMonitor::set(ScalarIndicator indicator, const Indicator& value) noexcept
+{
+  if (value.valid)
+  {
+    set(indicator, value.value);
+  }
+}
+}  // namespace hjt

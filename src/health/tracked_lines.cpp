@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/tracked_lines.hpp"
+
+#include "harmonic_joint_twin/gear/ratio.hpp"
+
+namespace hjt
+{
+LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing)
+{
+  constexpr double LOBES = 2.0;
+  const double share = bearing.ball_diameter / bearing.pitch_diameter;
+  const double cage = 0.5 * (1.0 - share);
+  const double ball = 0.5 * (1.0 / share - share);
+  const double outer = bearing.balls * cage;
+  const double inner = bearing.balls * (1.0 - cage);
+  const double teeth = gear.teeth_flexspline;
+  LineOrders orders{};
+  const auto set = [&orders](Line line, double order) { orders[index(line)] = order; };
+  set(Line::WAVE_GENERATOR_1, 1.0);
+  set(Line::WAVE_GENERATOR_2, LOBES);
+  set(Line::WAVE_GENERATOR_4, 2.0 * LOBES);
+  set(Line::CIRCULAR_SPLINE_2, LOBES * (1.0 - 1.0 / nominalRatio(gear)));
+  set(Line::CAGE, cage);
+  set(Line::BALL, ball);
+  set(Line::BALL_DOUBLE, 2.0 * ball);
+  set(Line::OUTER, outer);
+  set(Line::OUTER_BELOW, outer - LOBES);
+  set(Line::OUTER_ABOVE, outer + LOBES);
+  set(Line::INNER, inner);
+  set(Line::INNER_BELOW, inner - LOBES);
+  set(Line::INNER_ABOVE, inner + LOBES);
+  set(Line::TOOTH_PASS, teeth);
+  set(Line::TOOTH_PASS_ABOVE, teeth + LOBES);
+  return orders;
+}
+}  // namespace hjt

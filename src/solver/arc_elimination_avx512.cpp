@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/arc_elimination_kernels.hpp"
+
+namespace hjt
+{
+namespace arcs
+{
+const Kernels AVX512 = kernels();
+}  // namespace arcs
+}  // namespace hjt

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/ring_vectors.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "harmonic_joint_twin/gear/vector_clones.hpp"
+
+namespace hjt
+{
+namespace ring_vectors
+{
+HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values) noexcept
+{
+  const Eigen::Index n = values.size();
+  const double* __restrict__ value = values.data();
+  double most = 0.0;
+  double sum = 0.0;  // a comparison does not see what is not a number
+#pragma omp simd reduction(max : most) reduction(+ : sum)
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    const double size = std::abs(value[i]);
+    most = size > most ? size : most;
+    sum += size;
+  }
+  return std::isfinite(sum) ? most : std::numeric_limits<double>::quiet_NaN();
+}
+
+HJT_VECTOR_CLONES void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step,
+                                 Eigen::VectorXd& result) noexcept
+{
+  const Eigen::Index n = result.size();
+  const double* __restrict__ from = start.data();
+  const double* __restrict__ along = step.data();
+  double* __restrict__ to = result.data();
+#pragma omp simd
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    to[i] = from[i] + length * along[i];
+  }
+}
+
+HJT_VECTOR_CLONES double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
+{
+  const Eigen::Index n = a.size();
+  const double* first = a.data();
+  const double* second = b.data();
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    sum += first[i] * second[i];
+  }
+  return sum;
+}
+
+HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
+{
+  const Eigen::Index n = a.size();
+  const double* __restrict__ first = a.data();
+  const double* __restrict__ second = b.data();
+  double changed = 0.0;  // as wide as the other numbers, for the vectors
+#pragma omp simd reduction(+ : changed)
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    changed += std::abs((first[i] > 0.0 ? 1.0 : 0.0) - (second[i] > 0.0 ? 1.0 : 0.0));
+  }
+  return static_cast<int>(changed);
+}
+
+HJT_VECTOR_CLONES void turn(const Eigen::VectorXd& values, int places, double c, double s,
+                            Eigen::VectorXd& turned) noexcept
+{
+  const Eigen::Index n = values.size() / 2;
+  const auto part = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index shift)
+  {
+    const double* __restrict__ from = values.data();
+    double* __restrict__ to = turned.data() + 2 * shift;
+#pragma omp simd
+    for (Eigen::Index i = begin; i < end; ++i)
+    {
+      to[2 * i] = c * from[2 * i] - s * from[2 * i + 1];
+      to[2 * i + 1] = s * from[2 * i] + c * from[2 * i + 1];
+    }
+  };
+  part(0, n - places, places);
+  part(n - places, n, places - n);
+}
+
+HJT_VECTOR_CLONES void addTurned(const Combination& vectors, const Combination::Factors& here,
+                                 const Combination::Factors& turned, int places, double c, double s,
+                                 Eigen::VectorXd& result) noexcept
+{
+  const Eigen::Index n = result.size() / 2;
+  const auto part = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index shift)
+  {
+    const double* __restrict__ va = vectors.a.data();
+    const double* __restrict__ vb = vectors.b.data();
+    const double* __restrict__ vc = vectors.c.data();
+    double* __restrict__ to = result.data();
+    const double ha = here.a;
+    const double hb = here.b;
+    const double hc = here.c;
+    const double ta = turned.a;
+    const double tb = turned.b;
+    const double tc = turned.c;
+#pragma omp simd
+    for (Eigen::Index i = begin; i < end; ++i)
+    {
+      const Eigen::Index k = 2 * (i + shift);
+      const double x = ta * va[2 * i] + tb * vb[2 * i] + tc * vc[2 * i];
+      const double y = ta * va[2 * i + 1] + tb * vb[2 * i + 1] + tc * vc[2 * i + 1];
+      to[k] = ha * va[k] + hb * vb[k] + hc * vc[k] + c * x - s * y;
+      to[k + 1] = ha * va[k + 1] + hb * vb[k + 1] + hc * vc[k + 1] + s * x + c * y;
+    }
+  };
+  part(0, n - places, places);
+  part(n - places, n, places - n);
+}
+}  // namespace ring_vectors
+}  // namespace hjt

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/twin/exposure_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harmonic_joint_twin/twin/exposure_analysis.hpp"
+
+namespace hjt
+{
+namespace
+{
+Exposure blend(const Exposure& a, const Exposure& b, double share)
+{
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  return { mix(a.flank_sliding, b.flank_sliding), mix(a.interface_sliding, b.interface_sliding),
+           mix(a.rim_stress_range, b.rim_stress_range) };
+}
+
+struct Cell
+{
+  int index;
+  double share;
+};
+
+Cell cellOf(double value, double step, int stages)
+{
+  const double place = std::clamp(value / step, 0.0, static_cast<double>(stages - 1));
+  const int index = std::min(static_cast<int>(place), stages - 2);
+  return { index, place - index };
+}
+
+double relativeDifference(double value, double reference)
+{
+  return reference == 0.0 ? 0.0 : std::abs(value - reference) / std::abs(reference);
+}
+}  // namespace
+
+Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
+{
+  Parameters worn = parameters;
+  worn.mesh.flank_clearance += age.flank_wear;
+  return worn;
+}
+
+ExposureMap::ExposureMap(const Parameters& parameters, const DutyCycle& duty, int positions,
+                         const std::function<void(double)>& progress)
+  : flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
+  , interface_step_(parameters.life.interface_wear_limit / (STAGES - 1))
+  , nodes_(duty.phases.size() * STAGES * STAGES)
+{
+  for (int flank = 0; flank < STAGES; ++flank)
+  {
+    for (int interface = 0; interface < STAGES; ++interface)
+    {
+      DriveAge age;
+      age.flank_wear = flank * flank_step_;
+      age.interface_wear = interface * interface_step_;
+      ExposureAnalysis analysis(wornDrive(parameters, age), positions);
+      for (std::size_t phase = 0; phase < duty.phases.size(); ++phase)
+      {
+        nodes_[place(phase, flank, interface)] = analysis.under(duty.phases[phase].load_torque);
+      }
+      if (progress)
+      {
+        progress((flank * STAGES + interface + 1.0) / (STAGES * STAGES));
+      }
+    }
+  }
+}
+
+Exposure ExposureMap::at(std::size_t phase, double flank_wear, double interface_wear) const
+{
+  const Cell flank = cellOf(flank_wear, flank_step_, STAGES);
+  const Cell interface = cellOf(interface_wear, interface_step_, STAGES);
+  const auto along = [&](int row)
+  {
+    return blend(nodes_[place(phase, row, interface.index)], nodes_[place(phase, row, interface.index + 1)],
+                 interface.share);
+  };
+  return blend(along(flank.index), along(flank.index + 1), flank.share);
+}
+
+double ExposureMap::largestError(const Parameters& parameters, const DutyCycle& duty, int positions) const
+{
+  double largest = 0.0;
+  for (int flank = 0; flank < STAGES - 1; ++flank)
+  {
+    for (int interface = 0; interface < STAGES - 1; ++interface)
+    {
+      DriveAge age;
+      age.flank_wear = (flank + 0.5) * flank_step_;
+      age.interface_wear = (interface + 0.5) * interface_step_;
+      ExposureAnalysis analysis(wornDrive(parameters, age), positions);
+      for (std::size_t phase = 0; phase < duty.phases.size(); ++phase)
+      {
+        const Exposure measured = analysis.under(duty.phases[phase].load_torque);
+        const Exposure mapped = at(phase, age.flank_wear, age.interface_wear);
+        largest = std::max({ largest, relativeDifference(mapped.flank_sliding, measured.flank_sliding),
+                             relativeDifference(mapped.interface_sliding, measured.interface_sliding),
+                             relativeDifference(mapped.rim_stress_range, measured.rim_stress_range) });
+      }
+    }
+  }
+  return largest;
+}
+}  // namespace hjt

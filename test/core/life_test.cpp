@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+
+#include "test_parameters.hpp"
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/twin/drive_ageing.hpp"
+#include "harmonic_joint_twin/twin/exposure_analysis.hpp"
+#include "harmonic_joint_twin/twin/life_trials.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int POSITIONS = 4;
+
+LifeParameters shippedLife()
+{
+  return shippedParameters().life;
+}
+
+DutyCycle ratedDuty(double temperature)
+{
+  const LifeParameters life = shippedLife();
+  DutyCycle duty;
+  duty.phases.push_back({ 10.0, life.rated_speed, life.rated_torque, temperature });
+  return duty;
+}
+
+/// The rated duty on the tooth model, measured once for all tests.
+struct RatedUse
+{
+  RatedUse()
+    : parameters(shippedParameters())
+    , duty(ratedDuty(parameters.life.grease_temperature))
+    , exposures(parameters, duty, POSITIONS, {})
+    , ageing(parameters.life, parameters.gear, duty, exposures)
+  {
+  }
+
+  Parameters parameters;
+  DutyCycle duty;
+  ExposureMap exposures;
+  DriveAgeing ageing;
+};
+
+const RatedUse& ratedUse()
+{
+  static const RatedUse use;
+  return use;
+}
+
+TEST(AgeingLaws, BearingMeetsTheCatalogueAtBothLives)
+{
+  const LifeParameters life = shippedLife();
+  const BearingLife bearing(life);
+  const double turns_per_hour = life.rated_speed * 3600.0 / TWO_PI;
+  EXPECT_NEAR(bearing.failedBy(life.bearing_l10 * turns_per_hour), 0.1, 1e-12);
+  EXPECT_NEAR(bearing.failedBy(life.bearing_l50 * turns_per_hour), 0.5, 1e-12);
+  EXPECT_NEAR(bearing.failedBy(bearing.quantile(0.37)), 0.37, 1e-12);
+  EXPECT_NEAR(bearingWear(life, -2.0 * life.rated_torque), 8.0, 1e-12);
+}
+
+TEST(AgeingLaws, GreaseLastsAsLongAsTheCatalogueSaysAndHalfAsLongWarmer)
+{
+  const LifeParameters life = shippedLife();
+  EXPECT_DOUBLE_EQ(greaseAgeing(life, life.grease_temperature) * life.grease_turns, 1.0);
+  EXPECT_DOUBLE_EQ(greaseAgeing(life, life.grease_temperature + life.grease_halving) * life.grease_turns, 2.0);
+  EXPECT_EQ(greaseWearFactor(life, 0.0), 1.0);
+  EXPECT_EQ(greaseWearFactor(life, 1.0), life.grease_wear_factor);
+}
+
+TEST(AgeingLaws, FlawGrowsOnlyAboveItsThresholdAndAsParisSays)
+{
+  LifeParameters life = shippedLife();
+  const double depth = 100e-6;
+  const double at_threshold = 1e6 * life.crack_threshold / (stressIntensityRange(life, 1.0, depth));
+  EXPECT_EQ(crackGrowth(life, 0.999 * at_threshold, depth), 0.0);
+  const double growth = crackGrowth(life, 2.0 * at_threshold, depth);
+  EXPECT_NEAR(growth, 2.0 * life.crack_coefficient * std::pow(2.0 * life.crack_threshold, life.crack_exponent),
+              1e-12 * growth);
+}
+
+TEST(Exposure, GrowsWithTheLoadAndIsThatOfTheLosses)
+{
+  const Parameters parameters = shippedParameters();
+  ExposureAnalysis analysis(parameters, POSITIONS);
+  const Exposure idle = analysis.under(0.0);
+  const Exposure rated = analysis.under(67.0);
+  const Exposure peak = analysis.under(157.0);
+  EXPECT_LT(idle.flank_sliding, rated.flank_sliding);
+  EXPECT_LT(rated.flank_sliding, peak.flank_sliding);
+  EXPECT_GT(rated.interface_sliding, 0.0);
+  // Two sines of the ellipse's curvature bend the rim by E t/2 (2 x 3 w0/R^2); teeth and tension add to it.
+  const double ring_theory = 0.5 * parameters.gear.rim_thickness * parameters.life.elastic_modulus * 6.0 *
+                             parameters.gear.wave_amplitude / std::pow(parameters.gear.flexspline_inner_radius, 2);
+  EXPECT_GT(idle.rim_stress_range, 0.8 * ring_theory);
+  EXPECT_LT(peak.rim_stress_range, 3.0 * ring_theory);
+}
+
+TEST(Exposure, OfBothDirectionsOfLoadIsAlike)
+{
+  ExposureAnalysis analysis(shippedParameters(), POSITIONS);
+  const Exposure forth = analysis.under(67.0);
+  const Exposure back = analysis.under(-67.0);
+  EXPECT_NEAR(forth.flank_sliding, back.flank_sliding, 0.05 * forth.flank_sliding);
+  EXPECT_NEAR(forth.interface_sliding, back.interface_sliding, 0.05 * forth.interface_sliding);
+}
+
+TEST(ExposureMap, IsTheToothModelAtItsStagesAndNearItBetween)
+{
+  const RatedUse& use = ratedUse();
+  const Exposure fresh = ExposureAnalysis(use.parameters, POSITIONS).under(use.duty.phases[0].load_torque);
+  EXPECT_DOUBLE_EQ(use.exposures.at(0, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
+  EXPECT_LT(use.exposures.largestError(use.parameters, use.duty, POSITIONS), 0.05);
+}
+
+TEST(DriveAgeing, NominalWearIsTheClosedFormAsLongAsWearChangesLittle)
+{
+  const RatedUse& use = ratedUse();
+  for (const bool changes : { false, true })
+  {
+    const NominalUse closed(use.ageing, use.parameters.life, changes);
+    DriveNature tough = nominalDrive(use.parameters.life);
+    tough.flank_factor = 1e-6;  // no wear to feed back
+    tough.interface_factor = 1e-6;
+    tough.bearing_life = 1e30;
+    const double hours = 2.6 * use.parameters.life.grease_turns / use.duty.turnsPerHour();
+    const DriveAgeing::Life life = use.ageing.live(tough, hours, hours, changes, {});
+    EXPECT_FALSE(life.end);
+    const Usage usage = closed.until(hours);
+    EXPECT_NEAR(1e6 * life.age.flank_wear, usage.flank_wear, 1e-3 * usage.flank_wear);
+    EXPECT_NEAR(life.age.bearing_turns, usage.bearing_turns, 1e-6 * usage.bearing_turns);
+  }
+}
+
+TEST(DriveAgeing, LimitsEndALifeAndTheEndIsFoundExactly)
+{
+  const RatedUse& use = ratedUse();
+  const DriveNature nominal = nominalDrive(use.parameters.life);
+  double last = -1.0;
+  const DriveAgeing::Life life = use.ageing.live(nominal, 1e6, 500.0, true,
+                                                 [&](double hours, const DriveAge&)
+                                                 {
+                                                   EXPECT_GT(hours, last);
+                                                   last = hours;
+                                                 });
+  ASSERT_TRUE(life.end);
+  EXPECT_EQ(last, life.hours);
+  const double largest = std::max({ life.age.flank_wear / use.parameters.life.flank_wear_limit,
+                                    life.age.interface_wear / use.parameters.life.interface_wear_limit,
+                                    std::sqrt(spallSize(nominal, life.age.bearing_turns)) });
+  EXPECT_NEAR(largest, 1.0, 1e-6);
+
+  DriveNature soft = nominal;
+  soft.flank_factor = 50.0;
+  const DriveAgeing::Life shorter = use.ageing.live(soft, 1e6, 1e6, true, {});
+  EXPECT_EQ(shorter.end, EndOfLife::FLANK_WEAR);
+  EXPECT_LT(shorter.hours, life.hours);
+}
+
+TEST(RemainingLife, WithoutReadingsIsThePriorOfTheCatalogue)
+{
+  LifeParameters life = shippedLife();
+  life.wear_spread = 0.0;
+  life.spall_spread = 0.0;
+  const double turns_per_hour = life.rated_speed * 3600.0 / TWO_PI;
+  RemainingLife filter(life, 20000, 7);
+  Outlook rated{ 1000.0, {} };
+  for (int i = 0; i < 400; ++i)
+  {
+    rated.usage.push_back({ 0.0, 0.0, 1000.0 * i * turns_per_hour });
+  }
+  const RemainingHours fresh = filter.remaining(rated);
+  EXPECT_NEAR(fresh.quantile[1], (1.0 + life.spall_growth) * life.bearing_l10, 0.05 * life.bearing_l10);
+  EXPECT_NEAR(fresh.quantile[2], (1.0 + life.spall_growth) * life.bearing_l50, 0.03 * life.bearing_l50);
+  EXPECT_TRUE(std::is_sorted(fresh.quantile.begin(), fresh.quantile.end()));
+}
+
+TEST(RemainingLife, NarrowsOnADriveWhoseWearItReads)
+{
+  LifeParameters life = shippedLife();
+  life.bearing_l10 *= 100.0;  // leave the bearing out
+  life.bearing_l50 *= 100.0;
+  const double truth = 2.0;  // flank factor
+  const double hourly = 1e-3 * life.flank_wear_limit;
+  RemainingLife filter(life, 2000, 3);
+  boost::random::mt19937 random(5);
+  boost::random::normal_distribution<double> normal;
+  const Outlook outlook{ 1000.0, { {}, { 1000.0 * hourly, 0.0, 1.0 } } };
+  const auto width = [&]
+  {
+    const RemainingHours remaining = filter.remaining(outlook);
+    return remaining.quantile[3] - remaining.quantile[1];
+  };
+  const double at_first = width();
+  for (int hour = 1; hour <= 300; ++hour)
+  {
+    filter.use({ hourly, 0.0, 1.0 });
+    filter.read({ truth * hourly * hour + 1e-6 * normal(random), 1e-6, 0.01 * normal(random), 0.01 });
+  }
+  EXPECT_LT(width(), 0.1 * at_first);
+  const double remaining = (life.flank_wear_limit / (truth * hourly)) - 300.0;
+  EXPECT_NEAR(filter.remaining(outlook).quantile[2], remaining, 0.1 * remaining);
+  EXPECT_GT(filter.remaining(outlook).by_cause[0], 0.99);
+}
+
+TEST(RemainingLife, IntervalsHoldTheTruthAsOftenAsTheySay)
+{
+  const RatedUse& use = ratedUse();
+  const LifeTrialOptions options{ 100, 11, 2000.0, 500, 1e-6, 0.05, true };
+  const std::vector<LifeTrial> trials = runLifeTrials(use.parameters, use.ageing, options, 1e6, [](double) {});
+  const Coverage all = coverage(trials, 0.0);
+  ASSERT_GT(all.said, 1000);
+  EXPECT_GT(all.share(), 0.70);
+  EXPECT_LT(all.share(), 0.90);
+}
+
+TEST(DutyCycle, RefusesAFileWithoutMotion)
+{
+  const std::string path = ::testing::TempDir() + "/duty.csv";
+  const auto write = [&](const char* rows) {
+    std::ofstream(path) << "duration,motor_speed,load_torque,temperature\n" << rows;
+  };
+  write("10,0,5,20\n");
+  EXPECT_THROW(DutyCycle::fromFile(path), InputError);
+  write("0,10,5,20\n");
+  EXPECT_THROW(DutyCycle::fromFile(path), InputError);
+  write("10,-62.83185307179586,5,20\n10,0,0,20\n");
+  EXPECT_NEAR(DutyCycle::fromFile(path).turnsPerHour(), 5.0 * 3600.0, 1e-6);
+}
+}  // namespace
+}  // namespace hjt

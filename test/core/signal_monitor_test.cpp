@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
+#include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double ARCSEC = TWO_PI / 360.0 / 3600.0;
+constexpr double RATIO = 101.0;
+constexpr std::int64_t SAMPLE = 500000;  // [ns]
+
+/// A joint that moves as told, with a known error of motion and a known torque, read through the twin's encoders.
+class Synthetic
+{
+public:
+  explicit Synthetic(const Parameters& parameters)
+    : orders(trackedOrders(parameters.gear, parameters.bearing))
+    , monitor(parameters)
+    , motor_encoder_(parameters.sensors)
+    , output_encoder_(parameters.sensors)
+  {
+  }
+
+  std::function<double(double)> speed = [](double) { return 100.0; };                 // of time [rad/s]
+  std::function<double(double)> load = [](double) { return 0.0; };                    // of time [N.m]
+  std::function<double(double, double)> error = [](double, double) { return 0.0; };   // motor angle, load [rad]
+  std::function<double(double, double)> torque = [](double, double) { return 0.1; };  // motor angle, speed [N.m]
+  bool quantised = true;
+
+  /// One sample; true if it completed a window.
+  bool step()
+  {
+    time_ += 1e-9 * SAMPLE;
+    const double now = speed(time_);
+    motor_angle_ += now * 1e-9 * SAMPLE;
+    const double load_torque = load(time_);
+    const double output_angle = motor_angle_ / RATIO - error(motor_angle_, load_torque);
+    SignalSample sample;
+    sample.stamp = stamp_ += SAMPLE;
+    sample.motor_angle = quantised ? motor_encoder_.angle(motor_encoder_.count(motor_angle_)) : motor_angle_;
+    sample.output_angle = quantised ? output_encoder_.unwrappedAngle(output_angle) : output_angle;
+    sample.motor_velocity = now;
+    sample.motor_torque = torque(motor_angle_, now);
+    sample.load_torque = load_torque;
+    return monitor.update(sample);
+  }
+
+  const SignalIndicators& nextWindow()
+  {
+    while (!step())
+    {
+    }
+    return monitor.indicators();
+  }
+
+  double line(Line which, double amplitude, double phase, double angle) const
+  {
+    return amplitude * std::cos(orders[index(which)] * angle + phase);
+  }
+
+  const LineOrders orders;
+  SignalMonitor monitor;
+
+private:
+  IncrementalEncoder motor_encoder_;
+  AbsoluteEncoder output_encoder_;
+  double time_{};
+  double motor_angle_{};
+  std::int64_t stamp_{};
+};
+
+TEST(TrackedOrders, AreThoseOfTheGearAndItsBearing)
+{
+  const Parameters parameters = shippedParameters();
+  const LineOrders orders = trackedOrders(parameters.gear, parameters.bearing);
+  EXPECT_NEAR(orders[index(Line::CIRCULAR_SPLINE_2)], 1.9802, 5e-5);
+  EXPECT_NEAR(orders[index(Line::CAGE)], 0.4487, 5e-5);
+  EXPECT_NEAR(orders[index(Line::BALL)], 4.8244, 5e-5);
+  EXPECT_NEAR(orders[index(Line::OUTER)], 10.3207, 5e-5);
+  EXPECT_NEAR(orders[index(Line::INNER)], 12.6793, 5e-5);
+  EXPECT_NEAR(orders[index(Line::INNER_BELOW)], 10.6793, 5e-5);
+  EXPECT_EQ(orders[index(Line::TOOTH_PASS)], 200.0);
+}
+
+/// Lines of 0.3 to 5 arcsec below encoder counts of 3 and 2.5 arcsec, at a speed that varies, must come out within 0.1
+/// arcsec: eight standard errors.
+void expectLinesRecovered(const std::function<double(double)>& speed)
+{
+  Synthetic joint(shippedParameters());
+  joint.speed = speed;
+  joint.error = [&](double angle, double)
+  {
+    return ARCSEC *
+           (joint.line(Line::WAVE_GENERATOR_1, 2.0, 0.4, angle) + joint.line(Line::WAVE_GENERATOR_2, 5.0, 1.0, angle) +
+            joint.line(Line::WAVE_GENERATOR_4, 1.5, -2.0, angle) +
+            joint.line(Line::CIRCULAR_SPLINE_2, 0.8, 2.5, angle) + joint.line(Line::CAGE, 0.5, 0.1, angle) +
+            joint.line(Line::BALL, 0.3, 0.7, angle) + joint.line(Line::OUTER, 1.0, 0.0, angle) +
+            joint.line(Line::INNER_ABOVE, 0.6, 3.0, angle));
+  };
+  const SignalIndicators& found = joint.nextWindow();
+  const auto amplitude = [&](Line line) { return found.amplitude(LineSignal::KINEMATIC_ERROR, line) / ARCSEC; };
+  constexpr double TOLERANCE = 0.1;
+  EXPECT_NEAR(amplitude(Line::WAVE_GENERATOR_1), 2.0, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::WAVE_GENERATOR_2), 5.0, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::WAVE_GENERATOR_4), 1.5, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::CIRCULAR_SPLINE_2), 0.8, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::CAGE), 0.5, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::BALL), 0.3, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::OUTER), 1.0, TOLERANCE);
+  EXPECT_NEAR(amplitude(Line::INNER_ABOVE), 0.6, TOLERANCE);
+  for (const Line line : { Line::BALL_DOUBLE, Line::OUTER_BELOW, Line::OUTER_ABOVE, Line::INNER, Line::INNER_BELOW })
+  {
+    EXPECT_LT(amplitude(line), TOLERANCE) << "line " << index(line);
+  }
+  EXPECT_NEAR(found.phase(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_2), 1.0, 0.02);
+  EXPECT_NEAR(found.phase(LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2), 2.5, 0.12);
+  // The samples are too far apart for the tooth pass.
+  EXPECT_TRUE(std::isnan(amplitude(Line::TOOTH_PASS)));
+}
+
+TEST(SignalMonitor, RecoversLinesBelowTheEncodersCountsAtVaryingSpeed)
+{
+  expectLinesRecovered([](double time) { return 100.0 + 60.0 * std::sin(0.9 * time); });
+}
+
+TEST(SignalMonitor, RecoversLinesFromAMotionBackAndForth)
+{
+  expectLinesRecovered([](double time) { return 150.0 * std::sin(0.8 * time); });
+}
+
+TEST(SignalMonitor, LeavesOutLinesTheTravelCannotTellApart)
+{
+  Synthetic joint(shippedParameters({ "indicators.window_turns=12.0" }));
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_2)));
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2)));
+  EXPECT_FALSE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::OUTER)));
+}
+
+TEST(SignalMonitor, SeesTheToothPassAtLowSpeed)
+{
+  Synthetic joint(shippedParameters({ "indicators.window_turns=60.0" }));
+  joint.speed = [](double) { return 8.8; };
+  joint.error = [&](double angle, double) { return ARCSEC * joint.line(Line::TOOTH_PASS, 1.0, 0.3, angle); };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_NEAR(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::TOOTH_PASS) / ARCSEC, 1.0, 0.1);
+}
+
+TEST(SignalMonitor, FindsLinesInTheTorque)
+{
+  Synthetic joint(shippedParameters());
+  joint.torque = [&](double angle, double)
+  { return 0.15 + joint.line(Line::WAVE_GENERATOR_2, 0.004, 0.0, angle) + joint.line(Line::OUTER, 0.001, 0.0, angle); };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_2), 0.004, 1e-6);
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::OUTER), 0.001, 1e-6);
+  EXPECT_LT(found.amplitude(LineSignal::MOTOR_TORQUE, Line::INNER), 1e-6);
+  EXPECT_NEAR(found[ScalarIndicator::RUNNING_TORQUE], 0.15, 1e-4);
+}
+
+TEST(SignalMonitor, FindsRatioAndPeakToPeak)
+{
+  Synthetic joint(shippedParameters());
+  joint.error = [](double angle, double) { return 1e-5 * angle / RATIO + 20.0 * ARCSEC * std::cos(2.0 * angle); };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_NEAR(found[ScalarIndicator::RATIO_DEVIATION], 1e-5, 2e-6);
+  // Two counts of both encoders lie on top.
+  EXPECT_NEAR(found[ScalarIndicator::KINEMATIC_ERROR] / ARCSEC, 40.0, 8.0);
+  EXPECT_GT(found[ScalarIndicator::KINEMATIC_ERROR] / ARCSEC, 40.0);
+}
+
+TEST(SignalMonitor, TellsCoulombFromViscousFrictionBesideGravity)
+{
+  Synthetic joint(shippedParameters());
+  joint.speed = [](double time) { return 150.0 * std::sin(0.8 * time); };
+  joint.torque = [](double angle, double speed)
+  { return std::copysign(0.08, speed) + 4e-4 * speed + 0.2 * std::sin(angle / RATIO - 0.3); };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_NEAR(found[ScalarIndicator::COULOMB_TORQUE], 0.08, 0.002);
+  EXPECT_NEAR(found[ScalarIndicator::VISCOUS_FRICTION], 4e-4, 2e-5);
+}
+
+TEST(SignalMonitor, DoesNotTellCoulombFromViscousFrictionAtOneSpeed)
+{
+  Synthetic joint(shippedParameters());
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::COULOMB_TORQUE]));
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::VISCOUS_FRICTION]));
+}
+
+/// Torsion with dry friction beside the spring: rising and falling branches `lost` apart.
+class WithLoop : public testing::Test
+{
+protected:
+  static constexpr double STIFFNESS = 31e3;  // [N.m/rad]
+  static constexpr double LOST = 1.5e-4;     // [rad]
+  static constexpr double SWING = 12.0;      // [N.m]
+
+  void swing()
+  {
+    joint_.load = [](double time) { return SWING * std::sin(TWO_PI * 0.5 * time); };
+    joint_.error = [this](double, double load)
+    {
+      rising_ = load > last_ || (load == last_ && rising_);
+      last_ = load;
+      return load / STIFFNESS + (rising_ ? -0.5 : 0.5) * LOST;
+    };
+  }
+
+  Synthetic joint_{ shippedParameters() };
+
+private:
+  double last_{ -1.0 };
+  bool rising_{ true };
+};
+
+TEST_F(WithLoop, StiffnessLostMotionAndAreaAreFound)
+{
+  swing();
+  const SignalIndicators& found = joint_.nextWindow();
+  // The window holds no whole number of loops: what is over leans on the slope.
+  EXPECT_NEAR(found[ScalarIndicator::TORSIONAL_STIFFNESS], STIFFNESS, 0.02 * STIFFNESS);
+  EXPECT_NEAR(found[ScalarIndicator::LOST_MOTION], LOST, 0.05 * LOST);
+  EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS_AREA], LOST * 2.0 * SWING, 0.05 * LOST * 2.0 * SWING);
+}
+
+TEST(SignalMonitor, GivesNoStiffnessWithoutASwingingLoad)
+{
+  Synthetic joint(shippedParameters());
+  joint.load = [](double) { return 5.0; };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::TORSIONAL_STIFFNESS]));
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::LOST_MOTION]));
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::HYSTERESIS_AREA]));
+}
+
+TEST(SignalMonitor, FindsEfficiencyWhereTheLoadIsKnown)
+{
+  Synthetic joint(shippedParameters());
+  joint.load = [](double) { return 40.0; };
+  joint.torque = [](double, double) { return 40.0 / RATIO / 0.75; };
+  EXPECT_NEAR(joint.nextWindow()[ScalarIndicator::EFFICIENCY], 0.75, 1e-3);
+}
+
+TEST(SignalMonitor, ResidualOfNoiseIsGaussianAndOfImpulsesIsNot)
+{
+  const auto residual_of = [](double impulse)
+  {
+    Synthetic joint(shippedParameters());
+    joint.quantised = false;
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0.0, 2e-6);
+    std::uint64_t count = 0;
+    joint.error = [&](double, double) { return noise(random) + (++count % 100 == 0 ? impulse : 0.0); };
+    joint.nextWindow();
+    return joint.nextWindow();
+  };
+  const SignalIndicators still = residual_of(0.0);
+  EXPECT_NEAR(still[ScalarIndicator::RESIDUAL_RMS], 2e-6, 1e-7);
+  EXPECT_NEAR(still[ScalarIndicator::RESIDUAL_KURTOSIS], 3.0, 0.2);
+  EXPECT_LT(still[ScalarIndicator::RESIDUAL_CREST], 5.0);
+  const SignalIndicators struck = residual_of(2e-5);
+  EXPECT_GT(struck[ScalarIndicator::RESIDUAL_KURTOSIS], 10.0);
+  EXPECT_GT(struck[ScalarIndicator::RESIDUAL_CREST], 5.0);
+}
+
+TEST(SignalMonitor, WorksWithTheOutputEncoderAlone)
+{
+  SignalMonitor monitor(shippedParameters());
+  SignalSample sample;
+  bool done = false;
+  for (int i = 1; !done; ++i)
+  {
+    sample.stamp = i * SAMPLE;
+    sample.output_angle = 100.0 / RATIO * 1e-9 * SAMPLE * i;
+    sample.motor_torque = 0.1 + 0.01 * std::cos(4.0 * RATIO * sample.output_angle);
+    done = monitor.update(sample);
+  }
+  EXPECT_NEAR(monitor.indicators().amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_4), 0.01, 1e-5);
+  EXPECT_TRUE(std::isnan(monitor.indicators().amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_4)));
+  EXPECT_TRUE(std::isnan(monitor.indicators()[ScalarIndicator::KINEMATIC_ERROR]));
+}
+
+TEST(SignalMonitor, PassesOverSamplesThatSayNothing)
+{
+  SignalMonitor monitor(shippedParameters());
+  SignalSample sample;
+  EXPECT_FALSE(monitor.update(sample));
+  sample.stamp = 1;
+  sample.motor_angle = 0.0;
+  sample.motor_torque = 0.0;
+  monitor.update(sample);
+  monitor.update(sample);  // no progress in time
+  EXPECT_EQ(monitor.refused(), 2U);
+}
+
+TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)
+{
+  const Parameters parameters = shippedParameters({ "indicators.window_turns=20.0", "indicators.baseline_windows=3" });
+  Synthetic joint(parameters);
+  Assessor assessor(parameters);
+  const std::uint64_t before = allocationCount();
+  for (int window = 0; window < 6; ++window)
+  {
+    assessor.take(joint.nextWindow());
+  }
+  EXPECT_EQ(allocationCount(), before);
+}
+
+/// A joint whose order-2 line and noise are healthy until told otherwise.
+class Assessed : public testing::Test
+{
+protected:
+  Assessed()
+  {
+    joint_.error = [this](double angle, double)
+    {
+      return ARCSEC * (joint_.line(Line::WAVE_GENERATOR_2, 5.0, 1.0, angle) +
+                       joint_.line(faulty_, fault_amplitude_, 2.5, angle) + noise_(random_));
+    };
+    joint_.torque = [this](double, double) { return 0.1 * drag_ + 0.001 * noise_(random_); };
+  }
+
+  const Assessment& windows(int count)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      assessor_.take(joint_.nextWindow());
+    }
+    return assessor_.assessment();
+  }
+
+  Line faulty_{ Line::WAVE_GENERATOR_2 };
+  double fault_amplitude_{};
+  double drag_{ 1.0 };
+  std::mt19937 random_{ 11 };
+  std::normal_distribution<double> noise_{ 0.0, 1.0 };
+  Synthetic joint_{ shippedParameters() };
+  Assessor assessor_{ shippedParameters() };
+};
+
+TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
+{
+  EXPECT_EQ(windows(10).state, AssessmentState::LEARNING);
+  for (int i = 0; i < 30; ++i)
+  {
+    const Assessment& assessment = windows(1);
+    EXPECT_EQ(assessment.state, AssessmentState::ASSESSED);
+    EXPECT_EQ(assessment.level, HealthLevel::OK);
+    EXPECT_EQ(assessment.cause, Cause::NONE);
+  }
+}
+
+TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
+{
+  windows(10);
+  faulty_ = Line::OUTER;
+  fault_amplitude_ = 2.0;
+  EXPECT_EQ(windows(1).level, HealthLevel::OK) << "one window is not enough";
+  const Assessment faulty = windows(1);
+  EXPECT_GE(faulty.level, HealthLevel::WARN);
+  EXPECT_EQ(faulty.cause, Cause::BEARING_OUTER_RACE);
+  EXPECT_GT(faulty.confidence, 0.5);
+  ASSERT_GT(faulty.evidence_count, 0U);
+  EXPECT_STREQ(indicatorName(faulty.evidence[0].indicator), "error_outer");
+  EXPECT_NEAR(faulty.evidence[0].value / ARCSEC, 2.0, 0.3);
+  fault_amplitude_ = 0.0;
+  EXPECT_GE(windows(1).level, HealthLevel::WARN);
+  EXPECT_EQ(windows(1).level, HealthLevel::OK);
+  EXPECT_EQ(assessor_.assessment().cause, Cause::NONE);
+}
+
+TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
+{
+  windows(10);
+  fault_amplitude_ = 1.5;  // at a right angle to the healthy 5 arcsec: the amplitude only grows to 5.2
+  EXPECT_GE(windows(2).level, HealthLevel::WARN);
+}
+
+TEST_F(Assessed, DragIsPutDownToTheLubricant)
+{
+  windows(10);
+  drag_ = 1.6;
+  const Assessment& assessment = windows(2);
+  EXPECT_GE(assessment.level, HealthLevel::WARN);
+  EXPECT_EQ(assessment.cause, Cause::LUBRICANT_DEGRADATION);
+}
+
+TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
+{
+  windows(10);
+  joint_.speed = [](double) { return 30.0; };
+  drag_ = 0.5;
+  windows(1);  // the window that begins at the old speed
+  EXPECT_EQ(windows(1).state, AssessmentState::LEARNING);
+  EXPECT_EQ(assessor_.assessment().level, HealthLevel::OK);
+}
+
+TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
+{
+  for (std::size_t cause = 1; cause < CAUSE_COUNT; ++cause)
+  {
+    FeatureScores scores{};
+    for (std::size_t feature = 0; feature < FEATURE_COUNT; ++feature)
+    {
+      const Move move = expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature));
+      scores[feature].compared = true;
+      scores[feature].score = move == Move::UP ? 8.0 : move == Move::DOWN ? -8.0 : 0.0;
+    }
+    const auto probabilities = causeProbabilities(scores);
+    const auto best = std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin();
+    EXPECT_STREQ(causeName(static_cast<Cause>(best)), causeName(static_cast<Cause>(cause)));
+  }
+}
+/// The twin held at 150 rad/s under a load that swings; its indicators of the second window of 30 turns.
+SignalIndicators twinIndicators(std::vector<std::string> edits)
+{
+  edits.insert(edits.end(), { "indicators.window_turns=30.0", "output.load_inertia=0.5" });
+  Twin twin(shippedParameters(edits));
+  twin.watchSignals(true);
+  double held_back = 0.0;  // integral part of the speed control [N.m]
+  const double step = 1e-9 * static_cast<double>(twin.stepLength());
+  while (twin.signalIndicators().windows < 2)
+  {
+    const double missing = 150.0 - twin.outputs().motor_velocity;
+    held_back += 0.2 * missing * step;
+    twin.commandMotorTorque(twin.stamp() + twin.stepLength(), 0.02 * missing + held_back);
+    twin.commandLoadTorque(twin.stamp() + twin.stepLength(),
+                           12.0 * std::sin(TWO_PI * 3.0 * 1e-9 * static_cast<double>(twin.stamp())));
+    twin.step(twin.stamp() + twin.stepLength());
+  }
+  return twin.signalIndicators();
+}
+
+TEST(TwinsIndicators, FollowPhysicalEdits)
+{
+  const SignalIndicators healthy = twinIndicators({});
+  const double stiffness = healthy[ScalarIndicator::TORSIONAL_STIFFNESS];
+  EXPECT_GT(stiffness, 20e3);
+  EXPECT_LT(stiffness, 50e3);
+  EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 1e-5);
+
+  const SignalIndicators soft_cup = twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
+  EXPECT_LT(soft_cup[ScalarIndicator::TORSIONAL_STIFFNESS], 0.95 * stiffness);
+
+  const SignalIndicators thick_grease = twinIndicators({ "motor.viscous_friction=1.066e-3" });
+  EXPECT_NEAR(thick_grease[ScalarIndicator::RUNNING_TORQUE] - healthy[ScalarIndicator::RUNNING_TORQUE], 0.15, 0.03);
+
+  const SignalIndicators worn_teeth = twinIndicators({ "mesh.flank_clearance=5.0e-6" });
+  EXPECT_GT(worn_teeth[ScalarIndicator::LOST_MOTION], healthy[ScalarIndicator::LOST_MOTION]);
+}
+}  // namespace
+}  // namespace hjt

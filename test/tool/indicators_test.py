@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin indicators`."""
+import math
+
+import tool
+
+ARCSEC = math.pi / 180.0 / 3600.0
+SMALL_WINDOWS = ["--set", "indicators.window_turns=60.0", "--set", "indicators.baseline_windows=3"]
+
+
+def recording(line_after=None, seconds=30.0, rate=500.0):
+    """CSV of a joint with 5 arcsec at order 2; from `line_after` on also 4 arcsec at the outer race's order."""
+    lines = ["t,theta,phi,amps"]
+    for row in range(int(seconds * rate)):
+        time = row / rate
+        motor = 80.0 * time + 10.0 * math.sin(3.0 * time)
+        error = 5.0 * math.cos(2.0 * motor)
+        if line_after is not None and time > line_after:
+            error += 4.0 * math.cos(10.3207 * motor)
+        # A little of what is not in any model, so that healthy windows differ.
+        error += 0.5 * math.sin(row * row * 0.37)
+        lines.append(f"{time:.6f},{motor:.9f},{motor / 101.0 - ARCSEC * error:.12f},{2.0 + 0.01 * math.cos(row * 1.3):.5f}")
+    return "\n".join(lines) + "\n"
+
+
+COLUMNS = ["--time", "t", "--motor-angle", "theta", "--output-angle", "phi", "--motor-torque", "amps",
+           "--torque-scale", 0.1]
+
+
+class Indicators(tool.ToolTest):
+    def test_a_line_that_appears_is_found_and_named(self):
+        self.write("a.csv", recording(line_after=15.0))
+        report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--out", "windows.csv")
+        first, last = report["windows"][0], report["windows"][-1]
+        self.assertAlmostEqual(first["indicators"]["error_wave_generator_2"] / ARCSEC, 5.0, delta=0.1)
+        self.assertLess(first["indicators"]["error_outer"] / ARCSEC, 0.1)
+        self.assertAlmostEqual(last["indicators"]["error_outer"] / ARCSEC, 4.0, delta=0.1)
+        self.assertAlmostEqual(last["indicators"]["running_torque"], 0.2, delta=0.001)
+        self.assertEqual(first["assessment"]["state"], "learning")
+        self.assertIn(report["assessment"]["level"], ["WARN", "ERROR"])
+        self.assertEqual(report["assessment"]["cause"], "bearing_outer_race")
+        self.assertEqual(report["assessment"]["evidence"][0]["indicator"], "error_outer")
+        with open(self.path("windows.csv")) as file:
+            self.assertEqual(len(file.readlines()), 1 + len(report["windows"]))
+
+    def test_a_reference_is_saved_and_given(self):
+        self.write("healthy.csv", recording())
+        self.write("faulty.csv", recording(line_after=0.0, seconds=12.0))
+        healthy = self.succeed_json("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
+        self.assertEqual(healthy["assessment"]["level"], "OK")
+        faulty = self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml")
+        self.assertEqual(faulty["windows"][0]["assessment"]["state"], "assessed")
+        self.assertEqual(faulty["assessment"]["cause"], "bearing_outer_race")
+
+    def test_what_a_model_shows_too_is_taken_off(self):
+        self.write("a.csv", recording(line_after=0.0, seconds=12.0))
+        with open(self.path("a.csv")) as file:
+            self.write("model.csv", file.read().replace("t,theta,phi,amps",
+                                                        "time,motor_angle_encoder,output_angle_encoder,motor_torque"))
+        report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--model", "model.csv")
+        for name in ["error_wave_generator_2", "error_outer", "kinematic_error"]:
+            self.assertAlmostEqual(report["windows"][-1]["indicators"][name], 0.0, delta=1e-12)
+
+    def test_a_bag_of_the_twin_gives_the_same_as_its_table(self):
+        run = ["--torque", 0.2, "--duration", 1.5, "--set", "publish.joint_states_rate=2000"]
+        short = ["--set", "indicators.window_turns=5.0"]
+        reports = []
+        for name in ["a.bag", "a.csv"]:
+            self.succeed("simulate", *run, "--out", name)
+            reports.append(self.succeed_json("indicators", name, *short))
+        self.assertGreater(len(reports[0]["windows"]), 0)
+        self.assertEqual(len(reports[0]["windows"]), len(reports[1]["windows"]))
+        for one, other in zip(*(report["windows"] for report in reports)):
+            self.assertAlmostEqual(one["indicators"]["kinematic_error"], other["indicators"]["kinematic_error"],
+                                   delta=1e-9)
+            self.assertAlmostEqual(one["indicators"]["running_torque"], other["indicators"]["running_torque"],
+                                   delta=1e-9)
+
+    def test_what_cannot_be_read_is_said(self):
+        self.write("short.csv", recording(seconds=1.0))
+        self.write("no_angle.csv", "time,motor_torque\n0,1\n")
+        self.write("bad.yaml", "baseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
+                               "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
+        self.fail_with(1, ["too short for one window"], "indicators", "short.csv", *COLUMNS)
+        self.fail_with(1, ["neither column 'motor_angle_encoder'"], "indicators", "no_angle.csv")
+        self.fail_with(1, ["bad.yaml is no baseline", "unknown indicator nonsense"], "indicators", "short.csv",
+                       *COLUMNS, "--baseline", "bad.yaml")
+
+
+if __name__ == "__main__":
+    tool.main()

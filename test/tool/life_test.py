@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin life` as its user meets it."""
+import csv
+
+import tool
+
+HEADER = "duration,motor_speed,load_torque,temperature\n"
+
+
+class Life(tool.ToolTest):
+    def duty(self, rows="10,209.4,67,40\n"):
+        return self.write("duty.csv", HEADER + rows)
+
+    def test_a_drive_ages_until_its_first_limit(self):
+        path = self.path("age.csv")
+        document = self.succeed_json("life", "age", self.duty(), "--every", 5000, "--csv", path)
+        self.assertEqual(document["end"], "bearing")
+        with open(path, encoding="utf-8") as file:
+            rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        self.assertEqual(rows[0]["hours"], 0.0)
+        self.assertEqual(rows[-1]["hours"], document["hours"])
+        for before, after in zip(rows, rows[1:]):
+            self.assertLess(before["flank_wear"], after["flank_wear"])
+            self.assertLess(before["bearings_failed"], after["bearings_failed"])
+
+    def test_more_torque_and_warmth_wear_faster(self):
+        hours = ("--hours", 1000)
+        rated, heavy, warm = (self.succeed_json("life", "age", self.duty(row), *hours)
+                              for row in ("10,209.4,67,40\n", "10,209.4,108,40\n", "10,209.4,67,70\n"))
+        self.assertEqual(rated["end"], "still in use")
+        self.assertGreater(heavy["flank_wear"], 1.3 * rated["flank_wear"])
+        self.assertGreater(warm["flank_wear"], rated["flank_wear"])
+
+    def test_a_deep_scratch_cracks_the_root(self):
+        document = self.succeed_json("life", "age", self.duty(), "--set", "life.flaw_depth=1.0e-4")
+        self.assertEqual(document["end"], "root crack")
+
+    def test_trials_are_the_same_every_time(self):
+        trials = ("life", "trials", self.duty(), "--lives", 5, "--every", 5000, "--particles", 200)
+        first = self.succeed_json(*trials, "--seed", 3)
+        self.assertEqual(first, self.succeed_json(*trials, "--seed", 3))
+        self.assertEqual(first["lives"], 5)
+        self.assertIn("80 % interval", self.succeed(*trials).stdout)
+
+    def test_wrong_usage(self):
+        self.fail_with(2, [], "life")
+        self.fail_with(2, [], "life", "age", self.path("nowhere.csv"))
+        self.fail_with(2, [], "life", "trials", self.duty(), "--lives", 0)
+
+    def test_bad_duty_cycles_are_named(self):
+        self.fail_with(1, ["duration", ":2"], "life", "age", self.duty("0,1,2,3\n"))
+        self.fail_with(1, ["never turns"], "life", "age", self.duty("10,0,67,40\n"))
+        self.fail_with(1, ["temperature"], "life", "age", self.write("duty.csv", "duration,motor_speed,load_torque\n1,2,3\n"))
+
+
+if __name__ == "__main__":
+    tool.main()
