@@ -366,7 +366,7 @@ def main():
     lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *parts(options.parts), "## Omissions", ""]
     if absent:
         lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
-    lines += [f"Given up after {options.limit:g} s of processor time, explicit peers and RADAU5 after twice that (tighter "
+    lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that (tighter "
               "settings of a solver that gave up early or twice with it), or failed:", "", *lost, OMISSIONS.strip(), "", "---", "",
               f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} runs of each, "
               "fewer of those that take longer: the tables say how many."]
