@@ -64,8 +64,10 @@ class Runner:
                 repr(max(step, SAMPLE_PERIOD)), "--advance", repr(advance), "--json"]
         for key, value in changes.items():
             line += ["--set", f"{key}={text(value)}"]
-        for option, teeth in [("--missing-teeth", cell.missing), ("--cut-rim", cell.cut)]:
-            line += [option, ",".join(map(str, teeth))] if teeth else []
+        line += ["--set", "fault_scale.rim_crack_segments=1"]
+        for fault, teeth in [("tooth_tip_crack:1", cell.missing), ("flexspline_crack:1", cell.cut)]:
+            for tooth in teeth:
+                line += ["--fault", f"{fault}:{tooth}"]
         done = subprocess.run(line, capture_output=True, text=True, timeout=TIMEOUT, check=False)
         document = json.loads(done.stdout) if done.stdout else None
         return done.returncode, document, done.stderr.strip()

@@ -30,6 +30,7 @@ int main(int argc, char** argv)
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);
   hjt::addIndicatorsCommand(app, exit_code);
+  hjt::addFaultsCommand(app, exit_code);
   hjt::addSweepCommand(app, exit_code);
   hjt::addParametersCommand(app, exit_code);
 

@@ -8,6 +8,11 @@
 
 namespace hjt
 {
+void BearingFriction::loosen(double loss, double least) noexcept
+{
+  preload_ = std::max(parameters_.race_preload - loss, std::min(least, parameters_.race_preload));
+}
+
 double BearingFriction::torqueAtViscosity(double speed, double load, double viscosity) const noexcept
 {
   constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
@@ -16,7 +21,7 @@ double BearingFriction::torqueAtViscosity(double speed, double load, double visc
   const double root = std::cbrt(std::max(product, LOW_SPEED));
   const double rolling = product < LOW_SPEED ? 160.0 : root * root;
   const double speed_part = parameters_.lubricant_factor * rolling * diameter * diameter * diameter * 1e-7;
-  const double load_part = parameters_.load_factor * (load + parameters_.race_preload) * diameter;
+  const double load_part = parameters_.load_factor * (load + preload_) * diameter;
   return 1e-3 * (speed_part + load_part);
 }
 
@@ -26,6 +31,6 @@ double BearingFriction::viscosity(double temperature) const noexcept
   constexpr double OFFSET = 0.7;           // mm^2/s
   const double known = std::log10(1e6 * parameters_.viscosity + OFFSET);
   const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
-  return 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
+  return viscosity_factor_ * 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
 }
 }  // namespace hjt

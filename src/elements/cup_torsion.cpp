@@ -9,8 +9,20 @@
 namespace hjt
 {
 CupTorsion::CupTorsion(const CupParameters& parameters, const ToothRing& rest)
-  : slopes_(parameters.torsion_stiffness), torques_(parameters.torsion_breakpoints), rest_radial_(rest.radial())
+  : made_slopes_(parameters.torsion_stiffness)
+  , slopes_(made_slopes_)
+  , torques_(parameters.torsion_breakpoints)
+  , rest_radial_(rest.radial())
 {
+  scaleStiffness(1.0);
+}
+
+void CupTorsion::scaleStiffness(double factor) noexcept
+{
+  for (std::size_t i = 0; i < slopes_.size(); ++i)
+  {
+    slopes_[i] = factor * made_slopes_[i];
+  }
   rotations_[0] = torques_[0] / slopes_[0];
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
 }

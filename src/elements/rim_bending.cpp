@@ -11,6 +11,7 @@ namespace hjt
 RimBending::RimBending(const RingParameters& parameters, const ToothRing& rest)
   : law_(parameters.bending_law)
   , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.bending_stiffness))
+  , preset_(Eigen::VectorXd::Zero(rest.teeth()))
   , rest_directions_(rest.segments())
   , rest_cos_(std::cos(rest.pitchAngle()))
   , rest_sin_(std::sin(rest.pitchAngle()))
@@ -23,6 +24,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
+  const double* __restrict__ preset = preset_.data();
   double* reference = forces.segment.data();
   double* moment = forces.bending_moment.data();
   if (law_ == BendingLaw::ABSOLUTE)
@@ -52,7 +54,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
 #pragma omp simd reduction(+ : energy, large)
   for (int i = 0; i < n; ++i)
   {
-    const double angle = smallAngle(across(i) / along(i));
+    const double angle = smallAngle(across(i) / along(i)) - preset[i];
     large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
     moment[i] = stiffness[i] * angle;
     energy += 0.5 * stiffness[i] * angle * angle;
@@ -62,7 +64,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
     energy = 0.0;
     for (int i = 0; i < n; ++i)
     {
-      const double angle = smallAngle(across(i), along(i));
+      const double angle = smallAngle(across(i), along(i)) - preset[i];
       moment[i] = stiffness[i] * angle;
       energy += 0.5 * stiffness[i] * angle * angle;
     }

@@ -20,7 +20,7 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const
     }
     const Eigen::Vector2d slip(mesh.slidingSpeed(shape, contact, rates.by_motor, 0.0),
                                mesh.slidingSpeed(shape, contact, rates.by_output, 1.0));
-    friction.terms.push_back({ coefficient(slip.dot(speeds)) * std::abs(force), slip });
+    friction.terms.push_back({ tooth_factor_[contact.tooth] * coefficient(slip.dot(speeds)) * std::abs(force), slip });
   }
 }
 
@@ -44,6 +44,6 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
   {
     sum += lost(i - 1, i, i + 1);
   }
-  return parameters_.friction_coefficient * parameters_.slip_lever * sum;
+  return coefficient_ * parameters_.slip_lever * sum;
 }
 }  // namespace hjt

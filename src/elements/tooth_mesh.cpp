@@ -45,12 +45,25 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   , tooth_across_(errors.tooth_across)
   , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
   , clearance_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
+  , tip_loss_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
 {
   for (int k = 0; k < spaces_; ++k)
   {
     const double angle = TWO_PI * k / spaces_;
     space_.push_back({ std::cos(angle), std::sin(angle), errors.space_across[k], errors.space_along[k] });
   }
+  made_space_ = space_;
+  made_reach_ = reach_;
+}
+
+void ToothMesh::moveSpaces(double distance) noexcept
+{
+  for (std::size_t k = 0; k < space_.size(); ++k)
+  {
+    space_[k].across = made_space_[k].across - distance * made_space_[k].axis_y;
+    space_[k].along = made_space_[k].along + distance * made_space_[k].axis_x;
+  }
+  reach_ = made_reach_ - std::abs(distance);
 }
 
 ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept
@@ -70,7 +83,7 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 {
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
-  const double depth = zeta + tip_offset_;
+  const double depth = zeta + tip_offset_ - tip_loss_[i];
   const HalfClearance flank = profile_.at(zeta);
   const double clearance = flank.value + clearance_[i];
   const ContactRamp leading(xi - clearance, smoothing_);
@@ -124,6 +137,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
   const Space* __restrict__ spaces = space_.data();
   const double* __restrict__ ahead = tooth_across_.data();
   const double* __restrict__ clearance = clearance_.data();
+  const double* __restrict__ lost = tip_loss_.data();
   const double mid_height = mid_height_;
   const double tip_offset = tip_offset_;
   const ToothProfile& profile = profile_;
@@ -135,7 +149,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
     const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
     const double zeta = stand.zeta - own.along;
     const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
-    depth[i] = zeta + tip_offset > 0.0 ? into : OUTSIDE;
+    depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
   };
   find(n - 1, 0, 1);
 #pragma omp simd
@@ -150,8 +164,9 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
 double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
 {
   const double zeta = tooth.zeta - tooth.space_out;
-  return zeta + tip_offset_ > 0.0 ? std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
-                                    OUTSIDE;
+  return zeta + tip_offset_ > tip_loss_[i] ?
+             std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
+             OUTSIDE;
 }
 
 void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
@@ -308,7 +323,7 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
     const int shift = static_cast<int>(std::lround(std::atan2(tooth.xi, tooth.zeta) * spaces_ / TWO_PI));
     int& space = shape.space[static_cast<std::size_t>(i)];
     space = ((space + shift) % spaces_ + spaces_) % spaces_;
-    jumps += tooth.zeta + tip_offset_ > 0.0 && stiffness_[i] > 0.0 ? 1 : 0;
+    jumps += tooth.zeta + tip_offset_ > tip_loss_[i] && stiffness_[i] > 0.0 ? 1 : 0;
   }
   return jumps;
 }
@@ -318,7 +333,7 @@ ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& positio
   const ToothEngagement tooth = engage(shape, std::cos(position.output_angle), std::sin(position.output_angle), i);
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
-  return { xi, zeta + tip_offset_, std::asin(tooth.across.dot(tooth.chord.normal)),
+  return { xi, zeta + tip_offset_ - tip_loss_[i], std::asin(tooth.across.dot(tooth.chord.normal)),
            profile_.at(zeta).value + clearance_[i] - std::abs(xi) };
 }
 

@@ -28,7 +28,7 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
 }  // namespace
 
 WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear,
-                                           const ManufactureParameters& manufacture)
+                                           const ManufactureParameters& manufacture, const BearingParameters& bearing)
   : law_(parameters.law)
   , smoothing_(parameters.smoothing)
   , mean_radius_(gear.flexspline_inner_radius)
@@ -36,7 +36,20 @@ WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, 
   , centre_x_(manufacture.wave_generator_eccentricity[0])
   , centre_y_(manufacture.wave_generator_eccentricity[1])
   , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
+  , gap_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
+  , bearing_(bearing)
+  , made_radius_(mean_radius_)
+  , made_ellipticity_(ellipticity_)
+  , made_centre_x_(centre_x_)
 {
+}
+
+void WaveGeneratorContact::wear(double lobe, double other_lobe) noexcept
+{
+  const double quarter = 0.25 * (lobe + other_lobe);
+  mean_radius_ = made_radius_ - quarter;
+  ellipticity_ = made_ellipticity_ - quarter;
+  centre_x_ = made_centre_x_ - 0.5 * (lobe - other_lobe);
 }
 
 Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) const noexcept
@@ -97,14 +110,26 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   }
 }
 
+/// The gap with the sag of the faulty bearing, left in `forces`.
+void WaveGeneratorContact::addSag(const DrivePosition& position, RingForces& forces) const noexcept
+{
+  bearing_.at(position.wave_generator_angle, forces.gap, forces.gap_rate, forces.gap_second);
+  forces.gap += gap_;
+}
+
 HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
                                                        RingForces& forces) const noexcept
 {
   findFeet(shape, position, forces);
+  if (!bearing_.sound())
+  {
+    addSag(position, forces);
+  }
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ stiffness = stiffness_.data();
-  const double* __restrict__ depth = forces.contact_depth.data();
+  const double* __restrict__ gap = gapOf(forces);
+  double* __restrict__ depth = forces.contact_depth.data();
   const double* __restrict__ normal = forces.contact_normal.data();
   double* __restrict__ contact_force = forces.contact_force.data();
   double* __restrict__ teeth = forces.teeth.data();
@@ -114,7 +139,9 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
 #pragma omp simd reduction(+ : torque, energy)
   for (int i = 0; i < n; ++i)
   {
-    const ContactRamp ramp(depth[i], smoothing);
+    const double pressed = depth[i] - gap[i];
+    depth[i] = pressed;
+    const ContactRamp ramp(pressed, smoothing);
     const double force = stiffness[i] * ramp.force;
     const double nx = normal[2 * i];
     const double ny = normal[2 * i + 1];
@@ -123,6 +150,10 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
     teeth[2 * i + 1] += force * ny;
     torque -= force * (point[2 * i] * ny - point[2 * i + 1] * nx);
     energy += stiffness[i] * ramp.energy;
+  }
+  if (!bearing_.sound())
+  {
+    torque += forces.contact_force.dot(forces.gap_rate);
   }
   forces.wave_generator_torque += torque;
   forces.energy += energy;
@@ -135,6 +166,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ tooth_stiffness = stiffness_.data();
+  const double* __restrict__ gap = gapOf(forces);
   const double* __restrict__ depth = forces.contact_depth.data();
   const double* __restrict__ normal = forces.contact_normal.data();
   const double* __restrict__ curvature = forces.contact_curvature.data();
@@ -155,7 +187,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double force = contact_force[i];
     const double stiffness = tooth_stiffness[i] * ContactRamp(depth[i], smoothing).tangent;
     // The normal turns with the point at this rate; the force follows it.
-    const double turn = curvature[i] / (1.0 - curvature[i] * depth[i]);
+    const double turn = curvature[i] / (1.0 - curvature[i] * (depth[i] + gap[i]));
     const double across = -force * turn;
     xx[i] += stiffness * nx * nx + across * ny * ny;
     xy[i] += (stiffness - across) * nx * ny;
@@ -168,6 +200,21 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     by_angle[2 * i] -= along * nx - sideways * ny;
     by_angle[2 * i + 1] -= along * ny + sideways * nx;
     sum += along * lever + sideways * reach;
+  }
+  if (!bearing_.sound())
+  {
+    // The gap changes with the wave generator's angle alone.
+    for (int i = 0; i < n; ++i)
+    {
+      const double stiffness = tooth_stiffness[i] * ContactRamp(depth[i], smoothing).tangent;
+      const double nx = normal[2 * i];
+      const double ny = normal[2 * i + 1];
+      const double lever = point[2 * i] * ny - point[2 * i + 1] * nx;
+      const double rate = forces.gap_rate[i];
+      by_angle[2 * i] += stiffness * rate * nx;
+      by_angle[2 * i + 1] += stiffness * rate * ny;
+      sum += stiffness * rate * (rate - 2.0 * lever) - contact_force[i] * forces.gap_second[i];
+    }
   }
   tangent.wave_generator_stiffness += sum;
 }

@@ -8,7 +8,7 @@ RingModel::RingModel(const Parameters& parameters)
   , rest(parameters.gear)
   , tension(parameters.ring, rest)
   , bending(parameters.ring, rest)
-  , contact(parameters.contact, parameters.gear, parameters.manufacture)
+  , contact(parameters.contact, parameters.gear, parameters.manufacture, parameters.bearing)
   , cup(parameters.cup, rest)
   , mesh(parameters.mesh, parameters.gear, ManufactureErrors(parameters.manufacture, parameters.gear))
 {

@@ -98,6 +98,32 @@ void checkLife(const Parameters& p, Contradictions& check)
   check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
                 "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
                     " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
+  const auto check_limit = [&](const std::string& limit_key, double limit, const std::string& scale_key, double scale)
+  {
+    check.require(limit <= scale, { limit_key, scale_key },
+                  limit_key + " = " + numberText(limit) + " [m] must not exceed " + scale_key + " = " +
+                      numberText(scale) + " [m]");
+  };
+  check_limit("life.flank_wear_limit", p.life.flank_wear_limit, "fault_scale.tooth_wear_depth",
+              p.fault_scale.tooth_wear_depth);
+  check_limit("life.interface_wear_limit", p.life.interface_wear_limit, "fault_scale.interface_wear_depth",
+              p.fault_scale.interface_wear_depth);
+}
+
+void checkFaults(const Parameters& p, Contradictions& check)
+{
+  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
+                { "bearing.ball_diameter", "bearing.pitch_diameter" },
+                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
+                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
+  for (std::size_t i = 0; i < p.faults.size(); ++i)
+  {
+    const std::string key = faultKey(static_cast<int>(i)) + '.';
+    const std::string errors = faultErrors(p.faults[i], p, key);
+    check.require(errors.empty(), { key + "kind" }, errors);
+  }
+  check.require(p.faults.size() <= MOST_FAULTS, { faultKey(static_cast<int>(MOST_FAULTS)) + ".kind" },
+                "more than " + std::to_string(MOST_FAULTS) + " faults");
 }
 
 void checkRates(const Parameters& p, Contradictions& check)
@@ -131,6 +157,7 @@ std::vector<std::string> contradictions(const Parameters& parameters, const Para
   checkElements(parameters, check);
   checkLife(parameters, check);
   checkRates(parameters, check);
+  checkFaults(parameters, check);
   return check.take();
 }
 }  // namespace hjt

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "harmonic_joint_twin/params/choices.hpp"
@@ -159,6 +160,35 @@ public:
     mistyped(key, map_.at(key), names);
   }
 
+  /// The list of faults, its numbers in a row from 0 on.
+  void readFaults(std::vector<Fault>& faults)
+  {
+    for (int number = 0;; ++number)
+    {
+      const std::string key = faultKey(number) + '.';
+      const auto first = map_.lower_bound(key);
+      if (first == map_.end() || first->first.rfind(key, 0) != 0)
+      {
+        return;
+      }
+      Fault fault;
+      std::string kind;
+      if (readAs<std::string>(key + "kind", kind, faultNames(), "kind of the fault"))
+      {
+        const std::optional<FaultKind> named = faultNamed(kind);
+        fault.kind = named.value_or(FaultKind{});
+        if (!named)
+        {
+          mistyped(key + "kind", map_.at(key + "kind"), faultNames());
+        }
+      }
+      (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 }, "severity, see fault_scale");
+      (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 }, "where; -1: the whole member");
+      (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "after the start");
+      faults.push_back(fault);
+    }
+  }
+
   void refuseUnknownKeys()
   {
     for (const auto& [key, configured] : map_)
@@ -304,6 +334,7 @@ Parameters parseParameters(const ParameterMap& map)
   Parameters parameters;
   FieldReader reader(map);
   visitFields(parameters, reader);
+  reader.readFaults(parameters.faults);
   reader.refuseUnknownKeys();
   throwIfAny(reader.errors());
   // Only values that are right by themselves can be held against each other.

@@ -127,6 +127,15 @@ std::string describeParameters(const Parameters& parameters)
 {
   FieldWriter writer;
   visitFields(parameters, writer);
+  int number = 0;
+  for (const Fault& fault : parameters.faults)
+  {
+    const std::string key = faultKey(number++) + '.';
+    writer(key + "kind", std::string(describe(fault.kind).name), "kind of the fault");
+    writer(key + "severity", "-", fault.severity, {}, "severity");
+    writer(key + "place", placeName(describe(fault.kind).place), fault.place, {}, "where; -1: the whole member");
+    writer(key + "onset", "s", fault.onset, {}, "after the start");
+  }
   return writer.text();
 }
 

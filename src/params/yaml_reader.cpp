@@ -156,6 +156,21 @@ void readSection(const std::string& source, const std::string& section, const YA
   }
 }
 
+/// The list of faults: FAULTS.N.key each, N from 0 on. It replaces a list read before.
+void readFaults(const std::string& source, const YAML::Node& list, ParameterMap& read)
+{
+  int number = 0;
+  for (const YAML::Node& fault : list)
+  {
+    const std::string name = faultKey(number++);
+    if (!fault.IsMap())
+    {
+      fail(originOf(source, fault), name + " must be {kind: ..., severity: ..., place: ..., onset: ...}");
+    }
+    readSection(source, name, fault, read);
+  }
+}
+
 void readDocument(const std::string& source, const YAML::Node& root, ParameterMap& map)
 {
   if (!root.IsMap())
@@ -167,6 +182,12 @@ void readDocument(const std::string& source, const YAML::Node& root, ParameterMa
   {
     const std::string origin = originOf(source, entry.first);
     const std::string section = keyText(entry.first, origin);
+    if (section == FAULTS && entry.second.IsSequence())
+    {
+      eraseFaults(map);
+      readFaults(source, entry.second, read);
+      continue;
+    }
     if (!entry.second.IsMap())
     {
       fail(origin, "'" + section + "' must be a section with keys below it");
@@ -179,6 +200,20 @@ void readDocument(const std::string& source, const YAML::Node& root, ParameterMa
   }
 }
 }  // namespace
+
+std::string faultKey(int number)
+{
+  return std::string(FAULTS) + '.' + std::to_string(number);
+}
+
+void eraseFaults(ParameterMap& map)
+{
+  const std::string prefix = std::string(FAULTS) + '.';
+  for (auto entry = map.lower_bound(prefix); entry != map.end() && entry->first.rfind(prefix, 0) == 0;)
+  {
+    entry = map.erase(entry);
+  }
+}
 
 void readYamlFile(const std::string& path, ParameterMap& map)
 {

@@ -22,8 +22,8 @@ constexpr double LONGEST_DELAY = 10.0;
 class InputReader
 {
 public:
-  InputReader(const std::string& joint_namespace, const JointNames& names)
-    : prefix_(joint_namespace + "/"), names_(names)
+  InputReader(const std::string& joint_namespace, const Parameters& parameters)
+    : prefix_(joint_namespace + "/"), parameters_(parameters), names_(parameters.joint.name)
   {
   }
 
@@ -37,6 +37,10 @@ public:
     else if (topic == prefix_ + topics::LOAD)
     {
       readStamped(message, InputKind::LOAD_TORQUE, readLoadTorque);
+    }
+    else if (topic == prefix_ + topics::INJECT_FAULT)
+    {
+      readFaultMessage(message);
     }
     else
     {
@@ -67,18 +71,38 @@ private:
     return instance;
   }
 
-  template <class ReadTorque>
-  void readStamped(const rosbag::MessageInstance& instance, InputKind kind, ReadTorque read_torque)
+  static Stamp stampOf(const rosbag::MessageInstance& instance, const std_msgs::Header& header)
   {
-    const auto message = instantiate<sensor_msgs::JointState>(instance);
     const Stamp recorded = fromRosTime(instance.getTime());
-    const Stamp stamp = message->header.stamp.isZero() ? recorded : fromRosTime(message->header.stamp);
+    const Stamp stamp = header.stamp.isZero() ? recorded : fromRosTime(header.stamp);
     const double delay = toSeconds(recorded - stamp);
     if (std::abs(delay) > LONGEST_DELAY)
     {
       throw InputError(instance.getTopic() + ": a message is stamped " + std::to_string(std::abs(delay)) + " s " +
                        (delay > 0.0 ? "before" : "after") + " the time it was recorded at; the clocks do not agree");
     }
+    return stamp;
+  }
+
+  void readFaultMessage(const rosbag::MessageInstance& instance)
+  {
+    const auto message = instantiate<harmonic_joint_twin::Fault>(instance);
+    Input input{ stampOf(instance, message->header), InputKind::FAULT };
+    if (readFault(*message, parameters_, input.fault).empty())
+    {
+      result_.inputs.push_back(input);
+    }
+    else
+    {
+      ++result_.refused_faults;
+    }
+  }
+
+  template <class ReadTorque>
+  void readStamped(const rosbag::MessageInstance& instance, InputKind kind, ReadTorque read_torque)
+  {
+    const auto message = instantiate<sensor_msgs::JointState>(instance);
+    const Stamp stamp = stampOf(instance, message->header);
     double torque{};
     switch (read_torque(*message, names_, torque))
     {
@@ -95,6 +119,7 @@ private:
   }
 
   std::string prefix_;
+  const Parameters& parameters_;
   JointNames names_;
   BagInputs result_;
 };
@@ -104,19 +129,20 @@ std::vector<std::string> inputTopics(const std::string& joint_namespace)
 {
   const std::string prefix = joint_namespace + "/";
   return { prefix + topics::COMMAND, prefix + topics::MOTOR_TORQUE_COMMAND, prefix + topics::LOAD,
-           prefix + topics::LOAD_TORQUE };
+           prefix + topics::LOAD_TORQUE, prefix + topics::INJECT_FAULT };
 }
 
 std::vector<std::string> outputTopics(const std::string& joint_namespace)
 {
   const std::string prefix = joint_namespace + "/";
   return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS,   prefix + topics::CONTACT_FORCES,
-           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT };
+           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT,
+           prefix + topics::FAULTS };
 }
 
-BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const JointNames& names)
+BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters)
 {
-  InputReader reader(joint_namespace, names);
+  InputReader reader(joint_namespace, parameters);
   rosbag::View view(bag, rosbag::TopicQuery(inputTopics(joint_namespace)));
   for (const rosbag::MessageInstance& message : view)
   {

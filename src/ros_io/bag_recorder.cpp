@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
 
+#include <limits>
+
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
 namespace hjt
@@ -10,6 +12,9 @@ BagRecorder::BagRecorder(const Twin& twin, const std::string& joint_namespace, B
   , schedule_(twin.parameters())
   , tooth_forces_(twin.makeToothForces())
   , prefix_(joint_namespace + "/")
+  , names_(twin.parameters().joint.name)
+  , recorded_faults_(twin.activeFaults().empty() ? twin.activeFaults().version() :
+                                                   std::numeric_limits<std::uint64_t>::max())
   , joint_states_(makeJointStates(JointNames(twin.parameters().joint.name)))
   , encoders_(makeEncoders(JointNames(twin.parameters().joint.name)))
   , contact_forces_(
@@ -24,6 +29,11 @@ void BagRecorder::record(Twin& twin)
 {
   const JointOutputs& outputs = twin.outputs();
   const Stamp stamp = outputs.stamp;
+  if (const FaultList& faults = twin.activeFaults(); faults.version() != recorded_faults_)
+  {
+    recorded_faults_ = faults.version();
+    bag_.write(prefix_ + topics::FAULTS, stamp, makeFaults(names_, stamp, faults));
+  }
   const bool joint_states = schedule_.isDue(Output::JOINT_STATES, stamp);
   const bool encoders = schedule_.isDue(Output::ENCODERS, stamp);
   if (joint_states || encoders)

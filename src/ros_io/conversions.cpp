@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "harmonic_joint_twin/ros_io/time.hpp"
@@ -247,6 +248,35 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   message.torque_wave_generator_2_phase = indicators.phase(torque, Line::WAVE_GENERATOR_2);
   message.torque_wave_generator_4_phase = indicators.phase(torque, Line::WAVE_GENERATOR_4);
   message.torque_circular_spline_2_phase = indicators.phase(torque, Line::CIRCULAR_SPLINE_2);
+}
+
+harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults)
+{
+  harmonic_joint_twin::Faults message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = names.joint;
+  for (const ActiveFault& active : faults)
+  {
+    harmonic_joint_twin::Fault fault;
+    fault.header = message.header;
+    fault.header.stamp = fault.since = toRosTime(active.since);
+    fault.kind = describe(active.fault.kind).name;
+    fault.severity = active.fault.severity;
+    fault.place = active.fault.place;
+    message.faults.push_back(fault);
+  }
+  return message;
+}
+
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault)
+{
+  const std::optional<FaultKind> kind = faultNamed(message.kind);
+  if (!kind)
+  {
+    return "kind = '" + message.kind + "' is unknown, allowed: " + faultNames();
+  }
+  fault = { *kind, message.severity, message.place, 0.0 };
+  return faultErrors(fault, parameters, "");
 }
 
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept

@@ -125,10 +125,12 @@ void Diagnostics::readSnapshot()
   coarse_steps_.update(twin.coarse_steps, now);
   speed_limits_.update(twin.speed_limited, now);
   clamps_.update(twin.torque_clamped + twin.load_clamped, now);
-  late_inputs_.update(twin.input.late, now);
+  late_inputs_.update(twin.input.late + twin.faults.late, now);
   timeouts_.update(twin.command_timeouts, now);
-  lost_inputs_.update(twin.input.overflow + snapshot_.overflow + loop.waiting_overflow, now);
-  refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort, now);
+  lost_inputs_.update(twin.input.overflow + twin.faults.no_room + snapshot_.overflow + loop.waiting_overflow, now);
+  refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort +
+                       snapshot_.messages.refused_fault + twin.faults.refused,
+                   now);
   clock_jumps_.update(loop.clock_jumps, now);
   missed_deadlines_.update(loop.timing.missed_deadlines, now);
   std::uint64_t dropped = 0;
@@ -181,7 +183,7 @@ Verdict Diagnostics::judgeInput() const
 {
   if (refusals_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Inputs refused: not finite, or not for this joint" };
+    return { DiagnosticStatus::WARN, "Inputs refused: not finite, not for this joint, or no such fault" };
   }
   if (lost_inputs_.areRecent())
   {
@@ -279,6 +281,8 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
   status.add("Steps too long", counters.coarse_steps);
   status.add("Steps failed", counters.solver_failures);
   status.add("Steps at the speed limit", counters.speed_limited);
+  const std::string faults = publishers_.activeFaults();
+  status.add("Faults of the gear", faults.empty() ? "none" : faults);
 }
 
 void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
@@ -294,7 +298,9 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Not finite, refused", snapshot_.not_finite + counters.input.not_finite);
   status.add("Unknown joint, refused", snapshot_.messages.unknown_joint);
   status.add("Missing effort, refused", snapshot_.messages.missing_effort);
-  status.add("Too late for their stamp", counters.input.late);
+  status.add("Faults, refused", snapshot_.messages.refused_fault + counters.faults.refused);
+  status.add("Faults without room", counters.faults.no_room);
+  status.add("Too late for their stamp", counters.input.late + counters.faults.late);
   status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow + loop.waiting_overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);
   status.add("Steps with load torque clamped", counters.load_clamped);

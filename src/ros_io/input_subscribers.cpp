@@ -27,8 +27,8 @@ ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, boost::funct
 }
 }  // namespace
 
-InputSubscribers::InputSubscribers(ros::NodeHandle& node, const JointNames& names, Inbox& inbox)
-  : names_(names), inbox_(inbox)
+InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox)
+  : parameters_(parameters), names_(parameters.joint.name), inbox_(inbox)
 {
   using sensor_msgs::JointState;
   using std_msgs::Float64;
@@ -41,6 +41,8 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const JointNames& name
       subscribe<JointState>(node, topics::COMMAND, [this](const JointState& message) { receiveCommand(message); });
   load_subscriber_ =
       subscribe<JointState>(node, topics::LOAD, [this](const JointState& message) { receiveLoad(message); });
+  fault_subscriber_ = subscribe<harmonic_joint_twin::Fault>(
+      node, topics::INJECT_FAULT, [this](const harmonic_joint_twin::Fault& message) { receiveFault(message); });
 }
 
 void InputSubscribers::receiveNow(InputKind kind, const std_msgs::Float64& message)
@@ -70,6 +72,20 @@ void InputSubscribers::receiveLoad(const sensor_msgs::JointState& message)
     return;
   }
   refuse(status, topics::LOAD, names_.joint);
+}
+
+void InputSubscribers::receiveFault(const harmonic_joint_twin::Fault& message)
+{
+  Fault fault;
+  const std::string errors = readFault(message, parameters_, fault);
+  if (!errors.empty())
+  {
+    ++refused_fault_;
+    ROS_WARN_STREAM("Refused a message on ~" << topics::INJECT_FAULT << ": " << errors);
+    return;
+  }
+  const ros::Time& stamp = message.header.stamp;
+  inbox_.push({ fromRosTime(stamp.isZero() ? ros::Time::now() : stamp), InputKind::FAULT, 0.0, fault });
 }
 
 void InputSubscribers::receiveStamped(InputKind kind, const ros::Time& stamp, double torque)

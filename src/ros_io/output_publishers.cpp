@@ -2,6 +2,8 @@
 #include "harmonic_joint_twin/ros_io/output_publishers.hpp"
 
 #include <chrono>
+#include <limits>
+#include <sstream>
 
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
@@ -19,6 +21,8 @@ constexpr int HEARD_REFRESH = 5;
 constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
 /// Slots for messages with per-tooth arrays.
 constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
+/// Slots for lists of faults: one more change has to wait for the next instant.
+constexpr std::size_t FAULT_SLOTS = 16;
 }  // namespace
 
 OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
@@ -33,6 +37,10 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
   , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
   , indicators_(node, topics::INDICATORS, LARGE_MESSAGE_SLOTS, makeIndicators(JointNames(twin.parameters().joint.name)))
   , assessment_(node, topics::ASSESSMENT, LARGE_MESSAGE_SLOTS, makeAssessment(JointNames(twin.parameters().joint.name)))
+  , names_(twin.parameters().joint.name)
+  , faults_(FAULT_SLOTS, {})
+  , faults_publisher_(node.advertise<harmonic_joint_twin::Faults>(topics::FAULTS, 1, true))
+  , offered_faults_(std::numeric_limits<std::uint64_t>::max())
   , thread_([this] { run(); })
 {
 }
@@ -50,6 +58,7 @@ bool OutputPublishers::isWanted(Output output, bool heard, Stamp instant) const 
 
 void OutputPublishers::offer(Twin& twin) noexcept
 {
+  offerFaults(twin);
   const JointOutputs& outputs = twin.outputs();
   const bool joint_states = isWanted(Output::JOINT_STATES, joint_states_.isHeard(), outputs.stamp);
   const bool encoders = isWanted(Output::ENCODERS, encoders_.isHeard(), outputs.stamp);
@@ -86,6 +95,46 @@ void OutputPublishers::offer(Twin& twin) noexcept
   {
     assessment_.write([&](auto& message) { fillAssessment(outputs.stamp, twin.assessment(), message); });
   }
+}
+
+/// The list of faults, once after each change.
+void OutputPublishers::offerFaults(const Twin& twin) noexcept
+{
+  const FaultList& faults = twin.activeFaults();
+  if (faults.version() == offered_faults_)
+  {
+    return;
+  }
+  if (FaultsAt* slot = faults_.claim())
+  {
+    slot->stamp = twin.stamp();
+    slot->faults = faults;
+    faults_.commit();
+    offered_faults_ = faults.version();
+  }
+}
+
+void OutputPublishers::drainFaults()
+{
+  for (const FaultsAt* at = faults_.front(); at != nullptr; at = faults_.front())
+  {
+    const harmonic_joint_twin::Faults message = makeFaults(names_, at->stamp, at->faults);
+    faults_.pop();
+    faults_publisher_.publish(message);
+    std::ostringstream text;
+    for (const harmonic_joint_twin::Fault& fault : message.faults)
+    {
+      text << (text.tellp() > 0 ? ", " : "") << fault.kind << ' ' << fault.severity << " at " << fault.place;
+    }
+    const std::lock_guard<std::mutex> lock(text_mutex_);
+    active_faults_ = text.str();
+  }
+}
+
+std::string OutputPublishers::activeFaults() const
+{
+  const std::lock_guard<std::mutex> lock(text_mutex_);
+  return active_faults_;
 }
 
 std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
@@ -126,5 +175,6 @@ void OutputPublishers::drain()
   health_.drain();
   indicators_.drain();
   assessment_.drain();
+  drainFaults();
 }
 }  // namespace hjt

@@ -48,6 +48,20 @@ std::vector<double> readNumbers(const std::string& key, XmlRpcValue& list)
   return numbers;
 }
 
+void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& origin, ParameterMap& map);
+
+void addFaults(XmlRpcValue& list, const std::string& origin, ParameterMap& map)
+{
+  for (int i = 0; i < list.size(); ++i)
+  {
+    if (list[i].getType() != XmlRpcValue::TypeStruct)
+    {
+      throw ParameterError(faultKey(i) + ": " + origin + " holds no fault {kind, severity, place, onset}");
+    }
+    addTree(faultKey(i), list[i], origin, map);
+  }
+}
+
 void addLeaf(const std::string& key, XmlRpcValue& leaf, const std::string& origin, ParameterMap& map)
 {
   ParameterValue& parameter = map[key];
@@ -82,6 +96,10 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
     if (value.getType() == XmlRpcValue::TypeStruct)
     {
       addTree(key, value, origin + '/' + name, map);
+    }
+    else if (key == FAULTS && value.getType() == XmlRpcValue::TypeArray)
+    {
+      addFaults(value, origin + '/' + name, map);
     }
     else if (key != DIAGNOSTIC_PERIOD)
     {

@@ -193,7 +193,7 @@ bool TwinLoop::tryStart(Stamp limit) noexcept
   Stamp first = std::numeric_limits<Stamp>::max();
   for (const Input& input : waiting_)
   {
-    if (input.kind != InputKind::BRAKE)
+    if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
     {
       first = std::min(first, input.stamp);
     }
@@ -228,19 +228,11 @@ void TwinLoop::start(Stamp stamp) noexcept
 
 void TwinLoop::handOver(const Input& input) noexcept
 {
-  switch (input.kind)
+  twin_.give(input);
+  if (input.kind == InputKind::MOTOR_TORQUE)
   {
-    case InputKind::MOTOR_TORQUE:
-      twin_.commandMotorTorque(input.stamp, input.value);
-      status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
-      status_.command_seen = true;
-      break;
-    case InputKind::LOAD_TORQUE:
-      twin_.commandLoadTorque(input.stamp, input.value);
-      break;
-    case InputKind::BRAKE:
-      twin_.commandBrake(input.stamp, input.value != 0.0);
-      break;
+    status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
+    status_.command_seen = true;
   }
 }
 

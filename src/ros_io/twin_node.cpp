@@ -45,7 +45,7 @@ SurfaceSource surfaceSource()
 
 Twin watchedTwin(const Parameters& parameters)
 {
-  Twin twin(parameters, {}, surfaceSource());
+  Twin twin(parameters, surfaceSource());
   twin.watchSignals(true);
   return twin;
 }
@@ -56,7 +56,7 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
   , publishers_(node, twin_)
   , loop_(twin_, inbox_, now, clockKind(), [this](Twin& twin) { publishers_.offer(twin); })
   , realtime_(requestRealtime(parameters.realtime, loop_))
-  , subscribers_(node, JointNames(parameters.joint.name), inbox_)
+  , subscribers_(node, parameters, inbox_)
   , timing_publisher_(node, parameters, loop_)
   , diagnostics_(node, parameters, loop_, realtime_, inbox_, subscribers_, publishers_)
   , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))

@@ -35,6 +35,7 @@ SolveStatus JointDynamics::settle() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
+  viscosity_ = model_.bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
@@ -75,6 +76,14 @@ void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
   }
   surface_ = surface;
   surface_agrees_ = surface != nullptr && !on_surface_ && surfaceAgrees();
+}
+
+SolveStatus JointDynamics::followModel() noexcept
+{
+  const SolveStatus result = ring_.followModel();
+  viscosity_ = model_.bearing.viscosity(temperature_);
+  takeRing();
+  return result;
 }
 
 SolveStatus JointDynamics::bringRing() noexcept

@@ -71,6 +71,7 @@ bool JointStepper::reset() noexcept
   balance_ = 0.0;
   rest_steps_ = 0;
   throughput_ = 0.0;
+  released_ = 0.0;
   stored_at_start_ = dynamics_.storedEnergy();
   return settled;
 }
@@ -81,6 +82,20 @@ bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
          inputs.load_torque == last.load_torque && inputs.brake_engaged == last.brake_engaged &&
          inputs.temperature == last.temperature;
+}
+
+bool JointStepper::followModel() noexcept
+{
+  const double stored = dynamics_.storedEnergy();
+  const Eigen::Vector2d torque = dynamics_.torque();
+  const bool good = dynamics_.followModel().ok();
+  released_ += stored - dynamics_.storedEnergy();
+  if (kind_ == StepperKind::LEAPFROG)
+  {
+    // The last kick, half of which belongs after this instant, was still by the old torque.
+    released_ -= 0.5 * step_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
+  }
+  return good;
 }
 
 bool JointStepper::step(const JointInputs& inputs) noexcept
@@ -145,6 +160,6 @@ double JointStepper::swingPhase() const noexcept
 
 double JointStepper::energyResidual() const noexcept
 {
-  return balance_ - (dynamics_.storedEnergy() - stored_at_start_);
+  return balance_ - (dynamics_.storedEnergy() - stored_at_start_) - released_;
 }
 }  // namespace hjt

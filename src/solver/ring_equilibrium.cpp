@@ -173,6 +173,23 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
   return status;
 }
 
+SolveStatus RingEquilibrium::followModel() noexcept
+{
+  constexpr char NONE = 8;  // no tooth's contacts: the tangent is no longer that of the model
+  std::fill(factored_meshed_.begin(), factored_meshed_.end(), NONE);
+  forgetGuess();
+  updateForces();
+  const DrivePosition target = now_.position;
+  start_ = now_;
+  SolveStatus status = approach(target);
+  if (!status.ok())
+  {
+    now_ = start_;
+    status = add(status, reinsert(target));
+  }
+  return status;
+}
+
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
   if (target == now_.position && now_.residual <= parameters_.force_tolerance)

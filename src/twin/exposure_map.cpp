@@ -39,7 +39,8 @@ double relativeDifference(double value, double reference)
 Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
 {
   Parameters worn = parameters;
-  worn.mesh.flank_clearance += age.flank_wear;
+  worn.faults.push_back({ FaultKind::TOOTH_WEAR, age.flank_wear / worn.fault_scale.tooth_wear_depth });
+  worn.faults.push_back({ FaultKind::INTERFACE_WEAR, age.interface_wear / worn.fault_scale.interface_wear_depth });
   return worn;
 }
 

@@ -12,7 +12,10 @@
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+#include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 #include "harmonic_joint_twin/twin/surface_worker.hpp"
 
@@ -20,27 +23,51 @@ namespace hjt
 {
 namespace
 {
-/// What the faults changed, for the cache of surfaces.
-std::string keyOf(const ToothFaults& faults)
+/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
+std::string keyOf(const FaultList& faults, const Parameters& parameters)
 {
-  std::ostringstream text;
-  for (const int tooth : faults.missing)
+  if (faults.empty())
   {
-    text << "missing " << tooth << ' ';
+    return "";
   }
-  for (const int tooth : faults.cut)
+  std::ostringstream text;
+  for (const ActiveFault& active : faults)
   {
-    text << "cut " << tooth << ' ';
+    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
+         << '\n';
+  }
+  std::istringstream lines(describeParameters(parameters));
+  for (std::string line; std::getline(lines, line);)
+  {
+    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
   }
   return text.str();
+}
+
+bool isSame(const FaultList& one, const FaultList& other) noexcept
+{
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const ActiveFault& a, const ActiveFault& b) {
+                      return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
+                             a.fault.severity == b.fault.severity;
+                    });
+}
+
+/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
+bool isOfTheBalls(const ActiveFault& active) noexcept
+{
+  const FaultKind kind = active.fault.kind;
+  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
+         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
 }
 }  // namespace
 
 struct Twin::Impl
 {
-  Impl(const Parameters& given, const ToothFaults& faults, const SurfaceSource& surface_source)
+  Impl(const Parameters& given, const SurfaceSource& surface_source)
     : parameters(given)
-    , model(makeFaultyJoint(given, faults))
+    , model(given)
+    , faults(given, model)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
@@ -53,23 +80,54 @@ struct Twin::Impl
   {
     if (given.solver.scene == SceneKind::AUTO)
     {
-      if (surface_source.background)
-      {
-        surface_awaited = true;
-        surface_worker = std::make_unique<SurfaceWorker>(given, model, keyOf(faults), surface_source);
-      }
-      else
-      {
-        surface = sharedSurface(given, model, keyOf(faults), surface_source);
-        stepper.useSurface(surface.get());
-      }
+      scheduleConfigured(0);
+      faults.apply(active);
+      prepareSurface(surface_source);
     }
-    reset(0);
+    if (!reset(0))
+    {
+      throw ParameterError(
+          "the faults that the twin starts with leave it no equilibrium: the insertion of the wave "
+          "generator did not converge (faults.*)");
+    }
   }
 
-  void reset(Stamp stamp) noexcept
+  /// The surface of the drive with the faults it starts with.
+  void prepareSurface(const SurfaceSource& source)
   {
-    stepper.reset();
+    surface_faults = active;
+    if (std::any_of(active.begin(), active.end(), isOfTheBalls))
+    {
+      if (source.notice)
+      {
+        source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
+      }
+    }
+    else if (source.background)
+    {
+      surface_awaited = true;
+      surface_worker = std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+    else
+    {
+      surface = sharedSurface(parameters, model, keyOf(surface_faults, parameters), source);
+    }
+  }
+
+  /// The surface while it is that of the present faults; else the full ring.
+  void useSurface() noexcept
+  {
+    const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
+    stepper.useSurface(isSame(active, surface_faults) ? ready : nullptr);
+  }
+
+  bool reset(Stamp stamp) noexcept
+  {
+    stepper.useSurface(nullptr);
+    scheduleConfigured(stamp);
+    faults.apply(active);
+    useSurface();
+    const bool settled = stepper.reset();
     queue.clear();
     counters = {};
     now = (stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length) * step_length;
@@ -88,8 +146,14 @@ struct Twin::Impl
     steps_at_report = {};
     fillOutputs(0.0, true);
     observe();
+    return settled;
   }
 
+  static bool setsInAtOnce(const Fault& fault) noexcept { return fault.severity > 0.0 && fault.onset == 0.0; }
+  static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
+
+  void scheduleConfigured(Stamp stamp) noexcept;
+  bool takeFaults() noexcept;
   void step() noexcept;
   void takeInputs() noexcept;
   void takeSurface() noexcept;
@@ -103,6 +167,10 @@ struct Twin::Impl
 
   Parameters parameters;
   JointModel model;
+  JointFaults faults;
+  FaultList active;
+  FaultSchedule waiting;
+  FaultList surface_faults;  // that the surface is made for
   std::shared_ptr<const ResponseSurface> surface;
   std::unique_ptr<SurfaceWorker> surface_worker;
   bool surface_awaited{};
@@ -129,6 +197,45 @@ struct Twin::Impl
   TwinCounters steps_at_report;  // counters when health was last asked for
 };
 
+/// The configured faults: those from the start on are there, the others wait.
+void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
+{
+  active.clear();
+  waiting.clear();
+  for (const Fault& fault : parameters.faults)
+  {
+    if (setsInAtOnce(fault))
+    {
+      active.set(fault, stamp);
+    }
+    else
+    {
+      waiting.push(fault, stamp + delayOf(fault));
+    }
+  }
+}
+
+/// Faults whose time has come. @returns false if the ring found no equilibrium with them.
+bool Twin::Impl::takeFaults() noexcept
+{
+  const std::uint64_t version = active.version();
+  Fault fault;
+  Stamp stamp{};
+  while (waiting.pop(now, fault, stamp))
+  {
+    counters.faults.no_room += active.set(fault, stamp) ? 0 : 1;
+  }
+  if (active.version() == version)
+  {
+    return true;
+  }
+  stepper.useSurface(nullptr);
+  faults.apply(active);
+  const bool good = stepper.followModel();
+  useSurface();
+  return good;
+}
+
 void Twin::Impl::takeInputs() noexcept
 {
   Input input;
@@ -154,6 +261,8 @@ void Twin::Impl::takeInputs() noexcept
       case InputKind::BRAKE:
         brake_engaged = input.value != 0.0;
         break;
+      case InputKind::FAULT:
+        break;
     }
   }
   counters.input = queue.counters();
@@ -162,14 +271,10 @@ void Twin::Impl::takeInputs() noexcept
 /// The surface that was built beside, when it is there.
 void Twin::Impl::takeSurface() noexcept
 {
-  if (surface_awaited)
+  if (surface_awaited && surface_worker->surface() != nullptr)
   {
-    const ResponseSurface* ready = surface_worker->surface();
-    if (ready != nullptr)
-    {
-      surface_awaited = false;
-      stepper.useSurface(ready);
-    }
+    surface_awaited = false;
+    useSurface();
   }
 }
 
@@ -196,10 +301,12 @@ void Twin::Impl::step() noexcept
 {
   now += step_length;
   simulated_until = now;
+  const bool followed = takeFaults();
   takeInputs();
   takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature });
+  const bool converged =
+      stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -228,6 +335,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
   outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
+  outputs.released_energy = stepper.releasedEnergy();
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
@@ -293,7 +401,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   return loads;
 }
 
-Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const SurfaceSource& surface_source)
+Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
 {
   if (parameters.contact.law == ContactLaw::POLAR)
   {
@@ -301,7 +409,7 @@ Twin::Twin(const Parameters& parameters, const ToothFaults& faults, const Surfac
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
-  impl_ = std::make_unique<Impl>(parameters, faults, surface_source);
+  impl_ = std::make_unique<Impl>(parameters, surface_source);
 }
 
 Twin::~Twin() = default;
@@ -331,6 +439,39 @@ void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
   impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
+}
+
+void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
+{
+  FaultCounters& counted = impl_->counters.faults;
+  if (!isValid(fault, impl_->parameters))
+  {
+    ++counted.refused;
+    return;
+  }
+  const Stamp sets_in = stamp + Impl::delayOf(fault);
+  if (!impl_->waiting.push(fault, sets_in))
+  {
+    ++counted.no_room;
+    return;
+  }
+  ++counted.accepted;
+  counted.late += sets_in < impl_->simulated_until ? 1 : 0;
+}
+
+const FaultList& Twin::activeFaults() const noexcept
+{
+  return impl_->active;
+}
+
+void Twin::give(const Input& input) noexcept
+{
+  if (input.kind == InputKind::FAULT)
+  {
+    injectFault(input.stamp, input.fault);
+    return;
+  }
+  impl_->queue.push(input, impl_->simulated_until);
 }
 
 bool Twin::step(Stamp until) noexcept

@@ -20,6 +20,7 @@
 
 #include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
 #include "harmonic_joint_twin/model/joint_model.hpp"
 #include "harmonic_joint_twin/solver/joint_dynamics.hpp"
 #include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
@@ -171,7 +172,7 @@ TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
 {
   constexpr int STEPS = 10000;
   Twin full(shippedParameters({ "input.command_timeout=10.0" }));
-  Twin fast(surfaceParameters(), {}, cached());
+  Twin fast(surfaceParameters(), cached());
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   double load = 0.0;
@@ -210,7 +211,7 @@ TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
 
 TEST(SceneAuto, EnergyBalances)
 {
-  Twin twin(surfaceParameters(), {}, cached());
+  Twin twin(surfaceParameters(), cached());
   for (const Input& input : randomInputs(9, SECOND, 1.5, 60.0))
   {
     give(twin, input);
@@ -260,7 +261,7 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
 
 TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
 {
-  Twin twin(surfaceParameters(), {}, cached());
+  Twin twin(surfaceParameters(), cached());
   twin.commandLoadTorque(0, 40.0);
   twin.commandMotorTorque(0, 1.0);
   advance(twin, SECOND / 2);
@@ -285,7 +286,7 @@ TEST(SceneAuto, SameBitsFromTheCacheAndAnew)
   std::vector<std::vector<double>> runs;
   for (const SurfaceSource& source : { SurfaceSource{}, cached() })
   {
-    Twin twin(surfaceParameters(), {}, source);
+    Twin twin(surfaceParameters(), source);
     twin.commandMotorTorque(0, 0.7);
     advance(twin, SECOND / 10);
     runs.push_back(numbers(twin.outputs()));
@@ -293,22 +294,23 @@ TEST(SceneAuto, SameBitsFromTheCacheAndAnew)
   EXPECT_TRUE(runs[0] == runs[1]);
 }
 
-const ToothFaults& brokenTooth()
-{
-  static const ToothFaults faults{ { 40 }, {} };
-  return faults;
-}
+constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
 
 JointModel brokenModel()
 {
-  return makeFaultyJoint(surfaceParameters(), brokenTooth());
+  const Parameters parameters = surfaceParameters();
+  JointModel model(parameters);
+  FaultList faults;
+  faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
+  JointFaults(parameters, model).apply(faults);
+  return model;
 }
 
 /// What a broken tooth changes, at the same angles: to a hundredth of its largest effect, root mean square.
 TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
 {
   const Parameters parameters = surfaceParameters();
-  const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenModel(), "missing 40 ", cached());
+  const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenModel(), "broken tooth 40 ", cached());
   ASSERT_TRUE(tables);
   ASSERT_EQ(tables->departures.pitches.size(), 100u);  // half a turn
   const ResponseSurface faulty(tables->table, tables->departures);
@@ -353,7 +355,7 @@ TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
 TEST(Departures, AreContinuousFromPitchToPitch)
 {
   const std::optional<SurfaceTables> tables =
-      obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ", cached());
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
   ASSERT_TRUE(tables);
   const ResponseSurface faulty(tables->table, tables->departures);
   constexpr double BESIDE = 1e-12;  // rad
@@ -377,9 +379,10 @@ TEST(Departures, AreContinuousFromPitchToPitch)
 
 TEST(Departures, ComeFromTheCacheAsTheyWereBuilt)
 {
-  const std::optional<SurfaceTables> built = obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ", cached());
+  const std::optional<SurfaceTables> built =
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
   bool building = false;
-  const std::optional<SurfaceTables> kept = obtainSurface(surfaceParameters(), brokenModel(), "missing 40 ",
+  const std::optional<SurfaceTables> kept = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ",
                                                           { cacheDirectory(), [&](double) { building = true; }, {} });
   ASSERT_TRUE(built && kept);
   EXPECT_FALSE(building);
@@ -401,8 +404,12 @@ TEST(SceneAuto, ABrokenToothShowsInTheTorsionAsOnTheFullRing)
   {
     const bool fast = kind % 2 == 1;
     const std::string scene = fast ? "solver.scene=auto" : "solver.scene=full_ring";
-    Twin twin(shippedParameters({ "input.command_timeout=10.0", "cup.friction_torque=0.0", scene }),
-              kind < 2 ? ToothFaults{} : brokenTooth(), cached());
+    Parameters parameters = shippedParameters({ "input.command_timeout=10.0", "cup.friction_torque=0.0", scene });
+    if (kind >= 2)
+    {
+      parameters.faults.push_back(parseFault(BROKEN_TOOTH, parameters));
+    }
+    Twin twin(parameters, cached());
     double path = 0.0;
     for (int i = 0; i < STEPS; ++i)
     {
@@ -440,7 +447,7 @@ TEST(SceneAuto, RunsOnTheFullRingWhileTheSurfaceIsBuiltBeside)
   Twin reference(shippedParameters({ "input.command_timeout=10.0" }));
   SurfaceSource beside = cached();
   beside.background = true;
-  Twin twin(surfaceParameters(), {}, beside);
+  Twin twin(surfaceParameters(), beside);
   EXPECT_FALSE(twin.onSurface());
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   double largest_step = 0.0;
@@ -476,7 +483,7 @@ TEST(SceneAuto, GivesUpASurfaceThatIsNotWaitedFor)
   {
     SurfaceSource beside;
     beside.background = true;
-    Twin twin(surfaceParameters(), {}, beside);
+    Twin twin(surfaceParameters(), beside);
     twin.step(twin.stepLength());
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
@@ -500,7 +507,7 @@ TEST(SurfaceBuilder, AGearWithErrorsOnBothMembersHasNone)
   std::string told;
   Twin twin(shippedParameters({ "solver.scene=auto", "manufacture.flexspline_pitch_deviation=2.0e-6",
                                 "manufacture.circular_spline_pitch_deviation=2.0e-6" }),
-            {}, { cacheDirectory(), {}, [&](const std::string& what) { told = what; } });
+            { cacheDirectory(), {}, [&](const std::string& what) { told = what; } });
   EXPECT_NE(told.find("not the same again"), std::string::npos);
   twin.commandMotorTorque(0, 0.5);
   advance(twin, SECOND / 100);

@@ -455,7 +455,8 @@ TEST(TwinsIndicators, FollowPhysicalEdits)
   const double stiffness = healthy[ScalarIndicator::TORSIONAL_STIFFNESS];
   EXPECT_GT(stiffness, 20e3);
   EXPECT_LT(stiffness, 50e3);
-  EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 1e-5);
+  // The load swings by less than 1 mrad of torsion, the output turns by 62 mrad in a motor turn, 30 of them.
+  EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 5e-4);
 
   const SignalIndicators soft_cup = twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
   EXPECT_LT(soft_cup[ScalarIndicator::TORSIONAL_STIFFNESS], 0.95 * stiffness);

@@ -80,17 +80,6 @@ inline std::vector<Input> randomInputs(unsigned seed, Stamp duration, double mot
 
 inline void give(Twin& twin, const Input& input)
 {
-  switch (input.kind)
-  {
-    case InputKind::MOTOR_TORQUE:
-      twin.commandMotorTorque(input.stamp, input.value);
-      break;
-    case InputKind::LOAD_TORQUE:
-      twin.commandLoadTorque(input.stamp, input.value);
-      break;
-    case InputKind::BRAKE:
-      twin.commandBrake(input.stamp, input.value != 0.0);
-      break;
-  }
+  twin.give(input);
 }
 }  // namespace hjt

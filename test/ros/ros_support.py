@@ -101,7 +101,7 @@ class Diagnostics:
 
 
 def configuration_files(joint="elbow", overlays=()):
-    stages = ["gear", "manufacture", "elements", "joint", "solver", "sensors", "health", "life", "node"]
+    stages = ["gear", "manufacture", "elements", "joint", "solver", "sensors", "health", "life", "faults", "node"]
     names = [f"{stage}.yaml" for stage in stages] + [f"joints/{joint}.yaml", *overlays]
     return [package_path("config", name) for name in names]
 

@@ -5,7 +5,7 @@ import math
 import tool
 
 ARCSEC = math.pi / 180.0 / 3600.0
-SMALL_WINDOWS = ["--set", "indicators.window_turns=60.0", "--set", "indicators.baseline_windows=3"]
+SMALL_WINDOWS = ["--set", "indicators.window_turns=20.0", "--set", "indicators.baseline_windows=8"]
 
 
 def recording(line_after=None, seconds=30.0, rate=500.0):
@@ -29,12 +29,12 @@ COLUMNS = ["--time", "t", "--motor-angle", "theta", "--output-angle", "phi", "--
 
 class Indicators(tool.ToolTest):
     def test_a_line_that_appears_is_found_and_named(self):
-        self.write("a.csv", recording(line_after=15.0))
+        self.write("a.csv", recording(line_after=20.0))
         report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--out", "windows.csv")
         first, last = report["windows"][0], report["windows"][-1]
-        self.assertAlmostEqual(first["indicators"]["error_wave_generator_2"] / ARCSEC, 5.0, delta=0.1)
-        self.assertLess(first["indicators"]["error_outer"] / ARCSEC, 0.1)
-        self.assertAlmostEqual(last["indicators"]["error_outer"] / ARCSEC, 4.0, delta=0.1)
+        self.assertAlmostEqual(first["indicators"]["error_wave_generator_2"] / ARCSEC, 5.0, delta=0.2)
+        self.assertLess(first["indicators"]["error_outer"] / ARCSEC, 0.2)
+        self.assertAlmostEqual(last["indicators"]["error_outer"] / ARCSEC, 4.0, delta=0.2)
         self.assertAlmostEqual(last["indicators"]["running_torque"], 0.2, delta=0.001)
         self.assertEqual(first["assessment"]["state"], "learning")
         self.assertIn(report["assessment"]["level"], ["WARN", "ERROR"])

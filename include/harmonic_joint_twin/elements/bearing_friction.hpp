@@ -17,7 +17,15 @@ namespace hjt
 class BearingFriction
 {
 public:
-  explicit BearingFriction(const BearingParameters& parameters) : parameters_(parameters) {}
+  explicit BearingFriction(const BearingParameters& parameters)
+    : parameters_(parameters), preload_(parameters.race_preload)
+  {
+  }
+
+  /// Grease of another viscosity, by this factor to the configured one at any temperature [-].
+  void scaleViscosity(double factor) noexcept { viscosity_factor_ = factor; }
+  /// Race that sits looser by this than configured, but presses with `least` or what it was if that is less [N].
+  void loosen(double loss, double least) noexcept;
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept
@@ -33,5 +41,7 @@ public:
 
 private:
   BearingParameters parameters_;
+  double preload_;  // [N]
+  double viscosity_factor_{ 1.0 };
 };
 }  // namespace hjt

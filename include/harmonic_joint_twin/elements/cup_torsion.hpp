@@ -23,6 +23,9 @@ class CupTorsion
 public:
   CupTorsion(const CupParameters& parameters, const ToothRing& rest);
 
+  /// The cup's stiffness becomes this part of what was configured, > 0; the torques where it changes stay [-].
+  void scaleStiffness(double factor) noexcept;
+
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
   /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
@@ -40,6 +43,7 @@ public:
   void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
 private:
+  std::array<double, 3> made_slopes_;
   std::array<double, 3> slopes_;
   std::array<double, 2> torques_;
   std::array<double, 2> rotations_;  // where the slope changes [rad]

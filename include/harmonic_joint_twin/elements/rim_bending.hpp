@@ -15,6 +15,7 @@ namespace hjt
 ///          curvature  U = 1/2 sum_i k_i (eta_i - eta_{i-1})^2   (frame-indifferent)
 /// where    eta_i  rotation of the segment from tooth i to i+1 from rest [rad]
 ///          k_i    stiffness, >= 0                                       [N.m/rad]
+/// A rim that has been bent for good adds its own angle: less preset_i, what the brackets would be of themselves.
 class RimBending
 {
 public:
@@ -32,6 +33,7 @@ public:
   }
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
+  Eigen::VectorXd& preset() noexcept { return preset_; }        ///< N, editable per tooth [rad]
 
 private:
   void addMoments(const RingShape& shape, RingForces& forces) const noexcept;
@@ -40,6 +42,7 @@ private:
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;
+  Eigen::VectorXd preset_;
   Eigen::VectorXd rest_directions_;
   double rest_cos_;  // of the angle between neighbouring segments at rest
   double rest_sin_;

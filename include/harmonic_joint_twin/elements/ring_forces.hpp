@@ -20,6 +20,9 @@ struct RingForces
     , contact_depth(teeth)
     , contact_curvature(teeth)
     , contact_normal(2 * teeth)
+    , gap(teeth)
+    , gap_rate(teeth)
+    , gap_second(teeth)
     , flank_force(teeth)
     , meshed(teeth)
     , flanks(teeth)
@@ -59,9 +62,12 @@ struct RingForces
   double output_torque{};             ///< on the circular spline [N.m]
   double energy{};                    ///< stored [J]
   Eigen::VectorXd contact_force;      ///< N, normal force of the wave generator on each tooth, >= 0 [N]
-  Eigen::VectorXd contact_depth;      ///< N, depth of each tooth point inside the wave generator [m]
+  Eigen::VectorXd contact_depth;      ///< N, depth of each tooth point inside the wave generator, less the gap [m]
   Eigen::VectorXd contact_curvature;  ///< N, of the wave generator there [1/m]
   Eigen::VectorXd contact_normal;     ///< 2 N, its direction, outward [-]
+  Eigen::VectorXd gap;                ///< N, while the bearing is faulty: between wave generator and rim [m]
+  Eigen::VectorXd gap_rate;           ///< N, likewise: its derivative by the wave generator's angle [m/rad]
+  Eigen::VectorXd gap_second;         ///< N, likewise: the second derivative [m/rad^2]
   Eigen::VectorXd flank_force;        ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
   std::vector<char> meshed;           ///< N, tooth touches a flank [-]
   FlankContacts flanks;               ///< the teeth that touch, with what the mesh found

@@ -26,7 +26,22 @@ struct RingRates
 class MeshFriction
 {
 public:
-  explicit MeshFriction(const MeshParameters& parameters) : parameters_(parameters) {}
+  MeshFriction(const MeshParameters& parameters, int teeth)
+    : parameters_(parameters)
+    , friction_static_(parameters.friction_static)
+    , friction_kinetic_(parameters.friction_kinetic)
+    , tooth_factor_(Eigen::VectorXd::Ones(teeth))
+  {
+  }
+
+  /// Friction of all flanks, to the configured one [-].
+  void scale(double factor) noexcept
+  {
+    friction_static_ = factor * parameters_.friction_static;
+    friction_kinetic_ = factor * parameters_.friction_kinetic;
+  }
+  /// N, friction of each tooth's flanks to that of the others, editable [-]; only the full ring knows it.
+  Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
 
   /// One term per loaded tooth. `forces`: of the same shape; `speeds`: motor and output [rad/s], for the Stribeck curve.
   void addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces, const RingRates& rates,
@@ -36,8 +51,7 @@ public:
   double coefficient(double sliding_speed) const noexcept
   {
     const double relative = sliding_speed / parameters_.stribeck_velocity;
-    return parameters_.friction_kinetic +
-           (parameters_.friction_static - parameters_.friction_kinetic) * std::exp(-relative * relative);
+    return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
   }
 
   /// The same for several speeds at once, an array of fixed size: quicker, and off by less than 3e-4 of the difference
@@ -48,12 +62,15 @@ public:
     const double scale = 1.0 / (32.0 * parameters_.stribeck_velocity * parameters_.stribeck_velocity);
     const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond it nothing is left of the difference
     const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
-    return parameters_.friction_kinetic + (parameters_.friction_static - parameters_.friction_kinetic) /
-                                              base.square().square().square().square().square();
+    return friction_kinetic_ +
+           (friction_static_ - friction_kinetic_) / base.square().square().square().square().square();
   }
 
 private:
   MeshParameters parameters_;
+  double friction_static_;
+  double friction_kinetic_;
+  Eigen::VectorXd tooth_factor_;
 };
 
 /// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
@@ -62,7 +79,13 @@ private:
 class CupFriction
 {
 public:
-  explicit CupFriction(const CupParameters& parameters) : torque_(parameters.friction_torque) {}
+  explicit CupFriction(const CupParameters& parameters)
+    : made_torque_(parameters.friction_torque), torque_(parameters.friction_torque)
+  {
+  }
+
+  /// To the configured one [-].
+  void scale(double factor) noexcept { torque_ = factor * made_torque_; }
 
   /// Adds one term, or none if there is no friction.
   void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
@@ -82,6 +105,7 @@ public:
   }
 
 private:
+  double made_torque_;
   double torque_;  // [N.m]
 };
 
@@ -93,12 +117,19 @@ private:
 class InterfaceFriction
 {
 public:
-  explicit InterfaceFriction(const ContactParameters& parameters) : parameters_(parameters) {}
+  explicit InterfaceFriction(const ContactParameters& parameters)
+    : parameters_(parameters), coefficient_(parameters.friction_coefficient)
+  {
+  }
+
+  /// To the configured one [-].
+  void scale(double factor) noexcept { coefficient_ = factor * parameters_.friction_coefficient; }
 
   /// Size of the torque at the motor shaft, >= 0 [N.m]; `rates`: of the points by motor angle while running [m/rad].
   double torque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& rates) const noexcept;
 
 private:
   ContactParameters parameters_;
+  double coefficient_;
 };
 }  // namespace hjt

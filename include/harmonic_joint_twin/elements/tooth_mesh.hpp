@@ -31,7 +31,7 @@ struct ToothPlace
 ///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
 ///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
 ///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
-///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - r_a             [m]
+///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - lost height - r_a             [m]
 ///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
 ///          k_i     stiffness of the tooth pair along the flank normal, >= 0                                [N/m]
 class ToothMesh
@@ -57,6 +57,10 @@ public:
                       double output_speed) const noexcept;
 
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
+  /// N, height lost at the tip, editable per tooth, >= 0 [m]
+  Eigen::VectorXd& tipLoss() noexcept { return tip_loss_; }
+  /// Moves the circular spline's spaces off their axis, towards space 0, from where manufacture left them [m].
+  void moveSpaces(double distance) noexcept;
   Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
 
 private:
@@ -85,8 +89,11 @@ private:
   double half_space_;  // tangent of half a space
   ToothProfile profile_;
   std::vector<Space> space_;
+  std::vector<Space> made_space_;  // as manufacture left them
+  double made_reach_;
   Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd clearance_;
+  Eigen::VectorXd tip_loss_;
 };
 }  // namespace hjt

@@ -23,7 +23,7 @@ struct JointInputs
   double temperature{};  ///< of the drive [degC]
 };
 
-/// The whole joint: ring, motor, bearing, load, frictions. Constant after construction.
+/// The whole joint: ring, motor, bearing, load, frictions. Faults edit it between steps.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);

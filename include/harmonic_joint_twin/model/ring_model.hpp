@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// All conservative elements on the ring. Constant after construction; faults are edits of its per-tooth arrays.
+/// All conservative elements on the ring. Faults edit it between steps.
 struct RingModel
 {
   /// @throws ParameterError on a bad table of pitch errors.

@@ -279,5 +279,56 @@ void visitFields(P& p, Visitor&& visit)
         "live: true: the node's memory stays in RAM (mlockall); false: it may be paged out");
   visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
         "live: processor that the loop's thread is bound to, counted from 0; -1: any");
+
+  auto& scale = p.fault_scale;
+  const Range depth{ 0.0, 1e-3 };
+  const Range part{ 0.0, 1.0 };
+  const Range factor{ 1.0, 100.0 };
+  visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
+        "interface_wear at severity 1: what rim and outer race have lost together, radially");
+  visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
+        "interface_wear at severity 1: contact.friction_coefficient times this");
+  visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
+        "rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked");
+  visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
+        "part of the cup's compliance in torsion that lies behind the teeth");
+  visit("fault_scale.flange_share", "-", scale.flange_share, part,
+        "part of the cup's compliance in torsion that lies at its flange");
+  visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
+        "rear_section_crack, flange_crack at severity 1: cup.friction_torque times this");
+  visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
+        "lubricant_degradation at severity 1: viscosity of the grease times this");
+  visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
+        "lubricant_degradation at severity 1: friction of flanks and of race in rim times this");
+  visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
+        "tooth_wear at severity 1: material off each flank, along its normal");
+  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
+        "part of a tooth pair's compliance that is bending of the flexspline's tooth");
+  visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
+        "pitting at severity 1: part of the flank's width that carries no more");
+  visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
+        "pitting at severity 1: friction of that tooth's flanks times this");
+  visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
+        "wave_generator_wear at severity 1: what the major semi-axis has lost");
+  visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
+        "what bearing.race_preload falls by with the mean radius of the wave generator");
+  visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
+        "part of bearing.race_preload that bends the race, which wear does not take away");
+  visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
+        "flexspline_crack: segments to either side over which the crack fades out");
+  visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
+        "buckling at severity 1: part of the cup's stiffness in torsion that is lost");
+  visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
+        "buckling at severity 1: radial amplitude of the waves that the free rim would keep");
+  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 }, "waves round the buckled rim");
+  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
+        "ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0");
+  visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
+        "ratcheting at severity 1: height that every tooth has lost");
+  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth, "spalls in the bearing at severity 1: depth");
+  visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
+        "spalls in the bearing: length along the race or on the ball");
+  visit("fault_scale.cage_sag", "m", scale.cage_sag, depth,
+        "bearing_cage at severity 1: by which the outer race sags where the ball fails to carry");
 }
 }  // namespace hjt

@@ -21,7 +21,12 @@ struct ParameterValue
 /// Flat `section.key` to value; the common form of a YAML file, `--set` and the ROS parameter server.
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Reads a YAML file of the form `section: {key: value}` over `map`; later files win.
+/// Top-level key of the list of faults. In the map they are `faults.N.kind`, `faults.N.severity` ..., N from 0 on.
+constexpr const char* FAULTS = "faults";
+std::string faultKey(int number);     ///< `faults.N`
+void eraseFaults(ParameterMap& map);  ///< a list of faults replaces the one before it as a whole
+
+/// Reads a YAML file of the form `section: {key: value}`, and the list `faults`, over `map`; later files win.
 /// Numbers must be spelt as rosparam understands them (1.0e-3, not 1e-3).
 /// @throws ParameterError naming file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);

@@ -3,6 +3,9 @@
 
 #include <array>
 #include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/faults.hpp"
 
 namespace hjt
 {
@@ -276,6 +279,35 @@ struct JointParameters
   std::string hardware_id{};
 };
 
+/// What a fault of severity 1 is, by kind.
+struct FaultScaleParameters
+{
+  double interface_wear_depth{};
+  double interface_friction_factor{};
+  double cup_crack_fraction{};
+  double rear_section_share{};
+  double flange_share{};
+  double cup_crack_friction_factor{};
+  double viscosity_factor{};
+  double boundary_friction_factor{};
+  double tooth_wear_depth{};
+  double tooth_compliance_share{};
+  double pitted_fraction{};
+  double pitted_friction_factor{};
+  double wave_generator_wear_depth{};
+  double race_fit_stiffness{};
+  double race_bending_preload{};
+  int rim_crack_segments{};
+  double buckling_stiffness_loss{};
+  double buckling_out_of_round{};
+  int buckling_waves{};
+  double ratcheting_eccentricity{};
+  double ratcheting_tip_loss{};
+  double spall_depth{};
+  double spall_length{};
+  double cage_sag{};
+};
+
 /// Everything the twin is made from.
 struct Parameters
 {
@@ -297,6 +329,8 @@ struct Parameters
   LifeParameters life;
   InputParameters input;
   PublishParameters publish;
+  FaultScaleParameters fault_scale;
+  std::vector<Fault> faults;  ///< that it starts with, or gets on its way
   RealtimeParameters realtime;
 };
 }  // namespace hjt

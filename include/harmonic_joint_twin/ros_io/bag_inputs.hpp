@@ -13,18 +13,19 @@
 
 namespace hjt
 {
-/// The torques recorded in a bag.
+/// The torques and faults recorded in a bag.
 struct BagInputs
 {
   std::vector<Input> inputs;           ///< by stamp; equal stamps in the order of the bag
   std::uint64_t without_effort{};      ///< stamped messages that name the joint but give no effort for it
+  std::uint64_t refused_faults{};      ///< of unknown kind, or out of range: not among the inputs
   std::set<std::string> other_joints;  ///< joints named in stamped messages that do not name this one
 };
 
 /// Reads the input topics below `joint_namespace`. Stamped messages count at their header stamp, others at the time they
 /// were recorded.
 /// @throws InputError if a topic has another type, or a stamp is far from the time of recording.
-BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const JointNames& names);
+BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters);
 
 /// All topics of a bag and their types, one a line.
 std::string listTopics(const rosbag::Bag& bag);

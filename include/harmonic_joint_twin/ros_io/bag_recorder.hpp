@@ -25,6 +25,8 @@ private:
   OutputSchedule schedule_;
   ToothForces tooth_forces_;
   std::string prefix_;
+  JointNames names_;
+  std::uint64_t recorded_faults_;  // version of the list that was recorded last
   sensor_msgs::JointState joint_states_;
   harmonic_joint_twin::Encoders encoders_;
   harmonic_joint_twin::ContactForces contact_forces_;

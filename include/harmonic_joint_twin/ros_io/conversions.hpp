@@ -8,6 +8,8 @@
 #include "harmonic_joint_twin/Assessment.h"
 #include "harmonic_joint_twin/ContactForces.h"
 #include "harmonic_joint_twin/Encoders.h"
+#include "harmonic_joint_twin/Fault.h"
+#include "harmonic_joint_twin/Faults.h"
 #include "harmonic_joint_twin/Health.h"
 #include "harmonic_joint_twin/Indicators.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
@@ -54,6 +56,11 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
 
 harmonic_joint_twin::Assessment makeAssessment(const JointNames& names);
 void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
+/// Allocates.
+harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
+
+/// The fault in a message; its onset is the stamp. @returns what is wrong with it, or nothing.
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault);
 
 /// What was found in a stamped torque message.
 enum class EffortStatus

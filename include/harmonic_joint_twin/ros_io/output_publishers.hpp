@@ -3,6 +3,8 @@
 
 #include <array>
 #include <atomic>
+#include <mutex>
+#include <string>
 #include <thread>
 
 #include <ros/node_handle.h>
@@ -27,10 +29,20 @@ public:
   /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
   void offer(Twin& twin) noexcept;
 
+  /// The faults published last, for a human reader.
+  std::string activeFaults() const;
+
   /// Per `Output`.
   std::array<ChannelCounters, OUTPUT_COUNT> counters() const noexcept;
 
 private:
+  struct FaultsAt
+  {
+    Stamp stamp;
+    FaultList faults;
+  };
+  void offerFaults(const Twin& twin) noexcept;
+  void drainFaults();
   bool isWanted(Output output, bool heard, Stamp instant) const noexcept;
   void run();
   void refreshHeard();
@@ -44,7 +56,13 @@ private:
   OutputChannel<harmonic_joint_twin::Health> health_;
   OutputChannel<harmonic_joint_twin::Indicators> indicators_;
   OutputChannel<harmonic_joint_twin::Assessment> assessment_;
+  const JointNames names_;
+  SlotRing<FaultsAt> faults_;
+  ros::Publisher faults_publisher_;
+  std::uint64_t offered_faults_;  // version of the list that was offered last
   std::atomic<bool> stopping_{ false };
+  mutable std::mutex text_mutex_;
+  std::string active_faults_;
   std::thread thread_;
 };
 }  // namespace hjt

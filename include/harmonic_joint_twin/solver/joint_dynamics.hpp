@@ -28,6 +28,9 @@ public:
   /// From now on by this surface where it holds, which must outlive its use; null: by the full ring.
   void useSurface(const ResponseSurface* surface) noexcept;
 
+  /// After an edit of the model: the ring in its equilibrium at the present angles, by the full ring.
+  SolveStatus followModel() noexcept;
+
   /// The present equilibrium is the surface's.
   bool onSurface() const noexcept { return on_surface_; }
   const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< while there

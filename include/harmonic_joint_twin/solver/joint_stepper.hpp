@@ -31,6 +31,11 @@ public:
   /// than regularised friction creeps, or than counts. Then nothing is solved.
   bool step(const JointInputs& inputs) noexcept;
 
+  /// After an edit of the model between two steps, the full ring in use: what its stored energy changes by is set free,
+  /// or taken up, by the fault. False: the ring did not converge and is still the old one.
+  bool followModel() noexcept;
+  double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
+
   /// See JointDynamics.
   void useSurface(const ResponseSurface* surface) noexcept
   {
@@ -43,7 +48,7 @@ public:
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
-  double energyResidual() const noexcept;                           ///< energy in - stored - dissipated since reset [J]
+  double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
   double swingPhase() const noexcept;
@@ -68,6 +73,7 @@ private:
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};          // motor work - load work - dissipated - kinetic energy [J]
   double stored_at_start_{};  // [J]
+  double released_{};         // [J]
   double throughput_{};
 };
 }  // namespace hjt

@@ -52,6 +52,9 @@ public:
   /// As `insert`, in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
+  /// After an edit of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  SolveStatus followModel() noexcept;
+
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 

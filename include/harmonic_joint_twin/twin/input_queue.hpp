@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "harmonic_joint_twin/params/faults.hpp"
+
 namespace hjt
 {
 /// Time of a message or of a simulated instant [ns since the epoch of the messages].
@@ -14,15 +16,17 @@ enum class InputKind : std::uint8_t
 {
   MOTOR_TORQUE,
   LOAD_TORQUE,
-  BRAKE
+  BRAKE,
+  FAULT  ///< for Twin::injectFault: the queue takes none
 };
-constexpr std::size_t INPUT_KINDS = 3;
+constexpr std::size_t INPUT_KINDS = 3;  ///< of those with a value
 
 struct Input
 {
   Stamp stamp{};
   InputKind kind{};
   double value{};
+  Fault fault{};  ///< for kind FAULT
 };
 
 struct InputCounters

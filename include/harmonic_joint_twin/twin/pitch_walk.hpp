@@ -2,21 +2,21 @@
 #pragma once
 
 #include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/joint_model.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
 #include "harmonic_joint_twin/solver/output_balance.hpp"
 #include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
 #include "harmonic_joint_twin/twin/static_solver.hpp"
 
 namespace hjt
 {
-/// The joint led quasi-statically through one tooth pitch of the wave generator at constant load. With all teeth alike
-/// that is the whole turn: what one tooth goes through in a turn, all teeth go through side by side in a pitch.
+/// The joint, with the faults it starts with, led quasi-statically through one tooth pitch of the wave generator at
+/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go through side by side in a pitch.
 class PitchWalk
 {
 public:
   /// `positions`: wave generator angles per tooth pitch, >= 1.
   PitchWalk(const Parameters& parameters, int positions)
-    : model_(parameters)
+    : model_(startingJoint(parameters))
     , ring_(model_.ring, staticSolver(parameters.solver))
     , pitch_(TWO_PI / parameters.gear.teeth_flexspline)
     , positions_(positions)

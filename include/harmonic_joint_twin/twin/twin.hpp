@@ -8,9 +8,10 @@
 
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
-#include "harmonic_joint_twin/model/tooth_faults.hpp"
+#include "harmonic_joint_twin/model/faults/fault_list.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/sensors/joint_sensors.hpp"
+#include "harmonic_joint_twin/twin/fault_schedule.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
 #include "harmonic_joint_twin/twin/surface_cache.hpp"
 
@@ -30,7 +31,8 @@ struct JointOutputs
   double joint_torque{};           ///< of the mesh on the circular spline
   double friction_torque{};        ///< all friction reduced to the motor shaft by power, >= 0
   double torsional_stiffness{};    ///< local, wave generator locked [N.m/rad]
-  double energy_residual{};        ///< energy in - stored - dissipated since reset [J]
+  double energy_residual{};        ///< energy in - stored - dissipated - released since reset [J]
+  double released_energy{};        ///< stored energy that faults set free when they set in, since reset [J]
   bool brake_engaged{};
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
@@ -92,6 +94,7 @@ struct TwinCounters
   std::uint64_t jumps{};            ///< steps in which a tooth changed its space through a tip
   std::uint64_t coarse_steps{};     ///< steps too long for what the joint does in them
   InputCounters input;
+  FaultCounters faults;
   std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit
   std::uint64_t load_clamped{};      ///< steps on which the load exceeded output.load_torque_limit
   std::uint64_t speed_limited{};     ///< steps on which the drive held torque back at motor.speed_limit
@@ -106,16 +109,18 @@ struct TwinCounters
 class Twin
 {
 public:
-  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response
-  /// surface (seconds) or takes it from the cache, unless that is to be done beside the running twin. @throws ParameterError if the parameters have no equilibrium.
-  explicit Twin(const Parameters& parameters, const ToothFaults& faults = {}, const SurfaceSource& surface_source = {});
+  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response surface of the drive
+  /// with the faults it starts with (seconds) or takes it from the cache, unless that is to be done beside the running twin.
+  /// @throws ParameterError if the parameters, or the faults that the twin starts with, have no equilibrium.
+  explicit Twin(const Parameters& parameters, const SurfaceSource& surface_source = {});
   ~Twin();
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;
 
   const Parameters& parameters() const noexcept;
 
-  /// Starts anew at rest, zero angles, at the first instant not before `stamp`; forgets inputs and counters.
+  /// Starts anew at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
+  /// inputs, other faults and counters.
   void reset(Stamp stamp) noexcept;
 
   /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
@@ -123,6 +128,13 @@ public:
   void commandMotorTorque(Stamp stamp, double torque) noexcept;  ///< [N.m] motor shaft
   void commandLoadTorque(Stamp stamp, double torque) noexcept;   ///< [N.m] output, > 0 resists positive motion
   void commandBrake(Stamp stamp, bool engaged) noexcept;
+
+  /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one that
+  /// is not valid is refused and counted. While any is active all teeth are solved at every step.
+  void injectFault(Stamp stamp, const Fault& fault) noexcept;
+  const FaultList& activeFaults() const noexcept;
+
+  void give(const Input& input) noexcept;  ///< one of these, by its kind
 
   /// Advances by one solver step if the next instant is not after `until`. False: nothing was done.
   bool step(Stamp until) noexcept;

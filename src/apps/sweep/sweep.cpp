@@ -82,7 +82,7 @@ public:
     std::optional<Twin> twin;
     try
     {
-      twin.emplace(spec.parameters, ToothFaults{}, surface_source_);
+      twin.emplace(spec.parameters, surface_source_);
     }
     catch (const ParameterError& error)
     {
@@ -91,6 +91,7 @@ public:
       makeRunFile(plan_.recording(), spec, nullptr, path)->finish(record);
       return true;
     }
+    twin->watchSignals(plan_.recording().format == RunFormat::BAG);  // a bag holds the indicators
     twin->reset(SIMULATION_EPOCH);
     const auto file = makeRunFile(plan_.recording(), spec, &*twin, path);
     if (!march(*twin, spec, *file))
@@ -403,9 +404,9 @@ RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source)
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point begin)
   { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  Twin first(spec.parameters, ToothFaults{}, surface_source);  // may have to build its surface, once for all runs
+  Twin first(spec.parameters, surface_source);  // may have to build its surface, once for all runs
   const Clock::time_point begin = Clock::now();
-  Twin twin(spec.parameters, ToothFaults{}, surface_source);
+  Twin twin(spec.parameters, surface_source);
   RunCost cost;
   cost.start = since(begin);
   twin.reset(SIMULATION_EPOCH);

@@ -33,6 +33,7 @@ void addTrialCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addIndicatorsCommand(CLI::App& app, int& exit_code);
+void addFaultsCommand(CLI::App& app, int& exit_code);
 void addSweepCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 }  // namespace hjt

@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 constexpr const char* GROUP = "Common options";
 
 /// The default configuration, one file per stage.
-constexpr std::array<const char*, 9> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml",
-                                             "joint.yaml",  "solver.yaml",      "sensors.yaml",
-                                             "health.yaml", "life.yaml",        "node.yaml" };
+constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
+                                              "solver.yaml", "sensors.yaml",     "health.yaml",   "life.yaml",
+                                              "faults.yaml", "node.yaml" };
 
 fs::path installedConfigDirectory()
 {
@@ -55,6 +55,15 @@ fs::path findOverlay(const std::string& name, const fs::path& config_directory)
   return name;
 }
 }  // namespace
+
+void addFaultOption(CLI::App& command, CommonOptions& options)
+{
+  command
+      .add_option("--fault", options.faults,
+                  "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
+      ->type_name("KIND:SEVERITY[:PLACE[:ONSET]]")
+      ->allow_extra_args(false);
+}
 
 void addConfigurationOptions(CLI::App& command, CommonOptions& options)
 {
@@ -103,8 +112,22 @@ ParameterMap loadParameterMap(const CommonOptions& options)
   return map;
 }
 
+void addFaults(const CommonOptions& options, Parameters& parameters)
+{
+  for (const std::string& fault : options.faults)
+  {
+    parameters.faults.push_back(parseFault(fault, parameters));
+  }
+  if (parameters.faults.size() > MOST_FAULTS)
+  {
+    throw ParameterError("--fault: more than " + std::to_string(MOST_FAULTS) + " faults");
+  }
+}
+
 Parameters loadParameters(const CommonOptions& options)
 {
-  return parseParameters(loadParameterMap(options));
+  Parameters parameters = parseParameters(loadParameterMap(options));
+  addFaults(options, parameters);
+  return parameters;
 }
 }  // namespace hjt

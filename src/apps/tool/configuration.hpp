@@ -16,9 +16,13 @@ struct CommonOptions
   std::string config_dir;            ///< where the default configuration lies; empty: found by itself
   std::vector<std::string> configs;  ///< overlays, later wins
   std::vector<std::string> assignments;
+  std::vector<std::string> faults;  ///< KIND:SEVERITY[:PLACE[:ONSET]], beside the configured ones
   bool json{};
   bool force{};
 };
+
+/// `--fault`, for the commands that march the joint.
+void addFaultOption(CLI::App& command, CommonOptions& options);
 
 /// Those about the configuration alone.
 void addConfigurationOptions(CLI::App& command, CommonOptions& options);
@@ -28,6 +32,9 @@ void addCommonOptions(CLI::App& command, CommonOptions& options);
 /// The default configuration with the overlays and assignments over it. @throws ParameterError.
 ParameterMap loadParameterMap(const CommonOptions& options);
 
-/// The same, checked. @throws ParameterError.
+/// Adds the faults of `--fault` to the configured ones. @throws ParameterError.
+void addFaults(const CommonOptions& options, Parameters& parameters);
+
+/// The same, checked, with the faults of `--fault`. @throws ParameterError.
 Parameters loadParameters(const CommonOptions& options);
 }  // namespace hjt

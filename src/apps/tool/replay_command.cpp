@@ -94,13 +94,13 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const ParameterMap& map,
                         Parameters& parameters)
 {
-  BagInputs found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
+  BagInputs found = readBagInputs(bag, options.joint_namespace, parameters);
   if (found.inputs.empty() && found.other_joints.size() == 1 && !jointIsChosen(options, map))
   {
     parameters.joint.name = *found.other_joints.begin();
     std::cerr << "joint_twin: joint.name = " << parameters.joint.name << ", the one joint that " << options.bag
               << " commands\n";
-    found = readBagInputs(bag, options.joint_namespace, JointNames(parameters.joint.name));
+    found = readBagInputs(bag, options.joint_namespace, parameters);
   }
   if (found.inputs.empty())
   {
@@ -110,6 +110,10 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   {
     std::cerr << "joint_twin: " << found.without_effort << " messages name " << parameters.joint.name
               << " but give no effort for it; ignored\n";
+  }
+  if (found.refused_faults > 0)
+  {
+    std::cerr << "joint_twin: " << found.refused_faults << " faults of unknown kind or out of range; ignored\n";
   }
   if (!found.other_joints.empty())
   {
@@ -166,15 +170,7 @@ private:
     const Stamp instant = twin_.stamp() + twin_.stepLength();
     for (; next_ < inputs_.size() && inputs_[next_].stamp <= instant; ++next_)
     {
-      const Input& input = inputs_[next_];
-      if (input.kind == InputKind::MOTOR_TORQUE)
-      {
-        twin_.commandMotorTorque(input.stamp, input.value);
-      }
-      else
-      {
-        twin_.commandLoadTorque(input.stamp, input.value);
-      }
+      twin_.give(inputs_[next_]);
     }
   }
 
@@ -192,12 +188,13 @@ int replay(const ReplayOptions& options)
 {
   const ParameterMap map = loadParameterMap(options);
   Parameters parameters = parseParameters(map);
+  addFaults(options, parameters);
   requireWritable(options.out, options.force, options.bag);
   rosbag::Bag bag;
   openForReading(bag, options.bag);
   refuseTakenTopics(bag, options);
   const BagInputs found = requireInputs(bag, options, map, parameters);
-  Twin twin(parameters, {}, surfaceSource());
+  Twin twin(parameters, surfaceSource());
   twin.watchSignals(true);
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
@@ -226,6 +223,7 @@ void addReplayCommand(CLI::App& app, int& exit_code)
       ->type_name("OUT.bag")
       ->check(BAG);
   addNamespaceOption(*command, options->joint_namespace);
+  addFaultOption(*command, *options);
   addCommonOptions(*command, *options);
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }

@@ -103,7 +103,7 @@ int simulate(const SimulateOptions& options)
   const Parameters parameters = loadParameters(options);
   requireWritable(options.out, options.force, options.profile);
   TorqueProfile profile = makeProfile(options);
-  Twin twin(parameters, {}, surfaceSource());
+  Twin twin(parameters, surfaceSource());
   twin.reset(SIMULATION_EPOCH);
   const RunSummary summary{ options.out, twin.stamp() };
   const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
@@ -148,6 +148,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code)
       ->type_name("FILE.bag|FILE.csv")
       ->check(BAG_OR_CSV);
   addNamespaceOption(*command, options->joint_namespace);
+  addFaultOption(*command, *options);
   addCommonOptions(*command, *options);
   command->callback(
       [options, &exit_code]

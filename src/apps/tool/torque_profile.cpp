@@ -80,19 +80,8 @@ void TorqueProfile::feed(Twin& twin, Stamp begin)
   for (; next_ < inputs_.size() && begin + inputs_[next_].stamp <= instant; ++next_)
   {
     const Input& input = inputs_[next_];
-    switch (input.kind)
-    {
-      case InputKind::MOTOR_TORQUE:
-        motor_torque_ = input.value;
-        twin.commandMotorTorque(instant, input.value);
-        break;
-      case InputKind::LOAD_TORQUE:
-        twin.commandLoadTorque(instant, input.value);
-        break;
-      case InputKind::BRAKE:
-        twin.commandBrake(instant, input.value != 0.0);
-        break;
-    }
+    motor_torque_ = input.kind == InputKind::MOTOR_TORQUE ? input.value : motor_torque_;
+    twin.give({ instant, input.kind, input.value, input.fault });
   }
 }
 }  // namespace hjt

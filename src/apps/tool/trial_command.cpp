@@ -31,7 +31,6 @@ struct TrialOptions : CommonOptions
   double duration{};
   double sample_period{ 1e-3 };
   double advance{};
-  ToothFaults faults;
 };
 
 const char* stateName(SolverState state)
@@ -61,7 +60,7 @@ int trial(const TrialOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   TorqueProfile profile = TorqueProfile::fromFile(options.profile);
-  Twin twin(parameters, options.faults, surfaceSource());
+  Twin twin(parameters, surfaceSource());
   twin.reset(SIMULATION_EPOCH);
   const Stamp begin = twin.stamp();
   const Stamp end = begin + toStampLength(options.duration);
@@ -145,9 +144,7 @@ void addTrialCommand(CLI::App& app, int& exit_code)
   command->add_option("--advance", options->advance, "the profile begins this much earlier [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--missing-teeth", options->faults.missing, "teeth broken off, e.g. 3,4 [-]")->delimiter(',');
-  command->add_option("--cut-rim", options->faults.cut, "teeth behind which the rim is cut through, e.g. 40 [-]")
-      ->delimiter(',');
+  addFaultOption(*command, *options);
   addCommonOptions(*command, *options);
   command->callback([options, &exit_code] { exit_code = trial(*options); });
 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "harmonic_joint_twin/params/faults.hpp"
+
+namespace hjt
+{
+struct ActiveFault
+{
+  Fault fault;
+  std::int64_t since{};  ///< stamp of its present severity [ns]
+};
+
+/// Faults by kind and place, in that order whatever order they came in; in a fixed store.
+class FaultList
+{
+public:
+  /// Adds a fault, or replaces the severity of the one of its kind and place; severity 0 takes it away.
+  /// What is as it should be already stays, with its stamp. @returns false if there is no room: nothing was done.
+  bool set(const Fault& fault, std::int64_t since) noexcept;
+  void clear() noexcept
+  {
+    version_ += size_ > 0 ? 1 : 0;
+    size_ = 0;
+  }
+
+  const ActiveFault* begin() const noexcept { return faults_.data(); }
+  const ActiveFault* end() const noexcept { return faults_.data() + size_; }
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+  std::uint64_t version() const noexcept { return version_; }  ///< another one whenever the list has changed
+
+private:
+  std::array<ActiveFault, MOST_FAULTS> faults_{};
+  std::size_t size_{};
+  std::uint64_t version_{};
+};
+}  // namespace hjt

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "harmonic_joint_twin/params/faults.hpp"
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+
+namespace hjt
+{
+struct FaultCounters
+{
+  std::uint64_t accepted{};
+  std::uint64_t refused{};  ///< severity, place or onset out of its range
+  std::uint64_t late{};     ///< stamp before the instant already simulated: sets in at once
+  std::uint64_t no_room{};  ///< too many waiting or active: refused
+};
+
+/// Faults that are to set in or to be taken away, in order of time, in a fixed store. Equal stamps keep the order of
+/// arrival.
+class FaultSchedule
+{
+public:
+  static constexpr std::size_t CAPACITY = 2 * MOST_FAULTS;
+
+  void clear() noexcept { size_ = 0; }
+  /// @returns false if it is full.
+  bool push(const Fault& fault, Stamp stamp) noexcept;
+  /// Takes the earliest with a stamp not after `instant`. False: there is none.
+  bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
+
+private:
+  struct Waiting
+  {
+    Stamp stamp;
+    Fault fault;
+  };
+  std::array<Waiting, CAPACITY> waiting_{};  // latest first
+  std::size_t size_{};
+};
+}  // namespace hjt

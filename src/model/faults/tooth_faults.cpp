@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Stiffness of a tooth pair whose flexspline tooth has lost `loss` of its thickness, to that of a sound one: the tooth is
+/// a cantilever, its bending compliance goes with the cube of what is left; the rest of the pair's compliance stays.
+double thinned(double loss, double share) noexcept
+{
+  const double left = loss < 1.0 ? 1.0 - loss : 0.0;
+  const double cube = left * left * left;
+  return cube / (cube + share * (1.0 - cube));
+}
+}  // namespace
+
+bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept
+{
+  return gear.rim_thickness > gear.tooth_height_flexspline;
+}
+
+void editToothWear(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
+{
+  const GearParameters& gear = parameters.gear;
+  const double across =
+      fault.severity * parameters.fault_scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
+  // Half the pitch at mid-height.
+  const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
+  const double factor = thinned(2.0 * across / thickness, parameters.fault_scale.tooth_compliance_share);
+  atPlace(fault.place, edits.clearance, [&](double& clearance) { clearance += across; });
+  atPlace(fault.place, edits.mesh_stiffness, [&](double& stiffness) { stiffness *= factor; });
+}
+
+void editToothRootCrack(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
+{
+  if (rootCrackRunsThroughTooth(parameters.gear))
+  {
+    edits.mesh_stiffness[fault.place] *= thinned(fault.severity, parameters.fault_scale.tooth_compliance_share);
+  }
+  else
+  {
+    crackRim(fault.place, fault.severity, edits);
+  }
+}
+
+void editToothTipCrack(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
+{
+  edits.tip_loss[fault.place] += fault.severity * parameters.gear.tooth_height_flexspline;
+}
+
+void editPitting(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
+{
+  const double width = 1.0 - fault.severity * parameters.fault_scale.pitted_fraction;
+  const double friction = 1.0 + fault.severity * (parameters.fault_scale.pitted_friction_factor - 1.0);
+  atPlace(fault.place, edits.mesh_stiffness, [&](double& stiffness) { stiffness *= width; });
+  atPlace(fault.place, edits.flank_friction, [&](double& factor) { factor *= friction; });
+}
+
+/// What a jump leaves behind: worn tips, and a circular spline that is no more coaxial.
+void editRatcheting(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
+{
+  edits.spaces_off_axis += fault.severity * parameters.fault_scale.ratcheting_eccentricity;
+  edits.tip_loss.array() += fault.severity * parameters.fault_scale.ratcheting_tip_loss;
+}
+}  // namespace hjt
