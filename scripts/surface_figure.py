@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws docs/images/response_surface.png: one profile on the full ring and on the response surface.
 
-The profile is open loop: speeding up, a load of 60 N.m, reversal, brake. Torsion is the motor's angle over the ratio less the
+The profile is open loop: speeding up, a load of 60 N.m, slowing down, brake, start. Torsion is the motor's angle over the ratio less the
 output's.
 """
 import argparse
@@ -21,13 +21,13 @@ import matplotlib.pyplot as plt
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 ARC_SECOND = math.pi / 180 / 3600
 RATIO = 101
-PROFILE = "time,motor_torque,load_torque,brake\n0,0.35,0,0\n0.25,0.9,60,0\n0.75,0.4,60,0\n1.0,0,60,1\n1.5,-0.5,60,0\n"
+PROFILE = "time,motor_torque,load_torque,brake\n0,0.25,0,0\n0.2,0.8,60,0\n0.5,0.45,60,0\n0.8,0,60,1\n1.1,0.85,60,0\n"
 
 
 def simulate(tool, directory, scene, more):
     """Rows of the run and the time it took."""
     out = os.path.join(directory, f"{scene}.csv")
-    command = [tool, "simulate", "--profile", os.path.join(directory, "profile.csv"), "--duration", "2", "--out", out,
+    command = [tool, "simulate", "--profile", os.path.join(directory, "profile.csv"), "--duration", "1.3", "--out", out,
                "--set", f"solver.scene={scene}", "--set", "input.command_timeout=10.0", "--force"]
     begin = os.times().children_user
     subprocess.run(command + more, check=True)

@@ -99,15 +99,14 @@ private:
 
 std::vector<Contender> odeintContenders(const Problem& problem)
 {
-  // Steps at the limit of stability and a half and a quarter of that; many of them, so they are given longer than others.
-  constexpr double PATIENCE = 2.0;
+  // Steps at the limit of stability and a half and a quarter of that.
   std::vector<Contender> contenders;
   for (const double part : { 1.0, 0.5, 0.25 })
   {
     const Contender runge_kutta =
         fixedStep(problem, "odeint RK4", RingMethod::RUNGE_KUTTA4, part * 2.5 / problem.fastest, 0.0);
-    contenders.push_back(
-        { runge_kutta.solver, runge_kutta.setting, [=](double limit) { return runge_kutta.run(PATIENCE * limit); } });
+    contenders.push_back({ runge_kutta.solver, runge_kutta.setting,
+                           [=](double limit) { return runge_kutta.run(EXPLICIT_PATIENCE * limit); } });
   }
   for (const double tolerance : { 1e-1, 1e-2, 1e-3 })
   {
@@ -115,7 +114,7 @@ std::vector<Contender> odeintContenders(const Problem& problem)
                            [=, &problem](double limit)
                            {
                              Dopri5 integrator(problem, tolerance);
-                             return follow(problem, integrator, PATIENCE * limit);
+                             return follow(problem, integrator, EXPLICIT_PATIENCE * limit);
                            } });
   }
   return contenders;

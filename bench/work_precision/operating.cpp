@@ -279,7 +279,7 @@ OperatingProblem::OperatingProblem() : parameters(hjt::parameters()), model(para
 std::vector<Contender> operatingContenders(const OperatingProblem& problem)
 {
   std::vector<Contender> contenders;
-  const double steps[] = { 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
+  const double steps[] = { 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
   for (const double step : steps)
   {
     contenders.push_back({ "ours, leapfrog", "h = " + text("%.3g us", 1e6 * step),

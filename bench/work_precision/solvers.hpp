@@ -19,6 +19,9 @@ struct Contender
   std::function<Run(double limit)> run;
 };
 
+/// What explicit methods are given of a run's limit: their steps are many whatever the error.
+constexpr double EXPLICIT_PATIENCE = 2.0;
+
 /// A method of the package at a fixed step [s].
 Contender fixedStep(const Problem& problem, const std::string& solver, RingMethod method, double step,
                     double force_tolerance);

@@ -145,14 +145,18 @@ std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noe
 
 void OutputPublishers::run()
 {
-  for (int round = 0; !stopping_; ++round)
+  for (int round = 0; !stopping_;)
   {
-    if (round % HEARD_REFRESH == 0)
+    if (round == 0)
     {
       refreshHeard();
     }
     drain();
-    std::this_thread::sleep_for(DRAIN_PERIOD);
+    // While nobody hears there is nothing to drain: only to see whether somebody comes.
+    const bool heard = joint_states_.isHeard() || encoders_.isHeard() || contact_forces_.isHeard() ||
+                       health_.isHeard() || indicators_.isHeard() || assessment_.isHeard();
+    std::this_thread::sleep_for(heard ? DRAIN_PERIOD : HEARD_REFRESH * DRAIN_PERIOD);
+    round = heard ? (round + 1) % HEARD_REFRESH : 0;
   }
   drain();
 }

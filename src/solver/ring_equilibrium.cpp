@@ -176,7 +176,8 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::followModel() noexcept
 {
   constexpr char NONE = 8;  // no tooth's contacts: the tangent is no longer that of the model
-  std::fill(factored_contacts_.begin(), factored_contacts_.end(), NONE);
+  std::fill(factored_meshed_.begin(), factored_meshed_.end(), NONE);
+  forgetGuess();
   updateForces();
   const DrivePosition target = now_.position;
   start_ = now_;

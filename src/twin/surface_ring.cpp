@@ -88,7 +88,7 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
 
 SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   : model_(std::move(model))
-  , unit_friction_(unitFriction(parameters.mesh))
+  , unit_friction_(unitFriction(parameters.mesh), parameters.gear.teeth_flexspline)
   , ring_(model_.ring, staticSolver(parameters.solver))
   , friction_(parameters.gear.teeth_flexspline)
   , running_(2 * parameters.gear.teeth_flexspline)
@@ -103,6 +103,7 @@ SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   , static_friction_(parameters.mesh.friction_static)
   , temperature_(parameters.input.temperature)
 {
+  unit_friction_.toothFactor() = model_.mesh_friction.toothFactor();
 }
 
 bool SurfaceRing::insert()

@@ -47,8 +47,7 @@ std::string keyOf(const FaultList& faults, const Parameters& parameters)
 bool isSame(const FaultList& one, const FaultList& other) noexcept
 {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                    [](const ActiveFault& a, const ActiveFault& b)
-                    {
+                    [](const ActiveFault& a, const ActiveFault& b) {
                       return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
                              a.fault.severity == b.fault.severity;
                     });
@@ -107,8 +106,7 @@ struct Twin::Impl
     else if (source.background)
     {
       surface_awaited = true;
-      surface_worker =
-          std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+      surface_worker = std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
     }
     else
     {

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path CONFIG(HJT_TEST_CONFIG_DIR);
-const std::vector<std::string> STAGES{ "gear",    "manufacture", "elements", "joint", "solver",
+const std::vector<std::string> STAGES{ "gear",    "manufacture", "elements", "joint",  "solver",
                                        "sensors", "health",      "life",     "faults", "node" };
 
 ParameterMap defaultMap()

@@ -379,7 +379,8 @@ TEST(Departures, AreContinuousFromPitchToPitch)
 
 TEST(Departures, ComeFromTheCacheAsTheyWereBuilt)
 {
-  const std::optional<SurfaceTables> built = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
+  const std::optional<SurfaceTables> built =
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
   bool building = false;
   const std::optional<SurfaceTables> kept = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ",
                                                           { cacheDirectory(), [&](double) { building = true; }, {} });

@@ -13,7 +13,7 @@ inline Parameters shippedParameters(const std::vector<std::string>& assignments 
                                     const std::vector<std::string>& overlays = {})
 {
   ParameterMap map;
-  std::vector<std::string> files{ "gear",    "manufacture", "elements", "joint", "solver",
+  std::vector<std::string> files{ "gear",    "manufacture", "elements", "joint",  "solver",
                                   "sensors", "health",      "life",     "faults", "node" };
   files.insert(files.end(), overlays.begin(), overlays.end());
   for (const std::string& file : files)

@@ -40,7 +40,7 @@ public:
     friction_static_ = factor * parameters_.friction_static;
     friction_kinetic_ = factor * parameters_.friction_kinetic;
   }
-  /// N, friction of each tooth's flanks to that of the others, editable [-]; only the full ring knows it.
+  /// N, friction of each tooth's flanks to that of the others, editable [-].
   Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
 
   /// One term per loaded tooth. `forces`: of the same shape; `speeds`: motor and output [rad/s], for the Stribeck curve.

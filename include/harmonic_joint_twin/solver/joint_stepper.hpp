@@ -16,7 +16,7 @@ public:
   /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
   /// after four swings [rad].
   static constexpr double MAX_SWING_PHASE = 0.1;
-  static constexpr double REST_SPEED = 1e-8;  ///< of the output, 0.002 seconds of arc a second [rad/s]
+  static constexpr double REST_SPEED = 1e-7;  ///< of the output, 0.02 seconds of arc a second [rad/s]
   static constexpr double REST_TIME = 0.1;    ///< [s]
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.

@@ -91,6 +91,7 @@ public:
       makeRunFile(plan_.recording(), spec, nullptr, path)->finish(record);
       return true;
     }
+    twin->watchSignals(plan_.recording().format == RunFormat::BAG);  // a bag holds the indicators
     twin->reset(SIMULATION_EPOCH);
     const auto file = makeRunFile(plan_.recording(), spec, &*twin, path);
     if (!march(*twin, spec, *file))

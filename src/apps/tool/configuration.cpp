@@ -16,10 +16,9 @@ namespace fs = std::filesystem;
 constexpr const char* GROUP = "Common options";
 
 /// The default configuration, one file per stage.
-constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml",
-                                             "joint.yaml",  "solver.yaml",      "sensors.yaml",
-                                             "health.yaml", "life.yaml",        "faults.yaml",
-                                             "node.yaml" };
+constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
+                                              "solver.yaml", "sensors.yaml",     "health.yaml",   "life.yaml",
+                                              "faults.yaml", "node.yaml" };
 
 fs::path installedConfigDirectory()
 {
