@@ -31,7 +31,7 @@ namespace
 namespace fs = std::filesystem;
 
 /// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
-constexpr const char* FORMAT = "harmonic_joint_twin response surface 2\n";
+constexpr const char* FORMAT = "harmonic_joint_twin response surface 3\n";
 /// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
 /// the friction is added when the surface is read.
 constexpr std::array<const char*, 25> OTHER_KEYS{ "joint.",
