@@ -81,7 +81,7 @@ public:
   Cycle(const hjt::Parameters& parameters, const Scene& scene, Watch watch)
     : scene_(scene)
     , watch_(watch)
-    , twin_(parameters, {}, hjt::SurfaceSource{ hjt::surfaceCacheDirectory(), {}, {} })
+    , twin_(parameters, hjt::SurfaceSource{ hjt::surfaceCacheDirectory(), {}, {} })
     , forces_(twin_.makeToothForces())
     , encoder_interval_(std::max(1ll, std::llround(parameters.solver.rate / parameters.publish.encoders_rate)))
     , health_interval_(std::max(1ll, std::llround(parameters.solver.rate / parameters.publish.health_rate)))
