@@ -84,7 +84,7 @@ class Parameters(unittest.TestCase):
 
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
-        overlays = ["as_built", "recorded_load", "size_14", "thesis_insertion",
+        overlays = ["as_built", "real_sensors", "recorded_load", "size_14", "thesis_insertion",
                     *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))

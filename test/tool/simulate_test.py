@@ -46,8 +46,8 @@ class Simulate(tool.ToolTest):
 
     def test_scenes_agree(self):
         """The same profile on the full ring and on the response surface: the torsion and the joint's torque."""
-        self.write("p.csv", "time,motor_torque,load_torque,brake\n0,0.5,0,0\n0.1,0.7,30,0\n0.3,0.2,30,0\n"
-                            "0.4,0,30,1\n0.7,-0.6,-20,0\n")
+        self.write("p.csv", "time,motor_torque,load_torque,brake\n0,0.2,0,0\n0.1,0.3,15,0\n0.3,-0.1,15,0\n"
+                            "0.5,0,15,1\n0.7,-0.25,-15,0\n")
         series = {}
         for scene in ["full_ring", "auto"]:
             done = self.run_tool("simulate", "--profile", "p.csv", "--duration", 1.0, "--out", f"{scene}.csv",
