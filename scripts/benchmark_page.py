@@ -72,8 +72,8 @@ Not measured here:
   integrator does not see the callback's forces.
 - The cup's dry friction in the operating model: it sticks most of the time, in motion too, and a solver of smooth equations can only
   take it for a slope steeper the closer it is to the law. The leapfrog takes it as it is (`solver/dry_friction`). Where the motor
-  itself turns back, friction jumps: fixed steps meet that instant to within a step and lose an order there, the leapfrog too;
-  solvers that choose their steps find it.
+  itself turns back, friction jumps: fixed steps meet that instant to within a step, and that may be why the leapfrog shows first
+  order only (not isolated); solvers that choose their steps find it.
 - IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the two angles,
   and those exist in equilibrium only.
 - The stiffer drives for as long as the drive: their explicit references need steps shorter by the root of the stiffness."""

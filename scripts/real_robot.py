@@ -167,6 +167,9 @@ The right column is what no model of this motion can go below: one repeat differ
 stiction holds it, and within the band the current is the controller's choice, not the motion's: the twin then tells the band. Three rows of
 four rest, so the figure for all rows says more of that than of the drive.
 
+These figures are those of a fit, not of an unseen motion: the second and third repeat were looked at while the model was chosen (relaxation at
+rest, ripple left out at rest, order of the refusals).
+
 *What came out otherwise than hoped:* half the error of the gain, Coulomb and viscous fit was the aim. It is reached on the elbow's moving rows
 and nowhere else; over all rows the base is no better than that fit. Left on base and shoulder is ripple whose size depends on the
 speed in a way that a speed loop of second order does not catch.
