@@ -63,7 +63,7 @@ def plan(point, duration, repeats, classes):
              "  publish.joint_states_rate: 0.01", "  publish.encoders_rate: 0.01", "  publish.contact_forces_rate: 0.01",
              "  publish.health_rate: 0.01", f"repeats: {repeats}", "duty:", "  - name: turning",
              f"    speed: {{constant: {math.radians(point.degrees):.6f}}}", "    bandwidth: 8.0",
-             f"    load: {{constant: {point.load}}}", "classes:", *classes, "record:", "  format: bag", "  start: 0.0"]
+             f"    load: {{constant: {point.load}}}", "classes:", *classes, "record:", "  format: bag"]
     return "\n".join(lines) + "\n"
 
 
@@ -80,7 +80,7 @@ def sweep(options, name, text):
     path.write_text(text)
     out = options.work / name
     done = subprocess.run([options.tool, "sweep", path, "--out", out, "--jobs", str(options.jobs)], check=False)
-    if done.returncode not in (0, 1):  # 1: some run failed, which its row in the index says
+    if done.returncode not in (0, 1) or not (out / "index.csv").exists():  # 1: some run failed, as its row in the index says
         sys.exit(f"evaluate_health: the sweep of {path} ended with {done.returncode}")
     return sorted((out / "runs").glob("*.bag"))
 
