@@ -61,8 +61,7 @@ def draw_ageing(ages, path):
     for axis, title in zip(axes.flat, titles):
         axis.set_title(title, loc="left", fontsize=10)
         axis.set_xlabel("turns of the motor")
-        axis.set_xscale("log")
-        axis.set_xlim(1e7, None)
+        axis.set_xlim(0, None)
         axis.set_ylim(0, None)
         axis.grid(alpha=0.3)
     axes[0, 0].legend(frameon=False)

@@ -30,9 +30,11 @@ Cell cellOf(double value, double step, int stages)
   return { index, place - index };
 }
 
-double relativeDifference(double value, double reference)
+/// Entry by entry.
+Exposure larger(const Exposure& a, const Exposure& b)
 {
-  return reference == 0.0 ? 0.0 : std::abs(value - reference) / std::abs(reference);
+  return { std::max(a.flank_sliding, b.flank_sliding), std::max(a.interface_sliding, b.interface_sliding),
+           std::max(a.rim_stress_range, b.rim_stress_range) };
 }
 }  // namespace
 
@@ -84,7 +86,8 @@ Exposure ExposureMap::at(std::size_t phase, double flank_wear, double interface_
 
 double ExposureMap::largestError(const Parameters& parameters, const DutyCycle& duty, int positions) const
 {
-  double largest = 0.0;
+  Exposure miss;
+  Exposure largest;
   for (int flank = 0; flank < STAGES - 1; ++flank)
   {
     for (int interface = 0; interface < STAGES - 1; ++interface)
@@ -97,12 +100,14 @@ double ExposureMap::largestError(const Parameters& parameters, const DutyCycle& 
       {
         const Exposure measured = analysis.under(duty.phases[phase].load_torque);
         const Exposure mapped = at(phase, age.flank_wear, age.interface_wear);
-        largest = std::max({ largest, relativeDifference(mapped.flank_sliding, measured.flank_sliding),
-                             relativeDifference(mapped.interface_sliding, measured.interface_sliding),
-                             relativeDifference(mapped.rim_stress_range, measured.rim_stress_range) });
+        largest = larger(largest, measured);
+        miss = larger(miss, { std::abs(mapped.flank_sliding - measured.flank_sliding),
+                              std::abs(mapped.interface_sliding - measured.interface_sliding),
+                              std::abs(mapped.rim_stress_range - measured.rim_stress_range) });
       }
     }
   }
-  return largest;
+  return std::max({ miss.flank_sliding / largest.flank_sliding, miss.interface_sliding / largest.interface_sliding,
+                    miss.rim_stress_range / largest.rim_stress_range });
 }
 }  // namespace hjt

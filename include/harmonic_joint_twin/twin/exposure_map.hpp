@@ -26,7 +26,8 @@ public:
   /// Of one phase at a stage of wear; beyond the limits of wear that at the limits.
   Exposure at(std::size_t phase, double flank_wear, double interface_wear) const;
 
-  /// Largest relative difference to the tooth model itself, in the middle of all cells [-]. Slow.
+  /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same quantity in
+  /// any phase [-]. Slow.
   double largestError(const Parameters& parameters, const DutyCycle& duty, int positions) const;
 
 private:
