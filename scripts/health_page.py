@@ -160,7 +160,7 @@ def detection_table(faults, runs, threshold):
         evidence = collections.Counter(re.split(" ", window.evidence)[0] for run in full for window in judged(run)
                                        if window.level > 0)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
-                     + f" | {min(seen) if seen else '> 1'} | {statistics.median(delays) if delays else float('nan'):.0f} "
+                     + f" | {min(seen) if seen else '> 1'} | {f'{statistics.median(delays):.0f}' if delays else 'none'} "
                      f"| {right} of {len(full)} | {evidence.most_common(1)[0][0] if evidence else 'none'} |")
     return lines
 
@@ -272,7 +272,7 @@ def main():
 
     faults, runs = collect(options)
     sound = scores(runs, lambda run: run.kind == "healthy")
-    threshold = max(1.0, float(numpy.quantile(sound, 1.0 - ALARM_SHARE))) if len(sound) else 1.0
+    threshold = float(numpy.quantile(sound, 1.0 - ALARM_SHARE))
     images = options.docs / "images" / "health"
     images.mkdir(parents=True, exist_ok=True)
     draw_signals(faults, runs, images / "signals.png")
