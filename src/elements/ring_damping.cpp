@@ -90,26 +90,26 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   double dissipated = 0.0;
   double supplied = 0.0;
   double torque = 0.0;  // on the wave generator
-  const auto stretchRate = [&](int i, int j)
+  const auto stretch_rate = [&](int i, int j)
   {
     return direction[2 * i] * (speed[2 * j] - speed[2 * i]) +
            direction[2 * i + 1] * (speed[2 * j + 1] - speed[2 * i + 1]);
   };
   // Each tooth takes up both its segments, so that no two teeth write to one place.
-  const auto addSegments = [&](int before, int i, int after)
+  const auto add_segments = [&](int before, int i, int after)
   {
-    const double rate = stretchRate(i, after);
+    const double rate = stretch_rate(i, after);
     const double pull = tension * rate;
-    const double pull_before = tension * stretchRate(before, i);
+    const double pull_before = tension * stretch_rate(before, i);
     out[2 * i] += pull * direction[2 * i] - pull_before * direction[2 * before];
     out[2 * i + 1] += pull * direction[2 * i + 1] - pull_before * direction[2 * before + 1];
     return pull * rate;
   };
-  dissipated += addSegments(n - 1, 0, 1) + addSegments(n - 2, n - 1, 0);
+  dissipated += add_segments(n - 1, 0, 1) + add_segments(n - 2, n - 1, 0);
 #pragma omp simd reduction(+ : dissipated)
   for (int i = 1; i < n - 1; ++i)
   {
-    dissipated += addSegments(i - 1, i, i + 1);
+    dissipated += add_segments(i - 1, i, i + 1);
   }
 #pragma omp simd reduction(+ : dissipated, supplied, torque)
   for (int i = 0; i < n; ++i)

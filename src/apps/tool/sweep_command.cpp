@@ -112,12 +112,12 @@ void addSweepOptions(CLI::App& command, SweepArguments& arguments)
 
 int sweep(const SweepArguments& arguments)
 {
-  CommonOptions options = arguments;
+  SweepArguments with_overlays = arguments;
   for (const std::string& overlay : Plan::overlays(arguments.plan))
   {
-    options.configs.push_back(overlay);
+    with_overlays.configs.push_back(overlay);
   }
-  const Plan plan(arguments.plan, loadParameterMap(options));
+  const Plan plan(arguments.plan, loadParameterMap(with_overlays));
   checkRuns(plan);
   if (arguments.list)
   {
