@@ -17,10 +17,11 @@ import matplotlib
 import numpy
 import rosbag
 
+import page_section
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
-BEGIN, END = "<!-- health:begin -->", "<!-- health:end -->"
 RATIO = 101.0
 WINDOW_TURNS = 25.0       # of the motor
 LEARNING = 10             # windows of the reference
@@ -254,11 +255,6 @@ def draw_signals(faults, runs, path):
     plt.close(figure)
 
 
-def write_page(path, lines):
-    before, rest = path.read_text().split(BEGIN)
-    path.write_text(before + "\n".join([BEGIN, "", *lines, "", END]) + rest.split(END)[1])
-
-
 def main():
     parser = argparse.ArgumentParser(prog="evaluate_health", description=__doc__)
     parser.add_argument("--tool", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
@@ -278,7 +274,7 @@ def main():
     draw_signals(faults, runs, images / "signals.png")
     draw_confusion(faults, runs, images / "confusion.png")
     draw_roc(runs, sound, images / "roc.png")
-    write_page(options.docs / "health.md", [
+    page_section.write(options.docs / "health.md", "health", [
         f"{len(runs)} runs; {len(sound)} sound windows judged. Score: strongest deviation over its threshold; 1 % of sound windows lie "
         f"beyond {threshold:.2f}.", "", "### Sound drives", "", *sound_table(runs), "", "### Faults", "",
         *detection_table(faults, runs, threshold), "",

@@ -20,6 +20,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
+import page_section
 from harmonic_joint_twin.msg import Timing
 
 matplotlib.use("Agg")
@@ -27,7 +28,6 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 PACKAGE = "harmonic_joint_twin"
 NODE = "/joint_twin"
-BEGIN, END = "<!-- jitter:begin -->", "<!-- jitter:end -->"
 PATIENCE = 60.0     # [s]
 SETTLE_TIME = 2.0   # before counting begins [s]
 COMMAND_RATE = 125.0  # [Hz]
@@ -182,19 +182,12 @@ def processor():
 
 
 def section(results, options, load):
-    return [BEGIN, "", *table(results), "",
+    return [*table(results), "",
             f"`scripts/jitter --duration {options.duration:g}`; {os.cpu_count()} cores of a shared virtual machine "
             f"({processor()}, Linux {os.uname().release}) whose host serves others too; load average before the first "
             f"case {load:.1f}, so \"quiet\" means only that no hog of ours ran. A thread of SCHED_FIFO comes before "
             "everything inside the machine and not before its host.", "",
-            "![Histograms of wake-up jitter and of lateness](images/jitter.png)", "", END]
-
-
-def write_page(path, lines):
-    with open(path, encoding="utf-8") as page:
-        before, rest = page.read().split(BEGIN)
-    with open(path, "w", encoding="utf-8") as page:
-        page.write(before + "\n".join(lines) + rest.split(END)[1])
+            "![Histograms of wake-up jitter and of lateness](images/jitter.png)"]
 
 
 def main():
@@ -211,7 +204,7 @@ def main():
             results.append(bench.measure(case, options.duration))
         rospy.signal_shutdown("done")
     draw(results, os.path.join(options.docs, "images", "jitter.png"))
-    write_page(os.path.join(options.docs, "performance.md"), section(results, options, load))
+    page_section.write(os.path.join(options.docs, "performance.md"), "jitter", section(results, options, load))
     print("\n".join(table(results)))
 
 

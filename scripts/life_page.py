@@ -9,10 +9,11 @@ import sys
 import matplotlib
 import numpy
 
+import page_section
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
-BEGIN, END = "<!-- life:begin -->", "<!-- life:end -->"
 DUTIES = {"rated": "rated torque and speed", "palletising": "palletising"}
 ENDS = ["flank wear", "interface wear", "root crack", "bearing"]
 # The catalogue's bearing hides the wear of the flanks; flanks ten times as soft show how their wear is forecast.
@@ -145,11 +146,6 @@ def trial_table(results):
     return lines
 
 
-def write_page(path, lines):
-    before, rest = path.read_text().split(BEGIN)
-    path.write_text(before + "\n".join([BEGIN, "", *lines, "", END]) + rest.split(END)[1])
-
-
 def main():
     parser = argparse.ArgumentParser(prog="life", description=__doc__)
     parser.add_argument("--tool", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
@@ -170,7 +166,7 @@ def main():
         results[name] = trials(options, overlay)
     draw_ageing(ages, options.docs / "images" / "life_ageing.png")
     draw_calibration(results, options.docs / "images" / "life_forecast.png")
-    write_page(options.docs / "life.md", [
+    page_section.write(options.docs / "life.md", "life", [
         *age_table(ages), "",
         "![Wear, grease and bearing over the turns of the motor, two duties](images/life_ageing.png)", "",
         *trial_table(results), "",
