@@ -4,131 +4,133 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harmonic_joint_twin/params/faults.hpp"
+
 namespace hjt
 {
 namespace
 {
 constexpr double LARGEST_SCORE = 12.0;
 
-struct Signature
-{
-  const char* name;
-  /// In the order of `Feature`: . still, + up, - down, * any.
-  const char* moves;
-};
+/// The kinds of faults stand among the causes in their own order.
+constexpr auto FIRST_FAULT = static_cast<std::size_t>(Cause::INTERFACE_WEAR);
+static_assert(static_cast<std::size_t>(Cause::BEARING_CAGE) ==
+                  FIRST_FAULT + static_cast<std::size_t>(FaultKind::BEARING_CAGE),
+              "causes and kinds of faults differ");
 
 // Features: ratio, kinematic error, stiffness, lost motion, loop | running torque, Coulomb, viscous, efficiency
 //           | residual, impulses | orders 1, 2, 4, circular spline | cage, ball, outer, inner, tooth pass
-constexpr std::array<Signature, CAUSE_COUNT> SIGNATURES{ {
-    { "none",
-      "....."
-      "...."
-      ".."
-      "...."
-      "....." },
-    { "interface_wear",
-      ".*-*."
-      "++*-"
-      "*."
-      ".**."
-      "....." },
-    { "rear_section_crack",
-      ".*-.*"
-      "...."
-      "*."
-      "**.."
-      "....." },
-    { "lubricant_degradation",
-      "....."
-      "+++-"
-      ".."
-      "...."
-      "....." },
-    { "tooth_wear",
-      ".*-++"
-      "***."
-      "**"
-      ".**."
-      "....*" },
-    { "tooth_root_crack",
-      ".+*.."
-      "...."
-      "**"
-      ".+**"
-      "....*" },
-    { "flange_crack",
-      ".*-*."
-      "...."
-      "*."
-      "+*.."
-      "....." },
-    { "tooth_tip_crack",
-      ".+..."
-      "...."
-      "++"
-      ".+**"
-      "....*" },
-    { "pitting",
-      ".**.."
-      "**.*"
-      "++"
-      ".***"
-      "....+" },
-    { "wave_generator_wear",
-      ".+-+."
-      "--*+"
-      "*."
-      ".++."
-      "....." },
-    { "flexspline_crack",
-      ".+-.."
-      "...."
-      "*."
-      ".++."
-      "....." },
-    { "buckling",
-      "++-++"
-      "**.-"
-      "+*"
-      "*++*"
-      "....." },
-    { "ratcheting",
-      "++.+*"
-      "*..*"
-      "++"
-      "****"
-      "....*" },
-    { "bearing_inner_race",
-      ".*..."
-      "*..."
-      "*+"
-      "...."
-      "...+." },
-    { "bearing_outer_race",
-      ".*..."
-      "*..."
-      "*+"
-      "...."
-      "..+.." },
-    { "bearing_ball",
-      ".*..."
-      "*..."
-      "*+"
-      "...."
-      ".+..." },
-    { "bearing_cage",
-      ".*..."
-      "*..."
-      "*."
-      "...."
-      "+...." },
-    { "circular_spline_tooth",
-      ".+..."
-      "...."
-      "**"
-      "...+"
-      "....*" },
-} };
+/// By cause, in the order of `Feature`: . still, + up, - down, * any.
+constexpr std::array<const char*, CAUSE_COUNT> SIGNATURES{
+  // none
+  "....."
+  "...."
+  ".."
+  "...."
+  ".....",
+  // interface_wear
+  ".*-*."
+  "++*-"
+  "*."
+  ".**."
+  ".....",
+  // rear_section_crack
+  ".*-.*"
+  "...."
+  "*."
+  "**.."
+  ".....",
+  // lubricant_degradation
+  "....."
+  "+++-"
+  ".."
+  "...."
+  ".....",
+  // tooth_wear
+  ".*-++"
+  "***."
+  "**"
+  ".**."
+  "....*",
+  // tooth_root_crack
+  ".+*.."
+  "...."
+  "**"
+  ".+**"
+  "....*",
+  // flange_crack
+  ".*-*."
+  "...."
+  "*."
+  "+*.."
+  ".....",
+  // tooth_tip_crack
+  ".+..."
+  "...."
+  "++"
+  ".+**"
+  "....*",
+  // pitting
+  ".**.."
+  "**.*"
+  "++"
+  ".***"
+  "....+",
+  // wave_generator_wear
+  ".+-+."
+  "--*+"
+  "*."
+  ".++."
+  ".....",
+  // flexspline_crack
+  ".+-.."
+  "...."
+  "*."
+  ".++."
+  ".....",
+  // buckling
+  "++-++"
+  "**.-"
+  "+*"
+  "*++*"
+  ".....",
+  // ratcheting
+  "++.+*"
+  "*..*"
+  "++"
+  "****"
+  "....*",
+  // bearing_inner_race
+  ".*..."
+  "*..."
+  "*+"
+  "...."
+  "...+.",
+  // bearing_outer_race
+  ".*..."
+  "*..."
+  "*+"
+  "...."
+  "..+..",
+  // bearing_ball
+  ".*..."
+  "*..."
+  "*+"
+  "...."
+  ".+...",
+  // bearing_cage
+  ".*..."
+  "*..."
+  "*."
+  "...."
+  "+....",
+  // circular_spline_tooth
+  ".+..."
+  "...."
+  "**"
+  "...+"
+  "....*",
+};
 
 Move moveOf(char letter) noexcept
 {
@@ -226,12 +228,16 @@ private:
 
 const char* causeName(Cause cause) noexcept
 {
-  return SIGNATURES[static_cast<std::size_t>(cause)].name;
+  if (cause == Cause::NONE || cause == Cause::CIRCULAR_SPLINE_TOOTH)
+  {
+    return cause == Cause::NONE ? "none" : "circular_spline_tooth";
+  }
+  return describe(static_cast<FaultKind>(static_cast<std::size_t>(cause) - FIRST_FAULT)).name;
 }
 
 Move expectedMove(Cause cause, Feature feature) noexcept
 {
-  return moveOf(SIGNATURES[static_cast<std::size_t>(cause)].moves[static_cast<std::size_t>(feature)]);
+  return moveOf(SIGNATURES[static_cast<std::size_t>(cause)][static_cast<std::size_t>(feature)]);
 }
 
 FeatureScores featureScores(const Deviations& deviations) noexcept

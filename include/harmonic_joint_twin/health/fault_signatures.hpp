@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// What may be wrong with the drive. Names as the kinds of faults have, and a damaged tooth of the circular spline.
+/// What may be wrong with the drive: the kinds of faults, in their order, and a damaged tooth of the circular spline.
 enum class Cause : std::uint8_t
 {
   NONE,
