@@ -8,23 +8,28 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <sensor_msgs/JointState.h>
 
 #include "harmonic_joint_twin/params/number_table.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/bag_file.hpp"
+#include "harmonic_joint_twin/ros_io/checked_message.hpp"
 
 namespace hjt
 {
 namespace
 {
-bool isCsv(const MotionSource& source)
+constexpr double FASTEST = 20.0;         // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;           // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;       // by which the delay of a message may differ from its neighbour's [s]
+constexpr double LARGEST_EFFORT = 1e4;   // current [A] or torque [N.m]
+
+bool isPlausible(double effort)
 {
-  const std::string end = ".csv";
-  return source.path.size() >= end.size() && source.path.compare(source.path.size() - end.size(), end.size(), end) == 0;
+  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
 }
 
-/// Turns messages into rows. A row waits for the next one, so that a load with its own stamp can still reach it.
+/// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
+/// tells whether it can be true.
 class BagRows
 {
 public:
@@ -36,119 +41,144 @@ public:
   /// False: the visitor has had enough.
   bool read(const rosbag::MessageInstance& instance)
   {
-    boost::shared_ptr<sensor_msgs::JointState> message;
-    try
-    {
-      message = instance.instantiate<sensor_msgs::JointState>();
-    }
-    catch (const std::exception&)
+    if (!message_.read(instance))
     {
       ++count_.corrupt;
       return true;
     }
-    if (!message)
+    const sensor_msgs::JointState& state = message_.state();
+    const ros::Time stamp = state.header.stamp.isZero() ? instance.getTime() : state.header.stamp;
+    if (instance.getTopic() == source_.topic)
     {
-      throw InputError(instance.getTopic() + " has type " + instance.getDataType() +
-                       ", expected sensor_msgs/JointState");
+      return readTelemetry(state, stamp, instance.getTime());
     }
-    const ros::Time stamp = message->header.stamp.isZero() ? instance.getTime() : message->header.stamp;
-    return instance.getTopic() == source_.topic ? readTelemetry(*message, stamp) : readLoad(*message, stamp);
+    readLoad(state, stamp);
+    return true;
   }
 
+  /// Hands on the row that waits, if it can be true.
   bool flush()
   {
-    bool more = true;
-    if (waiting_)
+    if (!waiting_)
     {
-      more = visit_(*waiting_);
-      ++count_.rows;
-      waiting_.reset();
+      return true;
     }
-    return more;
+    const Held held = *waiting_;
+    waiting_.reset();
+    if (!held.agrees && seen_ > 1)
+    {
+      ++count_.corrupt;
+      return true;
+    }
+    if (!start_)
+    {
+      start_ = held.stamp;
+      count_.start = held.stamp.toSec();
+      count_.least_delay = count_.most_delay = held.delay();
+    }
+    MotionRow row = held.row;
+    row.time = (held.stamp - *start_).toSec();
+    count_.duration = std::max(count_.duration, row.time);
+    count_.least_delay = std::min(count_.least_delay, held.delay());
+    count_.most_delay = std::max(count_.most_delay, held.delay());
+    ++count_.rows;
+    return visit_(row);
   }
 
   MotionCount count() const { return count_; }
   const std::set<std::string>& names() const { return names_; }
 
 private:
-  /// Place of the joint in the message; its size if it is not there.
-  std::size_t find(const sensor_msgs::JointState& message) const
+  struct Held
   {
-    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), source_.joint) -
-                                    message.name.begin());
+    MotionRow row;
+    ros::Time stamp;
+    ros::Time recorded;
+    bool agrees{};  // with a neighbour
+
+    double delay() const { return (recorded - stamp).toSec(); }
+  };
+
+  static bool agree(const Held& a, const Held& b)
+  {
+    const double time = std::abs((b.recorded - a.recorded).toSec()) + SLACK;
+    return std::abs(b.delay() - a.delay()) < CLOCK_STEP && std::abs(b.row.position - a.row.position) < FASTEST * time;
   }
 
-  bool readTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  static std::size_t find(const sensor_msgs::JointState& message, const std::string& name)
   {
-    const std::size_t i = find(message);
+    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
+  }
+
+  bool readTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
+  {
+    const std::size_t i = find(message, source_.joint);
     if (i == message.name.size())
     {
       names_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    if (i >= message.position.size() || i >= message.effort.size() || !std::isfinite(message.position[i]) ||
-        !std::isfinite(message.effort[i]))
+    const std::size_t motor = source_.motor.empty() ? message.name.size() : find(message, source_.motor);
+    const bool has_motor = motor < message.name.size();
+    const std::size_t effort = has_motor ? motor : i;
+    const std::size_t last = std::max(i, effort);
+    if (last >= message.position.size() || last >= message.effort.size() || !std::isfinite(message.position[i]) ||
+        !isPlausible(message.effort[effort]))
     {
       ++count_.corrupt;
       return true;
     }
-    const bool more = flush();
-    if (!start_)
+    Held held;
+    held.row = { 0.0, message.position[i], message.effort[effort], load_ };
+    if (has_motor)
     {
-      start_ = stamp;
+      held.row.current *= source_.current_per_motor_torque;
+      held.row.motor_angle = message.position[motor];
     }
-    const double time = (stamp - *start_).toSec();
-    count_.duration = std::max(count_.duration, time);
-    waiting_ = MotionRow{ time, message.position[i], message.effort[i], load_ };
-    waiting_stamp_ = stamp;
+    held.stamp = stamp;
+    held.recorded = recorded;
+    held.agrees = last_ && agree(*last_, held);
+    if (waiting_ && held.agrees)
+    {
+      waiting_->agrees = true;
+    }
+    last_ = held;
+    ++seen_;
+    const bool more = flush();
+    waiting_ = held;
     return more;
   }
 
-  bool readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
   {
-    const std::size_t i = find(message);
-    if (i < message.name.size() && i < message.effort.size() && std::isfinite(message.effort[i]))
+    const std::size_t i = find(message, source_.joint);
+    if (i < message.name.size() && i < message.effort.size() && isPlausible(message.effort[i]))
     {
       load_ = message.effort[i];
-      if (waiting_ && stamp <= waiting_stamp_)
+      if (waiting_ && stamp <= waiting_->stamp)
       {
-        waiting_->load = load_;
+        waiting_->row.load = load_;
       }
     }
-    return true;
   }
 
   const MotionSource& source_;
   const std::function<bool(const MotionRow&)>& visit_;
+  CheckedMessage message_;
   MotionCount count_;
   std::set<std::string> names_;
-  std::optional<MotionRow> waiting_;
-  ros::Time waiting_stamp_;
+  std::optional<Held> waiting_;
+  std::optional<Held> last_;  // as it came, true or not
+  std::uint64_t seen_{};      // the only row has no neighbour to disagree with
   std::optional<ros::Time> start_;
   double load_{};
 };
-
-void open(rosbag::Bag& bag, const std::string& path)
-{
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const rosbag::BagUnindexedException&)
-  {
-    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
-}
 
 MotionCount readBag(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                     const std::function<void(double)>& progress)
 {
   rosbag::Bag bag;
-  open(bag, source.path);
+  openForReading(bag, source.path);
   rosbag::View telemetry(bag, rosbag::TopicQuery(source.topic));
   if (telemetry.size() == 0)
   {
@@ -210,6 +240,12 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 }
 }  // namespace
 
+bool isCsv(const MotionSource& source)
+{
+  const std::string end = ".csv";
+  return source.path.size() >= end.size() && source.path.compare(source.path.size() - end.size(), end.size(), end) == 0;
+}
+
 bool recordsLoad(const MotionSource& source)
 {
   if (isCsv(source))
@@ -217,7 +253,7 @@ bool recordsLoad(const MotionSource& source)
     return openCsv(source).hasColumn(3);
   }
   rosbag::Bag bag;
-  open(bag, source.path);
+  openForReading(bag, source.path);
   return rosbag::View(bag, rosbag::TopicQuery(source.load_topic)).size() > 0;
 }
 

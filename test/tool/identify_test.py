@@ -1,62 +1,40 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin follow` and `joint_twin identify`: a robot's telemetry with the faults of real recordings."""
 import io
-import math
 import os
 import random
 import subprocess
 import time
 
-import genpy
 import rosbag
 from sensor_msgs.msg import JointState
 
+import robot
 import tool
 
-RATIO, GAIN = 101.0, 9.5  # [-], [N.m/A]
-COULOMB, VISCOUS = 12.0, 4.0  # [N.m], [N.m.s/rad] at the joint
-NOISE = 0.02  # [A]
 OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
 
 
-def telemetry(seconds, generator):
-    """Elbow under a weight, swinging: angle, current and load as a robot would tell them."""
-    angle = 0.7 * math.sin(0.9 * seconds) + 0.2 * math.sin(2.3 * seconds)
-    speed = 0.63 * math.cos(0.9 * seconds) + 0.46 * math.cos(2.3 * seconds)
-    load = 20.0 * math.sin(angle + 0.4)
-    torque = load + math.copysign(COULOMB, speed) + VISCOUS * speed
-    return angle, torque / GAIN + generator.gauss(0.0, NOISE), load
-
-
-def message(names, positions, efforts, stamp):
-    state = JointState(name=names, position=positions, effort=efforts)
-    state.header.stamp = stamp
-    return state
-
-
-def write_telemetry(path, duration, faults=True, joint="elbow_joint"):
-    generator = random.Random(4)
+def write_telemetry(path, duration, faults=True):
+    """With what real recordings have: messages dropped, cut short, without a number, repeated."""
+    generator = random.Random(6)
     with rosbag.Bag(path, "w") as bag:
-        for row in range(int(duration * 125)):
-            seconds = row * 0.008
-            stamp = genpy.Time(tool.START) + genpy.Duration.from_sec(seconds + 0.001 * generator.random())
+        for row, (stamp, state, load) in enumerate(robot.rows(duration)):
             if faults and generator.random() < 0.01:
                 continue  # dropped
-            angle, current, load = telemetry(seconds, generator)
-            state = message(["wrist_1_joint", joint], [0.0, angle], [0.0, current], stamp)
-            bag.write("/joint_twin/load", message([joint], [], [load], stamp), stamp)
+            bag.write(robot.LOAD_TOPIC, load, stamp)
             if faults and row % 1000 == 500:
                 data = io.BytesIO()
                 state.serialize(data)
                 half = data.getvalue()[:len(data.getvalue()) // 2]
-                bag.write("/joint_states", (state._type, half, state._md5sum, JointState), stamp, raw=True)
+                bag.write(robot.STATES_TOPIC, (state._type, half, state._md5sum, JointState), stamp, raw=True)
             elif faults and row % 1000 == 700:
                 state.effort[1] = float("nan")
-                bag.write("/joint_states", state, stamp)
+                bag.write(robot.STATES_TOPIC, state, stamp)
             else:
-                bag.write("/joint_states", state, stamp)
+                bag.write(robot.STATES_TOPIC, state, stamp)
                 if faults and row % 50 == 0:
-                    bag.write("/joint_states", state, stamp)  # its stamp repeated
+                    bag.write(robot.STATES_TOPIC, state, stamp)  # its stamp repeated
 
 
 class Identify(tool.ToolTest):
@@ -66,7 +44,7 @@ class Identify(tool.ToolTest):
         values = {value["key"]: value for value in found["values"]}
         gain = values["telemetry.torque_per_current"]
         self.assertEqual(gain["refusal"], "")
-        self.assertLess(abs(gain["value"] - GAIN), gain["half_width"] + 0.01 * GAIN)
+        self.assertLess(abs(gain["value"] - robot.GAIN), gain["half_width"] + 0.01 * robot.GAIN)
         self.assertIn("temperature", values["bearing.viscosity_slope"]["refusal"])
         judged = found["judged"]
         self.assertLess(judged["identified"]["all"], 0.5 * judged["configured"]["all"])
@@ -80,8 +58,9 @@ class Identify(tool.ToolTest):
             self.assertIn("current_predicted", file.readline())
 
     def test_what_is_missing_is_named(self):
-        write_telemetry(self.path("a.bag"), 2.0, faults=False, joint="other_joint")
-        self.fail_with(1, ["elbow_joint", "joints found: other_joint, wrist_1_joint"], "follow", "a.bag", *OPTIONS)
+        write_telemetry(self.path("a.bag"), 2.0, faults=False)
+        self.fail_with(1, ["shoulder_pan_joint", "joints found: elbow_joint, wrist_1_joint"], "follow", "a.bag", "--joint",
+                       "base")
         self.fail_with(1, ["no messages on /arm/joint_states", "/joint_states (sensor_msgs/JointState)"],
                        "follow", "a.bag", *OPTIONS, "--topic", "/arm/joint_states")
         self.write("broken.bag", "not a bag")

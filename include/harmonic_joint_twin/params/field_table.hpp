@@ -273,6 +273,13 @@ void visitFields(P& p, Visitor&& visit)
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         "of the motor's inertia, what a recorded load torque holds already");
 
+  visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
+        "share by which a sound joint's friction may differ from the twin's");
+  visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
+        "share by which a sound joint's torsion may differ from the twin's");
+  visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
+        "share by which friction and torsion of a sound joint may differ from its own earlier");
+
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },

@@ -264,6 +264,14 @@ struct TelemetryParameters
   double inertia_in_load{};
 };
 
+/// How far a sound joint may lie from the twin of its kind, and from itself.
+struct ComparisonParameters
+{
+  double friction_tolerance{};
+  double compliance_tolerance{};
+  double repeat_tolerance{};
+};
+
 struct PublishParameters
 {
   double joint_states_rate{};
@@ -337,6 +345,7 @@ struct Parameters
   LifeParameters life;
   InputParameters input;
   TelemetryParameters telemetry;
+  ComparisonParameters comparison;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
   std::vector<Fault> faults;  ///< that it starts with, or gets on its way

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace hjt
@@ -15,6 +16,7 @@ struct MotionRow
   double position{};  ///< of the joint [rad]
   double current{};   ///< of the motor [A]
   double load{};      ///< at the output, > 0 resists positive motion [N.m]
+  double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
 };
 
 /// The same with its rates.
