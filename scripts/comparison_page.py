@@ -161,7 +161,7 @@ def draw_spectrum(width, data):
 def draw_teeth(width, data):
     teeth, motion = data["teeth"], data["record"]["motion"]
     side_by_side = width > 6
-    figure, axes = new_figure(width, 4.3 if side_by_side else 7.8, *((1, 2) if side_by_side else (2, 1)),
+    figure, axes = new_figure(width, 4.0 if side_by_side else 7.4, *((1, 2) if side_by_side else (2, 1)),
                               subplot_kw={"projection": "polar"})
     angle = np.arctan2(teeth["y"], teeth["x"])
     radius = np.hypot(teeth["x"], teeth["y"])
@@ -175,7 +175,7 @@ def draw_teeth(width, data):
         one.bar(angle, mesh, width=2.0 * np.pi / len(angle), bottom=ring, color=RED, lw=0,
                 label=f"mesh, up to {mesh.max():.0f} N on {np.count_nonzero(mesh > 1.0)} teeth")
         one.plot(angle[loop], ring[loop], color="black", lw=0.9)
-        one.set_ylim(0.0, ring.max() + scale)
+        one.set_ylim(0.0, ring.max() + 0.85 * scale)
         one.set_axis_off()
         one.set_title(f"{case} load, {motion[case + '_load']:.0f} N·m", loc="center", y=0.93)
         one.legend(loc="upper center", bbox_to_anchor=(0.5, 0.06))
@@ -250,7 +250,8 @@ def main():
                                      autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.filters["short"] = lambda value: "" if value is None else f"{value:.3g}"
     page = environment.get_template("comparison_page.html").render(
-        record=record, pictures=pictures, reason=reason(record["verdict"]), health=health, shown=SHOWN_INDICATORS)
+        record=record, pictures=pictures, reason=reason(record["verdict"]), health=health, shown=SHOWN_INDICATORS,
+        twin_beside=data["twin_states"] is not None)
     with open(os.path.join(directory, "report.html"), "w", encoding="utf-8") as file:
         file.write(page)
 

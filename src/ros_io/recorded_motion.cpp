@@ -18,10 +18,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 20.0;         // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;           // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;       // by which the delay of a message may differ from its neighbour's [s]
-constexpr double LARGEST_EFFORT = 1e4;   // current [A] or torque [N.m]
+constexpr double FASTEST = 20.0;        // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;          // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;      // by which the delay of a message may differ from its neighbour's [s]
+constexpr double LARGEST_EFFORT = 1e4;  // current [A] or torque [N.m]
 
 bool isPlausible(double effort)
 {
@@ -224,9 +224,13 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
   std::array<double, 4> row{};
   while (table.read(row))
   {
-    ++count.rows;
-    count.duration = std::max(count.duration, row[0]);
-    if (!visit({ row[0], row[1], row[2], row[3] }))
+    if (count.rows++ == 0)
+    {
+      count.start = row[0];
+    }
+    const double time = row[0] - count.start;
+    count.duration = std::max(count.duration, time);
+    if (!visit({ time, row[1], row[2], row[3] }))
     {
       break;
     }

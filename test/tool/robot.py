@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Made-up telemetry of a robot's elbow, for the tests that read recordings."""
+import io
 import math
 import random
+import struct
 
 import genpy
 import rosbag
@@ -53,3 +55,32 @@ def write_bag(path, duration, friction=1.0, with_load=True, dropped=0.0):
                 bag.write(LOAD_TOPIC, load, stamp)
             if generator.random() >= dropped:
                 bag.write(STATES_TOPIC, state, stamp)
+
+
+def minute():
+    """The joint states of a motion that repeats itself, after 20 pi seconds."""
+    return [state for _, state, _ in rows(20.0 * math.pi)]
+
+
+def write_long_bag(path, duration):
+    """Hours of telemetry without load."""
+    messages = []
+    for state in minute():
+        data = io.BytesIO()
+        state.serialize(data)
+        messages.append(data.getvalue())
+    with rosbag.Bag(path, "w") as bag:
+        for row in range(int(duration * RATE)):
+            stamp = genpy.Time(tool.START) + genpy.Duration.from_sec(row / RATE)
+            data = messages[row % len(messages)]
+            data = data[:4] + struct.pack("<II", stamp.secs, stamp.nsecs) + data[12:]
+            bag.write(STATES_TOPIC, (JointState._type, data, JointState._md5sum, JointState), stamp, raw=True)
+
+
+def write_long_csv(path, duration):
+    """The same as a controller's table."""
+    values = [f"{state.position[1]:.9f},{state.effort[1]:.6f}" for state in minute()]
+    with open(path, "w", encoding="ascii") as file:
+        file.write("timestamp,actual_q_2,actual_current_2\n")
+        for row in range(int(duration * RATE)):
+            file.write(f"{row / RATE:.3f},{values[row % len(values)]}\n")

@@ -12,10 +12,10 @@ namespace hjt
 /// One row of a robot's telemetry, of one joint.
 struct MotionRow
 {
-  double time{};      ///< [s]
-  double position{};  ///< of the joint [rad]
-  double current{};   ///< of the motor [A]
-  double load{};      ///< at the output, > 0 resists positive motion [N.m]
+  double time{};                                                   ///< [s]
+  double position{};                                               ///< of the joint [rad]
+  double current{};                                                ///< of the motor [A]
+  double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
 };
 

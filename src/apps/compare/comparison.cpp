@@ -73,7 +73,6 @@ void Comparison::take(const MotionSample& sample)
 
   if (std::abs(sample.velocity) > MOVING)
   {
-    ++reach_.moving[sample.velocity < 0.0 ? 0 : 1];
     const double gain = parameters_.telemetry.torque_per_current;
     if (gain * row.predicted.band < MOST_PRESLIDING * std::abs(row.predicted.friction_torque))
     {
@@ -110,7 +109,9 @@ void Comparison::watchSignals(const MotionSample& sample)
   window.assessment = assessor_.take(window.indicators);
   window.deviations = assessor_.deviations();
   watch_(window);
-  if (window.assessment.state != AssessmentState::ASSESSED)
+  const bool compared = std::any_of(window.deviations.begin(), window.deviations.end(),
+                                    [](const Deviation& deviation) { return std::isfinite(deviation.score); });
+  if (window.assessment.state != AssessmentState::ASSESSED || !compared)
   {
     return;
   }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include "../tool/output_file.hpp"
 
+#include "harmonic_joint_twin/health/baseline_file.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/twin/friction_map.hpp"
@@ -165,21 +167,50 @@ Json contentsJson(const RecordingContents& contents)
   return { { "topics", lines }, { "joints", contents.joints }, { "not_used", contents.other_topics } };
 }
 
-Json verdictJson(const Verdict& verdict, const Comparison& comparison)
+Json verdictJson(const Verdict& verdict)
 {
   Json findings = Json::array();
   for (const Finding& finding : verdict.findings)
   {
+    Json causes = Json::array();
+    for (const Cause cause : finding.causes)
+    {
+      causes.push_back(causeName(cause));
+    }
     findings.push_back({ { "title", finding.title },
                          { "level", finding.judged ? levelName(finding.level) : "NOT JUDGED" },
-                         { "text", finding.text } });
+                         { "text", finding.text },
+                         { "causes", causes } });
   }
   return { { "level", verdict.judged ? levelName(verdict.level) : "NOT JUDGED" },
-           { "cause", causeName(comparison.cause()) },
            { "findings", findings },
            { "cannot_show", verdict.cannot_show } };
 }
 }  // namespace
+
+SoundJoint readSoundJoint(const std::string& directory)
+{
+  SoundJoint sound;
+  const std::string path = directory + "/" + COMPARISON_FILE;
+  try
+  {
+    std::ifstream file(path);
+    const Json record = Json::parse(file);
+    const auto number = [&](const char* name)
+    { return record.at(name).is_null() ? std::nan("") : record.at(name).get<double>(); };
+    sound.own = { number("friction_ratio"), number("compliance_ratio") };
+  }
+  catch (const Json::exception& error)
+  {
+    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
+  }
+  const std::string baseline = directory + "/" + BASELINE_FILE;
+  if (std::filesystem::exists(baseline))
+  {
+    sound.baseline = readBaseline(baseline);
+  }
+  return sound;
+}
 
 const char* levelName(HealthLevel level)
 {
@@ -204,6 +235,10 @@ void writeComparison(const std::string& directory, const Comparison& comparison,
   writeTorsion(directory, comparison, parameters);
   writeTeeth(directory + "/teeth.csv", comparison, parameters);
   writeTwinStates(directory + "/twin_states.csv", record.twin_states);
+  if (!comparison.assessor().baseline().bins().empty())
+  {
+    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline().bins());
+  }
 
   const MotionReach& reach = comparison.reach();
   Json orders;
@@ -216,7 +251,7 @@ void writeComparison(const std::string& directory, const Comparison& comparison,
   const Json all{ { "recording", record.recording },
                   { "joint", record.joint },
                   { "made_with", record.made_with },
-                  { "verdict", verdictJson(record.verdict, comparison) },
+                  { "verdict", verdictJson(record.verdict) },
                   { "contents", contentsJson(record.contents) },
                   { "reading",
                     { { "rows", reach.rows },
@@ -233,15 +268,15 @@ void writeComparison(const std::string& directory, const Comparison& comparison,
                       { "most_load", reach.most_load },
                       { "typical_load", comparison.typicalLoad() },
                       { "largest_load", comparison.largestLoad() } } },
-                  { "current", { { "measured_rms", comparison.currentRms() },
-                                 { "residual_rms", comparison.residualRms() } } },
+                  { "current",
+                    { { "measured_rms", comparison.currentRms() }, { "residual_rms", comparison.residualRms() } } },
                   { "friction_ratio", numberOrNull(comparison.friction().ratio()) },
                   { "compliance_ratio", numberOrNull(comparison.torsion().compliance()) },
                   { "line_orders", orders },
                   { "highest_order", record.verdict.highest_order },
                   { "windows_assessed", comparison.assessedWindows() },
                   { "health", healthJson(comparison) } };
-  const std::string path = directory + "/comparison.json";
+  const std::string path = directory + "/" + COMPARISON_FILE;
   std::ofstream file(path);
   file << all.dump(2) << '\n';
   file.close();

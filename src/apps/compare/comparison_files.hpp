@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "comparison.hpp"
 #include "recording_contents.hpp"
@@ -9,6 +10,9 @@
 
 namespace hjt
 {
+constexpr const char* COMPARISON_FILE = "comparison.json";
+constexpr const char* BASELINE_FILE = "baseline.yaml";
+
 /// All that a report is made of.
 struct ComparisonRecord
 {
@@ -23,11 +27,21 @@ struct ComparisonRecord
   Verdict verdict;
 };
 
-/// Writes DIR/comparison.json and tables beside it, as CSV: course, friction, friction_twin, spectrum, teeth, health, and
+/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum, teeth, health, and
 /// where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads of the recording.
 /// @throws InputError if a file cannot be written.
 void writeComparison(const std::string& directory, const Comparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);
+
+/// What an earlier comparison left of the joint when it was sound.
+struct SoundJoint
+{
+  OwnReference own;
+  std::vector<ReferenceBin> baseline;  ///< none: the recording was too short for one
+};
+
+/// @throws InputError if the directory holds no comparison.
+SoundJoint readSoundJoint(const std::string& directory);
 
 const char* levelName(HealthLevel level);
 }  // namespace hjt

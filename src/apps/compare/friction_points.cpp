@@ -47,10 +47,24 @@ double FrictionPoints::ratio() const
 {
   double measured = 0.0;
   double twin = 0.0;
-  for (const FrictionPoint& point : points())
+  for (const double way : { -1.0, 1.0 })
   {
-    measured += static_cast<double>(point.rows) * point.measured;
-    twin += static_cast<double>(point.rows) * point.twin;
+    FrictionPoint sum;
+    for (const FrictionPoint& point : points())
+    {
+      if (way * point.speed > 0.0)
+      {
+        const auto rows = static_cast<double>(point.rows);
+        sum.rows += point.rows;
+        sum.measured += rows * point.measured;
+        sum.twin += rows * point.twin;
+      }
+    }
+    if (sum.rows > 0)
+    {
+      measured += sum.measured / static_cast<double>(sum.rows);
+      twin += sum.twin / static_cast<double>(sum.rows);
+    }
   }
   return twin > 0.0 ? measured / twin : std::numeric_limits<double>::quiet_NaN();
 }

@@ -11,8 +11,8 @@ namespace hjt
 /// Friction at one speed, at the joint and against the motion: mean of the rows.
 struct FrictionPoint
 {
-  double speed{};     ///< with its sign [rad/s]
-  double measured{};  ///< [N.m]
+  double speed{};      ///< with its sign [rad/s]
+  double measured{};   ///< [N.m]
   double deviation{};  ///< standard deviation of the measured rows [N.m]
   double twin{};       ///< the twin's at the same rows [N.m]
   std::uint64_t rows{};
@@ -29,7 +29,8 @@ public:
 
   std::vector<FrictionPoint> points() const;  ///< by speed, ascending
 
-  /// Measured friction over the twin's, over all points, weighted by their rows; NaN: no point.
+  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong goes
+  /// out. NaN: no point.
   double ratio() const;
 
 private:

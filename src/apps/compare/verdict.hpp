@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,13 @@
 
 namespace hjt
 {
+/// What was told of the same joint when it was sound; NaN: nothing.
+struct OwnReference
+{
+  double friction_ratio{ std::numeric_limits<double>::quiet_NaN() };
+  double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };
+};
+
 /// One thing that was judged, in words.
 struct Finding
 {
@@ -15,6 +23,7 @@ struct Finding
   bool judged{};  ///< false: the text says why not
   std::string title;
   std::string text;
+  std::vector<Cause> causes;  ///< that would show like this; none at level OK
 };
 
 /// What the recording says of the joint.
@@ -28,5 +37,6 @@ struct Verdict
 };
 
 /// `duration` of the recording [s].
-Verdict judge(const Comparison& comparison, const Parameters& parameters, bool has_load, double duration);
+Verdict judge(const Comparison& comparison, const Parameters& parameters, const OwnReference& own, bool has_load,
+              double duration);
 }  // namespace hjt

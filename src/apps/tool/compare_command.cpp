@@ -24,7 +24,6 @@
 #include "text_table.hpp"
 
 #include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/health/baseline_file.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
@@ -38,31 +37,29 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* PYTHON = "/usr/bin/python3";
-constexpr const char* DATA = "comparison.json";
 constexpr const char* PAGE = "report.html";
 
 struct CompareOptions : MotionOptions
 {
   std::string report;
-  std::string baseline;
-  std::string save_baseline;
+  std::string reference;
 };
 
 void prepareDirectory(const CompareOptions& options)
 {
   std::error_code error;
+  if (fs::equivalent(options.report, options.reference, error))
+  {
+    throw InputError("--report and --reference are the same directory: the reference would be lost");
+  }
   fs::create_directories(options.report, error);
   if (error)
   {
     throw InputError(options.report + " cannot be made a directory: " + error.message());
   }
-  for (const char* name : { DATA, PAGE })
+  for (const char* name : { COMPARISON_FILE, PAGE })
   {
     requireWritable((fs::path(options.report) / name).string(), options.force, options.recording);
-  }
-  if (!options.save_baseline.empty())
-  {
-    requireWritable(options.save_baseline, options.force, options.recording);
   }
 }
 
@@ -84,8 +81,8 @@ void makePage(const std::string& directory)
   }
   if (refused != 0 || status != 0)
   {
-    throw InputError("the page was not made" + (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) :
-                                                               std::string()) +
+    throw InputError("the page was not made" +
+                     (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
                      "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
                      "` makes the page of them");
   }
@@ -114,6 +111,7 @@ void print(const ComparisonRecord& record, const Comparison& comparison)
 int compare(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
+  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference);
   prepareDirectory(options);
   MotionSource source = motionSource(options);
   source.motor = JointNames(source.joint).motor;
@@ -122,26 +120,21 @@ int compare(const CompareOptions& options)
 
   CsvWriter windows((fs::path(options.report) / "windows.csv").string(),
                     { "time", "speed", "load", "level", "cause", "confidence", "largest_score" });
-  Comparison comparison(parameters,
-                        options.baseline.empty() ? std::vector<ReferenceBin>() : readBaseline(options.baseline),
-                        [&](const JudgedWindow& window)
-                        {
-                          const Assessment& a = window.assessment;
-                          windows.writeRow({ 1e-9 * static_cast<double>(window.indicators.stamp),
-                                             window.indicators.point.speed, window.indicators.point.load,
-                                             static_cast<double>(a.level), static_cast<double>(a.cause), a.confidence,
-                                             a.largest_score });
-                        });
+  Comparison comparison(
+      parameters, sound.baseline,
+      [&](const JudgedWindow& window)
+      {
+        const Assessment& a = window.assessment;
+        windows.writeRow({ 1e-9 * static_cast<double>(window.indicators.stamp), window.indicators.point.speed,
+                           window.indicators.point.load, static_cast<double>(a.level), static_cast<double>(a.cause),
+                           a.confidence, a.largest_score });
+      });
   const MotionFindings found =
       visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.take(sample); });
   windows.close();
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
-  }
-  if (!options.save_baseline.empty())
-  {
-    writeBaseline(options.save_baseline, comparison.assessor().baseline().bins());
   }
   ComparisonRecord record;
   record.recording = options.recording;
@@ -152,13 +145,13 @@ int compare(const CompareOptions& options)
   record.gaps = found.gaps;
   record.contents = readContents(source, twin_topic, found, comparison.reach().motor_rows, found.has_load);
   record.twin_states = readTwinStates(source, twin_topic, found.start);
-  record.verdict = judge(comparison, parameters, found.has_load, found.duration);
+  record.verdict = judge(comparison, parameters, sound.own, found.has_load, found.duration);
   writeComparison(options.report, comparison, parameters, record);
   makePage(options.report);
   const std::string page = (fs::path(options.report) / PAGE).string();
   if (options.json)
   {
-    std::ifstream data(fs::path(options.report) / DATA);
+    std::ifstream data(fs::path(options.report) / COMPARISON_FILE);
     std::cout << data.rdbuf();
   }
   else
@@ -173,17 +166,17 @@ int compare(const CompareOptions& options)
 void addCompareCommand(CLI::App& app, int& exit_code)
 {
   const auto options = std::make_shared<CompareOptions>();
-  auto* command = app.add_subcommand("compare", "a recorded joint beside the twin: verdict, figures and data as a page");
+  auto* command =
+      app.add_subcommand("compare", "a recorded joint beside the twin: verdict, figures and data as a page");
   addMotionOptions(*command, *options);
   command->add_option("--report", options->report, "directory of the page, its figures and data")
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("--baseline", options->baseline,
-                   "reference of this joint when it was sound; default: learned from the first windows")
-      ->type_name("FILE.yaml");
-  command->add_option("--save-baseline", options->save_baseline, "writes the reference that was learned")
-      ->type_name("FILE.yaml");
+      ->add_option("--reference", options->reference,
+                   "the report of this joint when it was sound: what it is held against, beside the twin")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
   command->callback([options, &exit_code] { exit_code = compare(*options); });
 }
 }  // namespace hjt

@@ -53,8 +53,7 @@ fs::path packageDirectory()
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
-  return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() :
-                                                            fs::path(HJT_SOURCE_DIR);
+  return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
 }
 
 void addFaultOption(CLI::App& command, CommonOptions& options)
