@@ -150,7 +150,8 @@ def draw_spectrum(width, data):
     resolved = data["record"]["highest_order"]
     if resolved < spectrum["order"][-1]:
         axes.axvspan(resolved, spectrum["order"][-1], color="0.93", lw=0, zorder=-1)
-        axes.text(resolved, 0.7 * top, "  too few rows a turn\n  at the highest speed", fontsize=7, color="0.35")
+        if resolved < 0.75 * spectrum["order"][-1]:
+            axes.text(resolved, 0.7 * top, "  too few rows a turn\n  at the highest speed", fontsize=7, color="0.35")
     axes.set_xlim(0.0, spectrum["order"][-1])
     axes.set_ylim(0.0, top)
     axes.set_xlabel("order: cycles per turn of the motor")
@@ -186,7 +187,7 @@ def draw_windows(width, data):
     windows = data["windows"]
     if windows is None or not data["record"]["windows_assessed"]:
         return None
-    figure, axes = new_figure(width, 2.5)
+    figure, axes = new_figure(width, 2.6)
     axes = axes[0][0]
     axes.set_title("Largest deviation of a window over its threshold")
     axes.axhline(1.0, color=ORANGE, lw=0.8)
@@ -197,7 +198,7 @@ def draw_windows(width, data):
                       label=name)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("end of the window [s]")
-    axes.legend(loc="upper left", ncol=3)
+    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 1.22 if width > 6 else 1.35), ncol=3)
     return figure
 
 
@@ -224,11 +225,13 @@ def draw_all(directory, data):
 
 
 def reason(verdict):
-    """What the head of the page says: the findings that make the level, and what was not judged."""
+    """What the head of the page says: what is out of the ordinary with the faults that would do it, or what is not."""
     if verdict["level"] == "NOT JUDGED":
         return "This recording does not tell whether the joint is sound."
     if verdict["level"] != "OK":
-        return " ".join(finding["text"] for finding in verdict["findings"] if finding["level"] == verdict["level"])
+        found = [f"{finding['title'].lower()} ({' or '.join(finding['causes']) or 'no fault in the list does this'})"
+                 for finding in verdict["findings"] if finding["level"] in ("WARN", "ERROR")]
+        return f"Not as in a sound joint: {'; '.join(found)}."
     judged = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] == "OK"]
     others = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] != "OK"]
     return (f"As a sound joint has it: {', '.join(judged)}."

@@ -97,7 +97,7 @@ class Compare(tool.ToolTest):
 
     def test_more_friction_than_the_twin_is_a_warning_with_its_causes(self):
         levels = []
-        for friction in (1.0, 1.6):
+        for friction in (1.0, 1.3):
             robot.write_bag(self.path("a.bag"), 30.0, friction)
             report = self.compare("a.bag")
             levels.append(self.finding(report, "Friction")["level"])

@@ -39,12 +39,12 @@ struct JudgedWindow
 struct MotionReach
 {
   std::uint64_t rows{};
-  std::uint64_t impossible{};             ///< rows with a current or load beyond what the joint has
-  std::uint64_t motor_rows{};             ///< rows with a motor angle
-  double least_load{};                    ///< [N.m]
-  double most_load{};                     ///< [N.m]
-  double least_angle{};                   ///< [rad]
-  double most_angle{};                    ///< [rad]
+  std::uint64_t impossible{};  ///< rows with a current or load beyond what the joint has
+  std::uint64_t motor_rows{};  ///< rows with a motor angle
+  double least_load{};         ///< [N.m]
+  double most_load{};          ///< [N.m]
+  double least_angle{};        ///< [rad]
+  double most_angle{};         ///< [rad]
 };
 
 /// A recorded joint beside the twin that makes the same motion, row by row; memory does not grow with the rows.

@@ -88,7 +88,8 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
-Finding judgeFriction(const Comparison& comparison, const Parameters& parameters, const OwnReference& own, bool has_load)
+Finding judgeFriction(const Comparison& comparison, const Parameters& parameters, const OwnReference& own,
+                      bool has_load)
 {
   Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
   const std::vector<FrictionPoint> points = comparison.friction().points();
