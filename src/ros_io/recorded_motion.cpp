@@ -13,6 +13,7 @@
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/bag_file.hpp"
 #include "harmonic_joint_twin/ros_io/checked_message.hpp"
+#include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
 
 namespace hjt
 {
@@ -34,7 +35,7 @@ class BagRows
 {
 public:
   BagRows(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit)
-    : source_(source), visit_(visit)
+    : source_(source), visit_(visit), names_(source.joint)
   {
   }
 
@@ -50,7 +51,7 @@ public:
     const ros::Time stamp = state.header.stamp.isZero() ? instance.getTime() : state.header.stamp;
     if (instance.getTopic() == source_.topic)
     {
-      return readTelemetry(state, stamp, instance.getTime());
+      return takeTelemetry(state, stamp, instance.getTime());
     }
     readLoad(state, stamp);
     return true;
@@ -78,6 +79,7 @@ public:
     }
     MotionRow row = held.row;
     row.time = (held.stamp - *start_).toSec();
+    row.received = (held.recorded - *start_).toSec();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -86,7 +88,7 @@ public:
   }
 
   MotionCount count() const { return count_; }
-  const std::set<std::string>& names() const { return names_; }
+  const std::set<std::string>& others() const { return others_; }
 
 private:
   struct Held
@@ -110,31 +112,26 @@ private:
     return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
   }
 
-  bool readTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
+  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
   {
-    const std::size_t i = find(message, source_.joint);
-    if (i == message.name.size())
+    Held held;
+    const TelemetryStatus status = readTelemetry(message, names_, held.row);
+    if (status == TelemetryStatus::UNKNOWN_JOINT)
     {
-      names_.insert(message.name.begin(), message.name.end());
+      others_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    const std::size_t motor = source_.motor.empty() ? message.name.size() : find(message, source_.motor);
-    const bool has_motor = motor < message.name.size();
-    const std::size_t effort = has_motor ? motor : i;
-    const std::size_t last = std::max(i, effort);
-    if (last >= message.position.size() || last >= message.effort.size() || !std::isfinite(message.position[i]) ||
-        !isPlausible(message.effort[effort]))
+    const std::size_t motor = find(message, names_.motor);
+    if (source_.current_per_motor_torque > 0.0 && motor < message.name.size() && motor < message.effort.size())
+    {
+      held.row.current = source_.current_per_motor_torque * message.effort[motor];
+    }
+    if (status != TelemetryStatus::FOUND || !isPlausible(held.row.current))
     {
       ++count_.corrupt;
       return true;
     }
-    Held held;
-    held.row = { 0.0, message.position[i], message.effort[effort], load_ };
-    if (has_motor)
-    {
-      held.row.current *= source_.current_per_motor_torque;
-      held.row.motor_angle = message.position[motor];
-    }
+    held.row.load = load_;
     held.stamp = stamp;
     held.recorded = recorded;
     held.agrees = last_ && agree(*last_, held);
@@ -151,7 +148,7 @@ private:
 
   void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
   {
-    const std::size_t i = find(message, source_.joint);
+    const std::size_t i = find(message, names_.joint);
     if (i < message.name.size() && i < message.effort.size() && isPlausible(message.effort[i]))
     {
       load_ = message.effort[i];
@@ -166,7 +163,8 @@ private:
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
   MotionCount count_;
-  std::set<std::string> names_;
+  JointNames names_;
+  std::set<std::string> others_;  // joints in messages that do not name this one
   std::optional<Held> waiting_;
   std::optional<Held> last_;  // as it came, true or not
   std::uint64_t seen_{};      // the only row has no neighbour to disagree with
@@ -198,7 +196,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   if (rows.count().rows == 0)
   {
     std::string found;
-    for (const std::string& name : rows.names())
+    for (const std::string& name : rows.others())
     {
       found += (found.empty() ? "" : ", ") + name;
     }
@@ -230,7 +228,9 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     }
     const double time = row[0] - count.start;
     count.duration = std::max(count.duration, time);
-    if (!visit({ time, row[1], row[2], row[3] }))
+    MotionRow motion{ time, row[1], row[2], row[3] };
+    motion.received = time;
+    if (!visit(motion))
     {
       break;
     }

@@ -17,8 +17,9 @@ struct MotionSource
   int csv_joint{};                       ///< its number in the columns of a CSV file
   std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState, effort the motor current [A]
   std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
-  std::string motor;                     ///< its motor's name in the messages; empty: not looked for
-  double current_per_motor_torque{};     ///< where the motor is there, its effort is a torque: current of 1 N.m [A]
+  /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
+  double current_per_motor_torque{};
+};  ///< where the motor is there, its effort is a torque: current of 1 N.m [A]
 };
 
 /// What a reading found.

@@ -17,6 +17,7 @@ struct MotionRow
   double current{};                                                ///< of the motor [A]
   double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
+  double received{};                                               ///< when it arrived, from the same zero [s]
 };
 
 /// The same with its rates.

@@ -28,7 +28,7 @@ Json numberOrNull(double value)
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-void writeCourse(const std::string& path, const Comparison& comparison)
+void writeCourse(const std::string& path, const RecordingComparison& comparison)
 {
   CsvWriter csv(path, { "time", "position", "velocity", "load", "current_measured", "current_predicted", "current_band",
                         "friction_torque" });
@@ -41,7 +41,7 @@ void writeCourse(const std::string& path, const Comparison& comparison)
   csv.close();
 }
 
-void writeFriction(const std::string& directory, const Comparison& comparison, const Parameters& parameters)
+void writeFriction(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
 {
   CsvWriter csv(directory + "/friction.csv", { "speed", "measured", "deviation", "twin", "rows" });
   double fastest = 1.0;
@@ -65,7 +65,7 @@ void writeFriction(const std::string& directory, const Comparison& comparison, c
   curve.close();
 }
 
-void writeSpectrum(const std::string& path, const Comparison& comparison)
+void writeSpectrum(const std::string& path, const RecordingComparison& comparison)
 {
   CsvWriter csv(path, { "order", "forward", "backward" });
   for (const SpectrumLine& line : comparison.spectrum().lines())
@@ -75,7 +75,7 @@ void writeSpectrum(const std::string& path, const Comparison& comparison)
   csv.close();
 }
 
-void writeTorsion(const std::string& directory, const Comparison& comparison, const Parameters& parameters)
+void writeTorsion(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
 {
   if (comparison.torsion().rows() == 0)
   {
@@ -101,7 +101,7 @@ void writeTorsion(const std::string& directory, const Comparison& comparison, co
 }
 
 /// Every tooth of the twin's ring under the recording's typical and largest load.
-void writeTeeth(const std::string& path, const Comparison& comparison, const Parameters& parameters)
+void writeTeeth(const std::string& path, const RecordingComparison& comparison, const Parameters& parameters)
 {
   const std::vector<StiffnessRow> rows =
       analyseStiffness(parameters, 0.0, { comparison.typicalLoad(), comparison.largestLoad() });
@@ -130,7 +130,7 @@ void writeTwinStates(const std::string& path, const Thinned<TwinState>& states)
   csv.close();
 }
 
-Json healthJson(const Comparison& comparison)
+Json healthJson(const RecordingComparison& comparison)
 {
   Json table = Json::array();
   if (!comparison.worst())
@@ -226,7 +226,7 @@ const char* levelName(HealthLevel level)
   return "OK";
 }
 
-void writeComparison(const std::string& directory, const Comparison& comparison, const Parameters& parameters,
+void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record)
 {
   writeCourse(directory + "/course.csv", comparison);

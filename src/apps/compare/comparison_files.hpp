@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "comparison.hpp"
+#include "recording_comparison.hpp"
 #include "recording_contents.hpp"
 #include "verdict.hpp"
 
@@ -30,7 +30,7 @@ struct ComparisonRecord
 /// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum, teeth, health, and
 /// where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads of the recording.
 /// @throws InputError if a file cannot be written.
-void writeComparison(const std::string& directory, const Comparison& comparison, const Parameters& parameters,
+void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);
 
 /// What an earlier comparison left of the joint when it was sound.

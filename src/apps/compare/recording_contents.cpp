@@ -42,7 +42,7 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   const std::uint64_t loads = messagesOn(bag, source.load_topic);
   const std::uint64_t twins = twin_topic == source.topic ? 0 : messagesOn(bag, twin_topic);
   contents.lines = { { source.topic, ANGLE_AND_CURRENT, count.rows, true },
-                     { source.topic + ": " + source.motor, MOTOR_ANGLE, motor_rows, motor_rows > 0 },
+                     { source.topic + ": " + JointNames(source.joint).motor, MOTOR_ANGLE, motor_rows, motor_rows > 0 },
                      { source.load_topic, LOAD, loads, loads > 0 } };
   if (twin_topic != source.topic)
   {

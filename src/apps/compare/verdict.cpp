@@ -88,7 +88,7 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
-Finding judgeFriction(const Comparison& comparison, const Parameters& parameters, const OwnReference& own,
+Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
                       bool has_load)
 {
   Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
@@ -111,7 +111,7 @@ Finding judgeFriction(const Comparison& comparison, const Parameters& parameters
   return finding;
 }
 
-Finding judgeTorsion(const Comparison& comparison, const Parameters& parameters, const OwnReference& own)
+Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own)
 {
   Finding finding{ HealthLevel::OK, false, "Torsion", "", {} };
   if (comparison.torsion().rows() == 0)
@@ -141,7 +141,7 @@ Finding judgeTorsion(const Comparison& comparison, const Parameters& parameters,
   return finding;
 }
 
-Finding judgeSignals(const Comparison& comparison)
+Finding judgeSignals(const RecordingComparison& comparison)
 {
   Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
   const std::string reference = comparison.baselineGiven() ? "the reference given" :
@@ -182,7 +182,7 @@ Finding judgeSignals(const Comparison& comparison)
 }
 
 /// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
-double highestOrder(const Comparison& comparison, double duration)
+double highestOrder(const RecordingComparison& comparison, double duration)
 {
   constexpr double RESOLVED = 0.4;  // of the rows' rate; half of it is the limit
   double fastest = 0.0;
@@ -194,7 +194,7 @@ double highestOrder(const Comparison& comparison, double duration)
   return turns > 0.0 ? RESOLVED * static_cast<double>(comparison.reach().rows) / turns : 0.0;
 }
 
-std::vector<std::string> cannotShow(const Comparison& comparison, bool has_load, double duration)
+std::vector<std::string> cannotShow(const RecordingComparison& comparison, bool has_load, double duration)
 {
   const MotionReach& reach = comparison.reach();
   std::vector<std::string> missing;
@@ -245,8 +245,8 @@ std::vector<std::string> cannotShow(const Comparison& comparison, bool has_load,
 }
 }  // namespace
 
-Verdict judge(const Comparison& comparison, const Parameters& parameters, const OwnReference& own, bool has_load,
-              double duration)
+Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
+              bool has_load, double duration)
 {
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),

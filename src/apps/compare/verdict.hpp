@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "comparison.hpp"
+#include "recording_comparison.hpp"
 
 namespace hjt
 {
@@ -37,6 +37,6 @@ struct Verdict
 };
 
 /// `duration` of the recording [s].
-Verdict judge(const Comparison& comparison, const Parameters& parameters, const OwnReference& own, bool has_load,
-              double duration);
+Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
+              bool has_load, double duration);
 }  // namespace hjt

@@ -14,8 +14,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../compare/comparison.hpp"
 #include "../compare/comparison_files.hpp"
+#include "../compare/recording_comparison.hpp"
 #include "../compare/verdict.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -88,7 +88,7 @@ void makePage(const std::string& directory)
   }
 }
 
-void print(const ComparisonRecord& record, const Comparison& comparison)
+void print(const ComparisonRecord& record, const RecordingComparison& comparison)
 {
   const Verdict& verdict = record.verdict;
   for (const ContentLine& line : record.contents.lines)
@@ -114,13 +114,12 @@ int compare(const CompareOptions& options)
   const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference);
   prepareDirectory(options);
   MotionSource source = motionSource(options);
-  source.motor = JointNames(source.joint).motor;
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
   const std::string twin_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
 
   CsvWriter windows((fs::path(options.report) / "windows.csv").string(),
                     { "time", "speed", "load", "level", "cause", "confidence", "largest_score" });
-  Comparison comparison(
+  RecordingComparison comparison(
       parameters, sound.baseline,
       [&](const JudgedWindow& window)
       {

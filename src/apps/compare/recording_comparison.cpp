@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "comparison.hpp"
+#include "recording_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ Parameters withoutWeight(Parameters parameters)
 }
 }  // namespace
 
-Comparison::Comparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
-                       std::function<void(const JudgedWindow&)> watch)
+RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
+                                         std::function<void(const JudgedWindow&)> watch)
   : parameters_(parameters)
   , ratio_(nominalRatio(parameters.gear))
   , twin_(parameters)
@@ -42,14 +42,14 @@ Comparison::Comparison(const Parameters& parameters, std::vector<ReferenceBin> b
   }
 }
 
-bool Comparison::canBe(const MotionSample& sample) const
+bool RecordingComparison::canBe(const MotionSample& sample) const
 {
   const double most_current =
       CURRENT_MARGIN * parameters_.motor.torque_limit * ratio_ / parameters_.telemetry.torque_per_current;
   return std::abs(sample.load) <= parameters_.output.load_torque_limit && std::abs(sample.current) <= most_current;
 }
 
-void Comparison::take(const MotionSample& sample)
+void RecordingComparison::take(const MotionSample& sample)
 {
   if (!canBe(sample))
   {
@@ -90,7 +90,7 @@ void Comparison::take(const MotionSample& sample)
   watchSignals(sample);
 }
 
-void Comparison::watchSignals(const MotionSample& sample)
+void RecordingComparison::watchSignals(const MotionSample& sample)
 {
   const TelemetryParameters& telemetry = parameters_.telemetry;
   SignalSample signal;
@@ -131,22 +131,22 @@ void Comparison::watchSignals(const MotionSample& sample)
   }
 }
 
-Cause Comparison::cause() const
+Cause RecordingComparison::cause() const
 {
   return static_cast<Cause>(std::max_element(votes_.begin(), votes_.end()) - votes_.begin());
 }
 
-double Comparison::currentRms() const
+double RecordingComparison::currentRms() const
 {
   return reach_.rows == 0 ? 0.0 : std::sqrt(current_squares_ / static_cast<double>(reach_.rows));
 }
 
-double Comparison::residualRms() const
+double RecordingComparison::residualRms() const
 {
   return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
 }
 
-double Comparison::loadQuantile(double share) const
+double RecordingComparison::loadQuantile(double share) const
 {
   const auto enough = static_cast<std::uint64_t>(share * static_cast<double>(reach_.rows));
   std::uint64_t rows = 0;
@@ -158,12 +158,12 @@ double Comparison::loadQuantile(double share) const
   return LOAD_STEP * (static_cast<double>(step) + 0.5);
 }
 
-double Comparison::typicalLoad() const
+double RecordingComparison::typicalLoad() const
 {
   return loadQuantile(0.5);
 }
 
-double Comparison::largestLoad() const
+double RecordingComparison::largestLoad() const
 {
   return loadQuantile(0.999);
 }

@@ -48,15 +48,15 @@ struct MotionReach
 };
 
 /// A recorded joint beside the twin that makes the same motion, row by row; memory does not grow with the rows.
-class Comparison
+class RecordingComparison
 {
 public:
   static constexpr double MOVING = 0.01;  ///< [rad/s]
 
   /// `baseline`: of the sound joint; empty: learned from the first windows. `watch`: is given every window.
   /// @throws ParameterError if the ring finds no equilibrium under load.
-  Comparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
-             std::function<void(const JudgedWindow&)> watch);
+  RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
+                      std::function<void(const JudgedWindow&)> watch);
 
   void take(const MotionSample& sample);
 
