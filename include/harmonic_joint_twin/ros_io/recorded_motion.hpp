@@ -19,7 +19,6 @@ struct MotionSource
   std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
   /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
   double current_per_motor_torque{};
-};  ///< where the motor is there, its effort is a torque: current of 1 N.m [A]
 };
 
 /// What a reading found.
