@@ -58,8 +58,8 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
   , reset_service_(node.advertiseService("reset", &CompanionNode::reset, this))
 {
   updater_.setHardwareID(parameters.joint.hardware_id);
-  updater_.add("Telemetry", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
-  updater_.add("Comparison", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
+  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
+  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
   updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
   timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();

@@ -84,7 +84,7 @@ public:
     // Of the rotor: the output's own swings by what the load is not known.
     now.velocity.predicted = seen.motor_velocity / ratio_;
     now.current.predicted = sample.current + to_current * seen.residual_torque;
-    now.current.band = DEVIATIONS * telemetry_.current_deviation + to_current * seen.residual_band;
+    now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
     now.sticking = seen.sticking;
     now.friction_torque = ratio_ * seen.friction_torque;
     now.joint_torque = seen.joint_torque;

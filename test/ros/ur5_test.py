@@ -155,7 +155,7 @@ class UR5(unittest.TestCase):
     def test_what_was_wrong_with_the_messages_is_told(self):
         for twin in TWINS:
             self.wait_for_rows(twin)
-            told = self.diagnostics[twin].fresh("Telemetry")
+            told = self.diagnostics[twin].fresh("Input")
             self.assertEqual(told["Topic"], "/joint_states")
             self.assertEqual(int(told["Not finite, refused"]), self.sent["not_finite"])
             self.assertEqual(int(told["Without position or effort, refused"]), self.sent["incomplete"])
@@ -170,9 +170,9 @@ class UR5(unittest.TestCase):
     def test_telemetry_that_stops_is_told_and_health_comes_from_it(self):
         twin = ("motion", "base")
         self.wait_for_rows(twin)
-        wait_until(lambda: any("stopped" in status.message for status in self.diagnostics[twin].statuses("Telemetry")),
+        wait_until(lambda: any("stopped" in status.message for status in self.diagnostics[twin].statuses("Input")),
                    "the end of the telemetry")
-        self.assertEqual(self.diagnostics[twin].level("Telemetry"), WARN)
+        self.assertEqual(self.diagnostics[twin].level("Input"), WARN)
         self.assertGreater(len(self.indicators.messages()), 3)
         self.assertEqual(self.assessments.messages()[-1].header.frame_id, JOINTS["base"])
 
