@@ -68,6 +68,7 @@ struct Twin::Impl
     : parameters(given)
     , model(given)
     , faults(given, model)
+    , waiting(given)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
@@ -137,6 +138,7 @@ struct Twin::Impl
     commanded = false;
     load_torque = 0.0;
     load_clamped = false;
+    temperature = parameters.input.temperature;
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
@@ -149,7 +151,6 @@ struct Twin::Impl
     return settled;
   }
 
-  static bool setsInAtOnce(const Fault& fault) noexcept { return fault.severity > 0.0 && fault.onset == 0.0; }
   static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
 
   void scheduleConfigured(Stamp stamp) noexcept;
@@ -185,6 +186,7 @@ struct Twin::Impl
   bool commanded{};      // a command is in force, not timed out
   double load_torque{};  // last load torque, clamped [N.m]
   bool load_clamped{};
+  double temperature{};  // [degC]
   bool brake_engaged{};
   JointOutputs outputs;
   JointSensors sensors;
@@ -204,7 +206,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   waiting.clear();
   for (const Fault& fault : parameters.faults)
   {
-    if (setsInAtOnce(fault))
+    if (fault.isThereFromTheStart())
     {
       active.set(fault, stamp);
     }
@@ -261,6 +263,9 @@ void Twin::Impl::takeInputs() noexcept
       case InputKind::BRAKE:
         brake_engaged = input.value != 0.0;
         break;
+      case InputKind::TEMPERATURE:
+        temperature = std::clamp(input.value, LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE);
+        break;
       case InputKind::FAULT:
         break;
     }
@@ -305,8 +310,7 @@ void Twin::Impl::step() noexcept
   takeInputs();
   takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged =
-      stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
+  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, temperature }) && followed;
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -330,6 +334,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = motor_torque;
   outputs.load_torque = load_torque;
+  outputs.temperature = temperature;
   outputs.wave_generator_torque = -ring.wave_generator_torque;
   outputs.joint_torque = ring.output_torque;
   outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
@@ -366,7 +371,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
   sample.load_torque = load_torque;
-  sample.temperature = parameters.input.temperature;
+  sample.temperature = temperature;
   if (signals.update(sample))
   {
     assessor.take(signals.indicators());
@@ -439,6 +444,11 @@ void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
   impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
+}
+
+void Twin::setTemperature(Stamp stamp, double temperature) noexcept
+{
+  impl_->queue.push({ stamp, InputKind::TEMPERATURE, temperature }, impl_->simulated_until);
 }
 
 void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
