@@ -5,17 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
-#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 #include "harmonic_joint_twin/twin/surface_worker.hpp"
 
@@ -23,27 +19,6 @@ namespace hjt
 {
 namespace
 {
-/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
-std::string keyOf(const FaultList& faults, const Parameters& parameters)
-{
-  if (faults.empty())
-  {
-    return "";
-  }
-  std::ostringstream text;
-  for (const ActiveFault& active : faults)
-  {
-    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
-         << '\n';
-  }
-  std::istringstream lines(describeParameters(parameters));
-  for (std::string line; std::getline(lines, line);)
-  {
-    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
-  }
-  return text.str();
-}
-
 bool isSame(const FaultList& one, const FaultList& other) noexcept
 {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
@@ -51,14 +26,6 @@ bool isSame(const FaultList& one, const FaultList& other) noexcept
                       return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
                              a.fault.severity == b.fault.severity;
                     });
-}
-
-/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
-bool isOfTheBalls(const ActiveFault& active) noexcept
-{
-  const FaultKind kind = active.fault.kind;
-  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
-         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
 }
 }  // namespace
 
@@ -97,29 +64,23 @@ struct Twin::Impl
   void prepareSurface(const SurfaceSource& source)
   {
     surface_faults = active;
-    if (std::any_of(active.begin(), active.end(), isOfTheBalls))
+    if (source.background)
     {
-      if (source.notice)
-      {
-        source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
-      }
-    }
-    else if (source.background)
-    {
-      surface_awaited = true;
-      surface_worker = std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+      surface_worker = std::make_unique<SurfaceWorker>(parameters, active, source);
     }
     else
     {
-      surface = sharedSurface(parameters, model, keyOf(surface_faults, parameters), source);
+      surface = surfaceWithFaults(parameters, active, source);
     }
   }
 
-  /// The surface while it is that of the present faults; else the full ring.
+  /// The surface while it is that of the present faults; else the full ring, until one is there that was built beside.
   void useSurface() noexcept
   {
     const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
-    stepper.useSurface(isSame(active, surface_faults) ? ready : nullptr);
+    const bool fits = ready != nullptr && isSame(active, surface_faults);
+    stepper.useSurface(fits ? ready : nullptr);
+    surface_awaited = surface_worker && !fits;
   }
 
   bool reset(Stamp stamp) noexcept
@@ -171,7 +132,7 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
-  FaultList surface_faults;  // that the surface is made for
+  FaultList surface_faults;  // that the surface was asked for with
   std::shared_ptr<const ResponseSurface> surface;
   std::unique_ptr<SurfaceWorker> surface_worker;
   bool surface_awaited{};
@@ -273,12 +234,22 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
-/// The surface that was built beside, when it is there.
+/// The surface of the present faults that is built beside: asked for, and used when it is there.
 void Twin::Impl::takeSurface() noexcept
 {
-  if (surface_awaited && surface_worker->surface() != nullptr)
+  if (!surface_awaited)
   {
-    surface_awaited = false;
+    return;
+  }
+  if (!isSame(active, surface_faults))
+  {
+    if (surface_worker->request(active))
+    {
+      surface_faults = active;
+    }
+  }
+  else if (surface_worker->surface() != nullptr)
+  {
     useSurface();
   }
 }
