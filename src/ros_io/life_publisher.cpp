@@ -11,6 +11,7 @@
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 namespace hjt
 {
@@ -168,7 +169,7 @@ void LifePublisher::write()
   }
   try
   {
-    record_.write(path_);
+    writeTextFile(path_, record_.text());
   }
   catch (const InputError& error)
   {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/whole_file.hpp"
 
 namespace hjt
 {
@@ -121,7 +120,7 @@ DutyCycle UseRecord::duty() const
   return duty;
 }
 
-void UseRecord::write(const std::string& path) const
+std::string UseRecord::text() const
 {
   std::string text = "duration,motor_speed,load_torque,temperature\n";
   for (const DutyPhase& phase : duty().phases)
@@ -129,6 +128,6 @@ void UseRecord::write(const std::string& path) const
     text += numberText(phase.duration) + ',' + numberText(phase.motor_speed) + ',' + numberText(phase.load_torque) +
             ',' + numberText(phase.temperature) + '\n';
   }
-  writeTextFile(path, text);
+  return text;
 }
 }  // namespace hjt

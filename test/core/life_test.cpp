@@ -322,7 +322,7 @@ TEST(UseRecord, IsTheSameAfterItsFile)
 {
   const std::string path = ::testing::TempDir() + "/use.csv";
   const CountedMotion counted;
-  counted.record.write(path);
+  std::ofstream(path) << counted.record.text();
   const UseRecord read(shippedLife(), path);
   const DutyCycle before = counted.record.duty();
   const DutyCycle after = read.duty();
@@ -336,7 +336,6 @@ TEST(UseRecord, IsTheSameAfterItsFile)
   }
   std::ofstream(path) << "duration,motor_speed,load_torque\n10,0,5\n";
   EXPECT_THROW(UseRecord(shippedLife(), path), InputError);
-  EXPECT_THROW(counted.record.write(::testing::TempDir() + "/none/use.csv"), InputError);
 }
 
 TEST(DutyCycle, RefusesAFileWithoutMotion)

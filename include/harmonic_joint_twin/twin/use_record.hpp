@@ -20,7 +20,7 @@ class UseRecord
 public:
   explicit UseRecord(const LifeParameters& life);
 
-  /// From a file of `write`, or any other duty cycle. @throws InputError.
+  /// From a file that holds `text`, or any other duty cycle. @throws InputError.
   UseRecord(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
@@ -33,8 +33,8 @@ public:
   /// A phase for each node in use: the duty cycle that has been gone through once.
   DutyCycle duty() const;
 
-  /// As a duty cycle that `joint_twin life` reads; whole or not at all. @throws InputError.
-  void write(const std::string& path) const;
+  /// As a duty cycle that `joint_twin life` reads.
+  std::string text() const;
 
 private:
   static constexpr std::size_t LOADS = 65;

@@ -11,7 +11,7 @@
 #include "../tool/run_summary.hpp"
 #include "../tool/validators.hpp"
 
-#include "harmonic_joint_twin/params/whole_file.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 namespace hjt
 {

@@ -23,8 +23,8 @@
 #include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/params/text_hash.hpp"
-#include "harmonic_joint_twin/params/whole_file.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 namespace hjt
 {

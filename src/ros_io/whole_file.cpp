@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/params/whole_file.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
