@@ -1,257 +1,269 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Evaluates the assessment: faults of every kind set in on running drives with real sensors, sound drives run on.
-
-Every run begins sound, so that the reference is learned on the same joint; what the assessment says afterwards is
-counted. Runs are made by `joint_twin sweep`, in bags, and taken from there: what is there already is not run again."""
+"""Evaluates the assessment on sound and faulty joints with real sensors, and writes docs/health.md."""
 import argparse
 import collections
-import json
 import math
 import pathlib
-import re
 import statistics
-import subprocess
 import sys
 
 import matplotlib
 import numpy
-import rosbag
 
+import fault_figures
+import health_runs
 import page_section
+from health_runs import CHECK_UP, CONDITIONS, COOL, JUDGED, NOISY, POINTS, SHORT_POINTS, TRAINING, WARM
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
-RATIO = 101.0
-WINDOW_TURNS = 25.0       # of the motor
-LEARNING = 10             # windows of the reference
-SOUND = 14                # windows before a fault sets in
-FAULTY = 8                # and after
-SEVERITIES = [0.1, 0.3, 1.0]
-ALARM_SHARE = 0.01        # false alarms allowed for the smallest severity detected
+ALARM_SHARE = 0.01    # false alarms allowed for the smallest severity detected
+# Kinds that a joint's signals tell from each other only by how strong they are, if at all.
+CAUSE_SETS = [("rear_section_crack", "flange_crack"), ("tooth_root_crack", "tooth_tip_crack", "pitting")]
+ARCSEC = math.pi / 180.0 / 3600.0
 
-Point = collections.namedtuple("Point", "name degrees load temperature")
-POINTS = [Point("15°/s, 60 N·m", 15.0, 60.0, 30.0), Point("90°/s, 0 N·m", 90.0, 0.0, 30.0),
-          Point("90°/s, 60 N·m", 90.0, 60.0, 40.0), Point("180°/s, 30 N·m", 180.0, 30.0, 40.0)]
-
-Window = collections.namedtuple("Window", "end state level cause score evidence")
-Run = collections.namedtuple("Run", "point kind severity windows indicators")
+Evidence = collections.namedtuple("Evidence", "sound faulty delayed")
 
 
-def window_time(point):
-    return WINDOW_TURNS * 360.0 / (point.degrees * RATIO)
+def collect(bench, sound_hours):
+    """Verdicts on all runs."""
+    sound, faulty = [], []
+    for condition in (WARM, NOISY):
+        reference = bench.reference(condition)
+        for point in POINTS if condition is WARM else SHORT_POINTS:
+            window = health_runs.window_time(point)
+            repeats = max(round(3600.0 * sound_hours / (health_runs.SOUND_WINDOWS * window)), 1)
+            bags = bench.sound("sound", condition, point, health_runs.SOUND_WINDOWS, repeats, 4)
+            sound += bench.judge(bags, condition, point, reference)
+            faulty += bench.judge(bench.faulty(JUDGED, condition, point), condition, point, reference)
+    return sound, faulty, bench.judge(bench.setting_in(WARM), WARM, CHECK_UP, bench.reference(WARM))
 
 
-def onset(point):
-    return 0.5 + SOUND * window_time(point)
+def alarms(run):
+    """How often WARN or ERROR begins."""
+    levels = ["OK", *[window.level for window in run.windows]]
+    return sum(before == "OK" and after != "OK" for before, after in zip(levels, levels[1:]))
 
 
-def kinds(tool):
-    listed = subprocess.run([tool, "faults", "--json"], check=True, capture_output=True, text=True).stdout
-    return json.loads(listed)
+def alarm(run):
+    """The first window with WARN or ERROR; None: there was none."""
+    return next((window for window in run.windows if window.level != "OK"), None)
 
 
-def place(kind):
-    """The whole member where that is meant, else a place in the middle."""
-    return kind["first_place"] if kind["first_place"] < 0 else min(40, kind["last_place"])
+def sound_table(sound):
+    lines = ["| motion | window [s] | hours | windows | beyond the threshold | alarms | 95 % bound of alarms in 1000 h |",
+             "|---|---|---|---|---|---|---|"]
+    rows = [(f"{point.name}", [run for run in sound if run.point == point]) for point in POINTS]
+    for name, own in [*rows, ("all", sound)]:
+        windows = sum(len(run.windows) for run in own)
+        hours = sum(len(run.windows) * health_runs.window_time(run.point) for run in own) / 3600.0
+        beyond = sum(window.largest > 1.0 for run in own for window in run.windows)
+        count = sum(alarms(run) for run in own)
+        length = "" if name == "all" else f"{health_runs.window_time(own[0].point):.0f}"
+        lines.append(f"| {name} | {length} | {hours:.1f} | {windows} | {beyond} | {count} | "
+                     f"{1000.0 * poisson_bound(count) / hours:.0f} |")
+    return lines
 
 
-def plan(point, duration, repeats, classes):
-    lines = [f"name: health_{point.degrees:.0f}_{point.load:.0f}", "seed: 1", f"duration: {duration:.6f}",
-             "overlays: [real_sensors.yaml]", "set:", "  solver.scene: auto",
-             f"  input.temperature: {point.temperature}", f"  indicators.window_turns: {WINDOW_TURNS}",
-             f"  indicators.baseline_windows: {LEARNING}", "  publish.indicators_rate: 10.0",
-             "  publish.joint_states_rate: 0.01", "  publish.encoders_rate: 0.01", "  publish.contact_forces_rate: 0.01",
-             "  publish.health_rate: 0.01", f"repeats: {repeats}", "duty:", "  - name: turning",
-             f"    speed: {{constant: {math.radians(point.degrees):.6f}}}", "    bandwidth: 8.0",
-             f"    load: {{constant: {point.load}}}", "classes:", *classes, "record:", "  format: bag"]
-    return "\n".join(lines) + "\n"
+def poisson_bound(count):
+    """What a Poisson variable's mean lies below with 95 %, having counted so many: chi square after Wilson and Hilferty."""
+    degrees = 2 * (count + 1)
+    return 0.5 * degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
 
 
-def fault_classes(point, faults):
-    grid = ", ".join(str(severity) for severity in SEVERITIES)
-    for kind in faults:
-        yield f"  {kind['kind']}:"
-        yield (f"    - {{kind: {kind['kind']}, severity: {{grid: [{grid}]}}, place: {place(kind)}, "
-               f"onset: {onset(point):.6f}}}")
+def limits(sound):
+    """By point and condition the score that 1 % of the sound windows exceed."""
+    groups = collections.defaultdict(list)
+    for run in sound:
+        groups[run.point, run.condition] += [window.largest for window in run.windows]
+    return {key: float(numpy.quantile(scores, 1.0 - ALARM_SHARE)) for key, scores in groups.items()}
 
 
-def sweep(options, name, text):
-    path = options.work / f"{name}.yaml"
-    path.write_text(text)
-    out = options.work / name
-    done = subprocess.run([options.tool, "sweep", path, "--out", out, "--jobs", str(options.jobs)], check=False)
-    if done.returncode not in (0, 1) or not (out / "index.csv").exists():  # 1: some run failed, as its row in the index says
-        sys.exit(f"evaluate_health: the sweep of {path} ended with {done.returncode}")
-    return sorted((out / "runs").glob("*.bag"))
+def weakest(run):
+    """Of a faulty run's windows the least score: what an alarm hangs on."""
+    return min((window.largest for window in run.windows), default=0.0)
 
 
-def read_run(point, path):
-    windows, indicators, label = {}, {}, {}
-    with rosbag.Bag(str(path)) as bag:
-        for topic, message, _ in bag.read_messages():
-            if topic.endswith("/assessment") and message.windows > 0:
-                windows.setdefault(message.windows, Window(message.window_end.to_sec(), message.state, message.level,
-                                                           message.cause, message.largest_score, message.evidence))
-            elif topic.endswith("/indicators") and message.windows > 0:
-                indicators.setdefault(message.windows, message)
-            elif topic.endswith("/run"):
-                label = json.loads(message.data)
-    faults = label.get("faults", [])
-    kind, severity = (faults[0]["kind"], faults[0]["severity"]) if faults else ("healthy", 0.0)
-    first = min((window.end for window in windows.values()), default=0.0)
-    # Stamps count from the epoch of the simulation; windows from the start of the run.
-    begin = first - 0.5 - window_time(point) if windows else 0.0
-    ordered = [windows[number]._replace(end=windows[number].end - begin) for number in sorted(windows)]
-    return Run(point, kind, severity, ordered, [indicators[number] for number in sorted(indicators)])
+def smallest(kind, faulty, limit, points):
+    """Smallest severity from which on every window lies beyond the limit, at the best of the points."""
+    best = (math.inf, "none")
+    for point in points:
+        severities = {run.severity: weakest(run) > limit[run.point, run.condition] for run in faulty
+                      if (run.kind, run.point, run.condition) == (kind, point, WARM)}
+        seen = math.inf
+        for severity in sorted(severities, reverse=True):
+            if not severities[severity]:
+                break
+            seen = severity
+        best = min(best, (seen, point.name), key=lambda entry: entry[0])
+    return best
 
 
-def collect(options):
-    faults = kinds(options.tool)
-    runs = []
-    for point in POINTS:
-        tag = f"{point.degrees:.0f}_{point.load:.0f}"
-        print(f"evaluate_health: {point.name}", file=sys.stderr)
-        length = onset(point) + FAULTY * window_time(point)
-        paths = sweep(options, f"faults_{tag}", plan(point, length, 1, list(fault_classes(point, faults))))
-        sound = 0.5 + (LEARNING + options.sound_windows) * window_time(point)
-        paths += sweep(options, f"sound_{tag}", plan(point, sound, options.sound_runs, ["  healthy: []"]))
-        runs += [read_run(point, path) for path in paths]
-    return faults, runs
+def right(run):
+    cause = alarm(run).cause
+    return cause == run.kind, cause == run.kind or any({cause, run.kind} <= set(group) for group in CAUSE_SETS)
 
 
-def judged(run):
-    """Windows held against the reference: of a sound run all, of a faulty one those wholly after its onset."""
-    if run.kind == "healthy":
-        return [window for window in run.windows if window.state == 2]
-    return [window for window in run.windows if window.end > onset(run.point) + window_time(run.point)]
+def share(flags):
+    flags = list(flags)
+    return f"{sum(flags)} of {len(flags)}" if flags else "-"
 
 
-def first_alarm(run):
-    """Motor turns from the onset to the first WARN or ERROR, and its window; None: there was none."""
-    for window in run.windows:
-        if window.end > onset(run.point) and window.level > 0:
-            return (window.end - onset(run.point)) * run.point.degrees / 360.0 * RATIO, window
-    return None
-
-
-def settled_cause(run):
-    """The cause most windows with an alarm name."""
-    named = collections.Counter(window.cause for window in judged(run) if window.level > 0)
-    return named.most_common(1)[0][0] if named else "none"
-
-
-def detection_table(faults, runs, threshold):
-    lines = ["| kind | " + " | ".join(f"detected at {severity:g}" for severity in SEVERITIES)
-             + " | smallest severity at 1 % false alarms | delay at 1 [motor turns] | cause right at 1 | strongest evidence at 1 |",
-             "|---|" + "---|" * (len(SEVERITIES) + 4)]
-    for kind in faults:
-        own = [run for run in runs if run.kind == kind["kind"]]
-        cells = []
-        for severity in SEVERITIES:
-            at = [run for run in own if run.severity == severity]
-            cells.append(f"{sum(first_alarm(run) is not None for run in at)} of {len(at)}" if at else "no run")
-        seen = [severity for severity in SEVERITIES
-                if statistics.mean([max((window.score for window in judged(run)), default=0.0) > threshold
-                                    for run in own if run.severity == severity] or [0.0]) > 0.5]
-        full = [run for run in own if run.severity == SEVERITIES[-1]]
-        alarms = [first_alarm(run) for run in full]
-        delays = [alarm[0] for alarm in alarms if alarm]
-        right = sum(settled_cause(run) == kind["kind"] for run in full)
-        evidence = collections.Counter(re.split(" ", window.evidence)[0] for run in full for window in judged(run)
-                                       if window.level > 0)
+def fault_table(kinds, faulty, limit):
+    severities = JUDGED.severities
+    steady = [point for point in POINTS if point.tag.startswith("steady")]
+    lines = ["| kind | " + " | ".join(f"alarms at {severity:g}" for severity in severities)
+             + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or of its set |",
+             "|---|" + "---|" * (len(severities) + 4)]
+    totals = []
+    for kind in kinds:
+        own = [run for run in faulty if run.kind == kind["kind"]]
+        told = [run for run in own if alarm(run)]
+        totals += told
+        cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
+        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, steady)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
-                     + f" | {min(seen) if seen else '> 1'} | {f'{statistics.median(delays):.0f}' if delays else 'none'} "
-                     f"| {right} of {len(full)} | {evidence.most_common(1)[0][0] if evidence else 'none'} |")
+                     + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
+                     f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
+                     f"| {share(right(run)[0] for run in told)} | {share(right(run)[1] for run in told)} |")
+    lines.append("| all | " + " | ".join(share(alarm(run) is not None for run in faulty if run.severity == severity)
+                                         for severity in severities)
+                 + f" | | | {share(right(run)[0] for run in totals)} | {share(right(run)[1] for run in totals)} |")
     return lines
 
 
-def sound_table(runs):
-    lines = ["| operating point | hours | windows judged | beyond the threshold | alarms (WARN or ERROR begins) | 95 % bound of alarms in 1000 h |",
+def size_table(kinds, sound, faulty):
+    """What changes most, at severity 1, against what it is in sound drives."""
+    lines = ["| kind | where it stands out most | indicator | sound: mean ± spread | severity 1 | change over spread |",
              "|---|---|---|---|---|---|"]
-    for point in POINTS:
-        own = [run for run in runs if run.point == point and run.kind == "healthy"]
-        windows = [window for run in own for window in judged(run)]
-        alarms = sum(after.level > before.level for run in own for before, after in zip(run.windows, run.windows[1:]))
-        hours = len(windows) * window_time(point) / 3600.0
-        bound = 0.5 * _chi2_quantile(2 * (alarms + 1))
-        lines.append(f"| {point.name} | {hours:.2f} | {len(windows)} | {sum(window.score > 1.0 for window in windows)} "
-                     f"| {alarms} | {1000.0 * bound / hours if hours else float('nan'):.0f} |")
+    for kind in kinds:
+        rows = []
+        for run in faulty:
+            if (run.kind, run.severity, run.condition) != (kind["kind"], 1.0, WARM) or not run.windows:
+                continue
+            window = min(run.windows, key=lambda window: window.largest)
+            scored = {name: score for name, score in window.scores.items() if score is not None}
+            name = max(scored, key=lambda name: abs(scored[name]))
+            rows.append((abs(scored[name]), run.point, name, window.values[name]))
+        if not rows:
+            continue
+        _, point, name, value = max(rows, key=lambda row: row[0])
+        healthy = [window.values[name] for run in sound if run.point == point and run.condition is WARM
+                   for window in run.windows if window.values[name] is not None]
+        mean, spread = statistics.mean(healthy), statistics.stdev(healthy)
+        scale, unit = unit_of(name)
+        lines.append(f"| `{kind['kind']}` | {point.name} | `{name}` | {scale * mean:.4g} ± {scale * spread:.2g} {unit} "
+                     f"| {scale * value:.4g} | {(value - mean) / spread:+.3g} |")
     return lines
 
 
-def _chi2_quantile(degrees):
-    """0.95 quantile of chi square, Wilson and Hilferty: within 1 % from 2 degrees on."""
-    return degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
+def unit_of(name):
+    if name.startswith("error") or name in ("kinematic_error", "lost_motion", "residual_rms"):
+        return 1.0 / ARCSEC, "″"
+    if name.startswith("torque") or name in ("running_torque", "coulomb_torque"):
+        return 1e3, "mN·m"
+    units = {"torsional_stiffness": (1e-3, "kN·m/rad"), "hysteresis_area": (1e3, "mJ"),
+             "viscous_friction": (1e6, "µN·m·s/rad")}
+    return units.get(name, (1.0, ""))
 
 
-def draw_confusion(faults, runs, path):
-    names = [kind["kind"] for kind in faults]
-    causes = names + ["circular_spline_tooth", "none"]
+def loop_table(sound, faulty):
+    """Stiffness, lost motion and loop over severity, in the check-up."""
+    names = ["torsional_stiffness", "lost_motion", "hysteresis_area"]
+
+    def means(runs):
+        values = [[window.values[name] for run in runs for window in run.windows if window.values[name] is not None]
+                  for name in names]
+        return [f"{unit_of(name)[0] * statistics.mean(own):.2f}" if own else "-" for name, own in zip(names, values)]
+
+    lines = ["| kind | severity | K1 [kN·m/rad] | lost motion [″] | loop [mJ] |", "|---|---|---|---|---|",
+             "| sound | 0 | " + " | ".join(means([run for run in sound if run.point == CHECK_UP and run.condition is WARM]))
+             + " |"]
+    for kind in ["interface_wear", "tooth_wear", "wave_generator_wear", "rear_section_crack", "flange_crack", "buckling"]:
+        for severity in JUDGED.severities:
+            own = [run for run in faulty if (run.kind, run.severity, run.point, run.condition)
+                   == (kind, severity, CHECK_UP, WARM)]
+            lines.append(f"| `{kind}` | {severity:g} | " + " | ".join(means(own)) + " |")
+    return lines
+
+
+def delay_table(kinds, delayed):
+    lines = ["| kind | from the onset to the alarm [motor turns] |", "|---|---|"]
+    for kind in kinds:
+        for run in delayed:
+            if run.kind == kind["kind"]:
+                first = alarm(run)
+                turns = (first.number - health_runs.SET_IN) * health_runs.WINDOW_TURNS if first else math.inf
+                lines.append(f"| `{run.kind}` | {f'{turns:.0f}' if first else 'no alarm'} |")
+    return lines
+
+
+def draw_seen(kinds, faulty, path):
+    """Score by kind and motion, at two severities."""
+    severities = [0.3, 1.0]
+    figure, axes = plt.subplots(1, len(severities), figsize=(12, 6), sharey=True, constrained_layout=True)
+    for axis, severity in zip(axes, severities):
+        table = numpy.full((len(kinds), len(POINTS)), numpy.nan)
+        for row, kind in enumerate(kinds):
+            for column, point in enumerate(POINTS):
+                for run in faulty:
+                    if (run.kind, run.severity, run.point, run.condition) == (kind["kind"], severity, point, WARM):
+                        table[row, column] = weakest(run)
+        image = axis.imshow(numpy.log10(numpy.maximum(table, 0.1)), cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
+        for (row, column), value in numpy.ndenumerate(table):
+            if numpy.isfinite(value):
+                axis.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=8,
+                          color="white" if abs(math.log10(max(value, 0.1))) > 0.6 else "black")
+        axis.set_title(f"severity {severity:g}")
+        axis.set_xticks(range(len(POINTS)), [point.name.split(":")[0] for point in POINTS], rotation=40, ha="right", fontsize=8)
+        axis.set_yticks(range(len(kinds)), [kind["kind"] for kind in kinds], fontsize=8)
+    figure.colorbar(image, ax=axes, ticks=[-1, 0, 1], shrink=0.6).set_ticklabels(["0.1", "1: threshold", "10"])
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
+
+
+def draw_confusion(kinds, faulty, path):
+    names = [kind["kind"] for kind in kinds]
+    causes = names + ["circular_spline_tooth"]
     matrix = numpy.zeros((len(names), len(causes)))
-    for run in runs:
-        if run.kind in names and run.severity == SEVERITIES[-1]:
-            cause = settled_cause(run)
-            matrix[names.index(run.kind), causes.index(cause if cause in causes else "none")] += 1
-    figure, axis = plt.subplots(figsize=(10, 7.4), constrained_layout=True)
-    axis.imshow(matrix, cmap="Blues", vmin=0, vmax=len(POINTS))
+    for run in faulty:
+        if alarm(run):
+            matrix[names.index(run.kind), causes.index(alarm(run).cause)] += 1
+    figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
+    axis.imshow(matrix / numpy.maximum(matrix.sum(axis=1, keepdims=True), 1), cmap="Blues", vmin=0, vmax=1)
     for (row, column), count in numpy.ndenumerate(matrix):
         if count:
             axis.text(column, row, f"{count:.0f}", ha="center", va="center",
-                      color="white" if count > len(POINTS) / 2 else "black")
+                      color="white" if count > matrix[row].sum() / 2 else "black")
     axis.set_xticks(range(len(causes)), causes, rotation=60, ha="right")
     axis.set_yticks(range(len(names)), names)
-    axis.set_xlabel("cause said")
-    axis.set_ylabel("fault at severity 1")
-    figure.savefig(path, dpi=110)
+    axis.set_xlabel("cause said at the first alarm")
+    axis.set_ylabel("fault, all severities and motions")
+    figure.savefig(path, dpi=90)
     plt.close(figure)
 
 
-def scores(runs, chosen):
-    return numpy.array([window.score for run in runs if chosen(run) for window in judged(run)])
-
-
-def draw_roc(runs, sound, path):
-    figure, axis = plt.subplots(figsize=(6.4, 5), constrained_layout=True)
-    thresholds = numpy.unique(numpy.concatenate([sound, numpy.linspace(0.0, 5.0, 400)]))
-    alarms = [(sound > threshold).mean() for threshold in thresholds]
-    for severity in SEVERITIES:
-        faulty = scores(runs, lambda run, s=severity: run.kind != "healthy" and run.severity == s)
-        axis.step(alarms, [(faulty > threshold).mean() for threshold in thresholds], label=f"severity {severity:g}")
-    axis.set_xscale("symlog", linthresh=1e-3)
-    axis.set_xlim(0, 1)
-    axis.set_ylim(0, 1)
-    axis.set_xlabel("share of sound windows beyond the threshold")
-    axis.set_ylabel("share of faulty windows beyond it")
-    axis.grid(alpha=0.3)
-    axis.legend(frameon=False, loc="lower right")
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
-
-
-def draw_signals(faults, runs, path):
-    """For each kind the indicator that speaks loudest, window by window, over the onset."""
-    figure, axes = plt.subplots(4, 4, figsize=(13, 10), constrained_layout=True, sharex=True)
-    for kind, axis in zip(faults, axes.flat):
-        full = [run for run in runs if run.kind == kind["kind"] and run.severity == SEVERITIES[-1] and run.windows]
-        axis.set_title(kind["kind"], loc="left", fontsize=9)
-        if not full:
-            continue
-        run = max(full, key=lambda run: max((window.score for window in judged(run)), default=0.0))
-        loudest = max(judged(run) or run.windows, key=lambda window: window.score)
-        name = (loudest.evidence.split(" ") + [""])[0] or "kinematic_error"
-        if not hasattr(run.indicators[0], name):
-            name = "kinematic_error"
-        values = [getattr(message, name) for message in run.indicators]
-        numbers = numpy.arange(1, len(values) + 1)
-        axis.plot(numbers, values, "o-", markersize=3, color="C0" if loudest.level == 0 else "C3")
-        axis.axvline(SOUND + 0.5, color="k", linewidth=0.8, linestyle=":")
-        axis.text(0.02, 0.95, f"{name}\n{run.point.name}", transform=axis.transAxes, va="top", fontsize=7)
-        axis.tick_params(labelsize=7)
-        axis.margins(y=0.25)
-    for axis in axes[-1]:
-        axis.set_xlabel(f"window of {WINDOW_TURNS:.0f} motor turns", fontsize=8)
-    figure.savefig(path, dpi=110)
+def draw_roc(sound, faulty, path):
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, constrained_layout=True)
+    for axis, name, points in ((axes[0], "steady speed and load", [p for p in POINTS if p.tag.startswith("steady")]),
+                               (axes[1], "swinging load", [p for p in POINTS if not p.tag.startswith("steady")])):
+        healthy = numpy.array([window.largest for run in sound if run.point in points for window in run.windows])
+        thresholds = numpy.unique(numpy.concatenate([healthy, numpy.linspace(0.0, 5.0, 400)]))
+        share_sound = [(healthy > threshold).mean() for threshold in thresholds]
+        for severity in JUDGED.severities:
+            scores = numpy.array([window.largest for run in faulty if run.severity == severity and run.point in points
+                                  for window in run.windows])
+            axis.step(share_sound, [(scores > threshold).mean() for threshold in thresholds], label=f"severity {severity:g}")
+        axis.set_xscale("symlog", linthresh=1e-3)
+        axis.set_xlim(0, 1)
+        axis.set_ylim(0, 1)
+        axis.set_title(name, fontsize=9)
+        axis.set_xlabel("share of sound windows beyond the threshold")
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel("share of faulty windows beyond it")
+    axes[1].legend(frameon=False, loc="lower right")
+    figure.savefig(path, dpi=90)
     plt.close(figure)
 
 
@@ -261,26 +273,25 @@ def main():
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds health.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
-    parser.add_argument("--sound-runs", type=int, default=10, help="sound drives at each operating point [10]")
-    parser.add_argument("--sound-windows", type=int, default=60, help="windows judged of each [60]")
+    parser.add_argument("--sound-hours", type=float, default=2.0, help="of sound running in each motion [2]")
     options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
-
-    faults, runs = collect(options)
-    sound = scores(runs, lambda run: run.kind == "healthy")
-    threshold = float(numpy.quantile(sound, 1.0 - ALARM_SHARE))
+    bench = health_runs.Bench(options.tool, options.work, options.jobs)
     images = options.docs / "images" / "health"
-    images.mkdir(parents=True, exist_ok=True)
-    draw_signals(faults, runs, images / "signals.png")
-    draw_confusion(faults, runs, images / "confusion.png")
-    draw_roc(runs, sound, images / "roc.png")
+    fault_figures.draw_all(options.tool, options.work, bench.kinds, images)
+    sound, faulty, delayed = collect(bench, options.sound_hours)
+    draw_seen(bench.kinds, faulty, images / "seen.png")
+    draw_confusion(bench.kinds, faulty, images / "confusion.png")
+    draw_roc(sound, faulty, images / "roc.png")
     page_section.write(options.docs / "health.md", "health", [
-        f"{len(runs)} runs; {len(sound)} sound windows judged. Score: strongest deviation over its threshold; 1 % of sound windows lie "
-        f"beyond {threshold:.2f}.", "", "### Sound drives", "", *sound_table(runs), "", "### Faults", "",
-        *detection_table(faults, runs, threshold), "",
-        "![For each kind of fault the indicator that speaks loudest, before and after the onset](images/health/signals.png)", "",
-        "![Fault against the cause said, at severity 1](images/health/confusion.png)", "",
-        "![Share of faulty windows beyond a threshold against that of sound ones, by severity](images/health/roc.png)"])
+        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs.", "",
+        "### Sound drives", "", *sound_table(sound), "",
+        "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
+        "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",
+        "![Share of faulty windows beyond a threshold against that of sound ones](images/health/roc.png)", "",
+        "![Fault against the cause said](images/health/confusion.png)", "",
+        "### Sizes against the noise", "", *size_table(bench.kinds, sound, faulty), "",
+        "### Stiffness and loop", "", *loop_table(sound, faulty), "",
+        "### Faults that set in on the way", "", *delay_table(bench.kinds, delayed)])
     print(f"evaluate_health: wrote {options.docs / 'health.md'}", file=sys.stderr)
 
 

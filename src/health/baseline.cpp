@@ -19,7 +19,7 @@ constexpr double ONE_WAY = 0.5;            // share of travel one way less the o
 constexpr double COUNT_SHARE = 0.1;        // of an encoder count that a window's mean may wander by
 constexpr double KURTOSIS_FLOOR = 0.3;  // moments of the residual are no normal quantities: these are not looked into
 constexpr double CREST_FLOOR = 0.5;
-constexpr int LEAST_COUNT = 3;  // windows before a spread means anything
+constexpr int LEAST_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {

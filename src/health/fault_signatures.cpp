@@ -261,6 +261,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
   gather.vector(Feature::ORDER_4, Line::WAVE_GENERATOR_4);
   gather.vector(Feature::ORDER_CIRCULAR_SPLINE, Line::CIRCULAR_SPLINE_2);
   gather.amplitude(Feature::CAGE, Line::CAGE);
+  gather.amplitude(Feature::CAGE, Line::CAGE_LOBES);
   gather.amplitude(Feature::BALL, Line::BALL);
   gather.amplitude(Feature::BALL, Line::BALL_DOUBLE);
   gather.amplitude(Feature::OUTER, Line::OUTER);

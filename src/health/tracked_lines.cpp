@@ -21,6 +21,7 @@ LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& be
   set(Line::WAVE_GENERATOR_4, 2.0 * LOBES);
   set(Line::CIRCULAR_SPLINE_2, LOBES * (1.0 - 1.0 / nominalRatio(gear)));
   set(Line::CAGE, cage);
+  set(Line::CAGE_LOBES, LOBES * (1.0 - cage));
   set(Line::BALL, ball);
   set(Line::BALL_DOUBLE, 2.0 * ball);
   set(Line::OUTER, outer);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <vector>
@@ -37,6 +38,86 @@ EffortStatus readEffort(const sensor_msgs::JointState& message, const std::strin
   effort = message.effort[index];
   return EffortStatus::FOUND;
 }
+
+/// Where each indicator stands in the message.
+struct IndicatorField
+{
+  double harmonic_joint_twin::Indicators::*field;
+  std::size_t indicator;
+};
+struct PhaseField
+{
+  double harmonic_joint_twin::Indicators::*field;
+  LineSignal signal;
+  Line line;
+};
+
+constexpr std::size_t lineIndex(LineSignal signal, Line line)
+{
+  return amplitudeIndex(signal, index(line));
+}
+
+constexpr LineSignal ERROR_LINE = LineSignal::KINEMATIC_ERROR;
+constexpr LineSignal TORQUE_LINE = LineSignal::MOTOR_TORQUE;
+using IndicatorsMessage = harmonic_joint_twin::Indicators;
+
+const std::array<IndicatorField, SCALAR_COUNT + LINE_SIGNALS * LINE_COUNT> INDICATOR_FIELDS{ {
+    { &IndicatorsMessage::ratio_deviation, indexOf(ScalarIndicator::RATIO_DEVIATION) },
+    { &IndicatorsMessage::kinematic_error, indexOf(ScalarIndicator::KINEMATIC_ERROR) },
+    { &IndicatorsMessage::torsional_stiffness, indexOf(ScalarIndicator::TORSIONAL_STIFFNESS) },
+    { &IndicatorsMessage::lost_motion, indexOf(ScalarIndicator::LOST_MOTION) },
+    { &IndicatorsMessage::hysteresis_area, indexOf(ScalarIndicator::HYSTERESIS_AREA) },
+    { &IndicatorsMessage::running_torque, indexOf(ScalarIndicator::RUNNING_TORQUE) },
+    { &IndicatorsMessage::coulomb_torque, indexOf(ScalarIndicator::COULOMB_TORQUE) },
+    { &IndicatorsMessage::viscous_friction, indexOf(ScalarIndicator::VISCOUS_FRICTION) },
+    { &IndicatorsMessage::efficiency, indexOf(ScalarIndicator::EFFICIENCY) },
+    { &IndicatorsMessage::residual_rms, indexOf(ScalarIndicator::RESIDUAL_RMS) },
+    { &IndicatorsMessage::residual_kurtosis, indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) },
+    { &IndicatorsMessage::residual_crest, indexOf(ScalarIndicator::RESIDUAL_CREST) },
+    { &IndicatorsMessage::error_wave_generator_1, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_1) },
+    { &IndicatorsMessage::error_wave_generator_2, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_2) },
+    { &IndicatorsMessage::error_wave_generator_4, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_4) },
+    { &IndicatorsMessage::error_circular_spline_2, lineIndex(ERROR_LINE, Line::CIRCULAR_SPLINE_2) },
+    { &IndicatorsMessage::error_cage, lineIndex(ERROR_LINE, Line::CAGE) },
+    { &IndicatorsMessage::error_cage_lobes, lineIndex(ERROR_LINE, Line::CAGE_LOBES) },
+    { &IndicatorsMessage::error_ball, lineIndex(ERROR_LINE, Line::BALL) },
+    { &IndicatorsMessage::error_ball_double, lineIndex(ERROR_LINE, Line::BALL_DOUBLE) },
+    { &IndicatorsMessage::error_outer, lineIndex(ERROR_LINE, Line::OUTER) },
+    { &IndicatorsMessage::error_outer_below, lineIndex(ERROR_LINE, Line::OUTER_BELOW) },
+    { &IndicatorsMessage::error_outer_above, lineIndex(ERROR_LINE, Line::OUTER_ABOVE) },
+    { &IndicatorsMessage::error_inner, lineIndex(ERROR_LINE, Line::INNER) },
+    { &IndicatorsMessage::error_inner_below, lineIndex(ERROR_LINE, Line::INNER_BELOW) },
+    { &IndicatorsMessage::error_inner_above, lineIndex(ERROR_LINE, Line::INNER_ABOVE) },
+    { &IndicatorsMessage::error_tooth_pass, lineIndex(ERROR_LINE, Line::TOOTH_PASS) },
+    { &IndicatorsMessage::error_tooth_pass_above, lineIndex(ERROR_LINE, Line::TOOTH_PASS_ABOVE) },
+    { &IndicatorsMessage::torque_wave_generator_1, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_1) },
+    { &IndicatorsMessage::torque_wave_generator_2, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_2) },
+    { &IndicatorsMessage::torque_wave_generator_4, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_4) },
+    { &IndicatorsMessage::torque_circular_spline_2, lineIndex(TORQUE_LINE, Line::CIRCULAR_SPLINE_2) },
+    { &IndicatorsMessage::torque_cage, lineIndex(TORQUE_LINE, Line::CAGE) },
+    { &IndicatorsMessage::torque_cage_lobes, lineIndex(TORQUE_LINE, Line::CAGE_LOBES) },
+    { &IndicatorsMessage::torque_ball, lineIndex(TORQUE_LINE, Line::BALL) },
+    { &IndicatorsMessage::torque_ball_double, lineIndex(TORQUE_LINE, Line::BALL_DOUBLE) },
+    { &IndicatorsMessage::torque_outer, lineIndex(TORQUE_LINE, Line::OUTER) },
+    { &IndicatorsMessage::torque_outer_below, lineIndex(TORQUE_LINE, Line::OUTER_BELOW) },
+    { &IndicatorsMessage::torque_outer_above, lineIndex(TORQUE_LINE, Line::OUTER_ABOVE) },
+    { &IndicatorsMessage::torque_inner, lineIndex(TORQUE_LINE, Line::INNER) },
+    { &IndicatorsMessage::torque_inner_below, lineIndex(TORQUE_LINE, Line::INNER_BELOW) },
+    { &IndicatorsMessage::torque_inner_above, lineIndex(TORQUE_LINE, Line::INNER_ABOVE) },
+    { &IndicatorsMessage::torque_tooth_pass, lineIndex(TORQUE_LINE, Line::TOOTH_PASS) },
+    { &IndicatorsMessage::torque_tooth_pass_above, lineIndex(TORQUE_LINE, Line::TOOTH_PASS_ABOVE) },
+} };
+
+const std::array<PhaseField, LINE_SIGNALS * PHASE_LOCKED> PHASE_FIELDS{ {
+    { &IndicatorsMessage::error_wave_generator_1_phase, ERROR_LINE, Line::WAVE_GENERATOR_1 },
+    { &IndicatorsMessage::error_wave_generator_2_phase, ERROR_LINE, Line::WAVE_GENERATOR_2 },
+    { &IndicatorsMessage::error_wave_generator_4_phase, ERROR_LINE, Line::WAVE_GENERATOR_4 },
+    { &IndicatorsMessage::error_circular_spline_2_phase, ERROR_LINE, Line::CIRCULAR_SPLINE_2 },
+    { &IndicatorsMessage::torque_wave_generator_1_phase, TORQUE_LINE, Line::WAVE_GENERATOR_1 },
+    { &IndicatorsMessage::torque_wave_generator_2_phase, TORQUE_LINE, Line::WAVE_GENERATOR_2 },
+    { &IndicatorsMessage::torque_wave_generator_4_phase, TORQUE_LINE, Line::WAVE_GENERATOR_4 },
+    { &IndicatorsMessage::torque_circular_spline_2_phase, TORQUE_LINE, Line::CIRCULAR_SPLINE_2 },
+} };
 }  // namespace
 
 sensor_msgs::JointState makeJointStates(const JointNames& names)
@@ -196,58 +277,35 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   message.direction = indicators.point.direction;
   message.load = indicators.point.load;
   message.temperature = indicators.point.temperature;
-  message.ratio_deviation = indicators[ScalarIndicator::RATIO_DEVIATION];
-  message.kinematic_error = indicators[ScalarIndicator::KINEMATIC_ERROR];
-  message.torsional_stiffness = indicators[ScalarIndicator::TORSIONAL_STIFFNESS];
-  message.lost_motion = indicators[ScalarIndicator::LOST_MOTION];
-  message.hysteresis_area = indicators[ScalarIndicator::HYSTERESIS_AREA];
-  message.running_torque = indicators[ScalarIndicator::RUNNING_TORQUE];
-  message.coulomb_torque = indicators[ScalarIndicator::COULOMB_TORQUE];
-  message.viscous_friction = indicators[ScalarIndicator::VISCOUS_FRICTION];
-  message.efficiency = indicators[ScalarIndicator::EFFICIENCY];
-  message.residual_rms = indicators[ScalarIndicator::RESIDUAL_RMS];
-  message.residual_kurtosis = indicators[ScalarIndicator::RESIDUAL_KURTOSIS];
-  message.residual_crest = indicators[ScalarIndicator::RESIDUAL_CREST];
-  const LineSignal error = LineSignal::KINEMATIC_ERROR;
-  message.error_wave_generator_1 = indicators.amplitude(error, Line::WAVE_GENERATOR_1);
-  message.error_wave_generator_2 = indicators.amplitude(error, Line::WAVE_GENERATOR_2);
-  message.error_wave_generator_4 = indicators.amplitude(error, Line::WAVE_GENERATOR_4);
-  message.error_circular_spline_2 = indicators.amplitude(error, Line::CIRCULAR_SPLINE_2);
-  message.error_cage = indicators.amplitude(error, Line::CAGE);
-  message.error_ball = indicators.amplitude(error, Line::BALL);
-  message.error_ball_double = indicators.amplitude(error, Line::BALL_DOUBLE);
-  message.error_outer = indicators.amplitude(error, Line::OUTER);
-  message.error_outer_below = indicators.amplitude(error, Line::OUTER_BELOW);
-  message.error_outer_above = indicators.amplitude(error, Line::OUTER_ABOVE);
-  message.error_inner = indicators.amplitude(error, Line::INNER);
-  message.error_inner_below = indicators.amplitude(error, Line::INNER_BELOW);
-  message.error_inner_above = indicators.amplitude(error, Line::INNER_ABOVE);
-  message.error_tooth_pass = indicators.amplitude(error, Line::TOOTH_PASS);
-  message.error_tooth_pass_above = indicators.amplitude(error, Line::TOOTH_PASS_ABOVE);
-  message.error_wave_generator_1_phase = indicators.phase(error, Line::WAVE_GENERATOR_1);
-  message.error_wave_generator_2_phase = indicators.phase(error, Line::WAVE_GENERATOR_2);
-  message.error_wave_generator_4_phase = indicators.phase(error, Line::WAVE_GENERATOR_4);
-  message.error_circular_spline_2_phase = indicators.phase(error, Line::CIRCULAR_SPLINE_2);
-  const LineSignal torque = LineSignal::MOTOR_TORQUE;
-  message.torque_wave_generator_1 = indicators.amplitude(torque, Line::WAVE_GENERATOR_1);
-  message.torque_wave_generator_2 = indicators.amplitude(torque, Line::WAVE_GENERATOR_2);
-  message.torque_wave_generator_4 = indicators.amplitude(torque, Line::WAVE_GENERATOR_4);
-  message.torque_circular_spline_2 = indicators.amplitude(torque, Line::CIRCULAR_SPLINE_2);
-  message.torque_cage = indicators.amplitude(torque, Line::CAGE);
-  message.torque_ball = indicators.amplitude(torque, Line::BALL);
-  message.torque_ball_double = indicators.amplitude(torque, Line::BALL_DOUBLE);
-  message.torque_outer = indicators.amplitude(torque, Line::OUTER);
-  message.torque_outer_below = indicators.amplitude(torque, Line::OUTER_BELOW);
-  message.torque_outer_above = indicators.amplitude(torque, Line::OUTER_ABOVE);
-  message.torque_inner = indicators.amplitude(torque, Line::INNER);
-  message.torque_inner_below = indicators.amplitude(torque, Line::INNER_BELOW);
-  message.torque_inner_above = indicators.amplitude(torque, Line::INNER_ABOVE);
-  message.torque_tooth_pass = indicators.amplitude(torque, Line::TOOTH_PASS);
-  message.torque_tooth_pass_above = indicators.amplitude(torque, Line::TOOTH_PASS_ABOVE);
-  message.torque_wave_generator_1_phase = indicators.phase(torque, Line::WAVE_GENERATOR_1);
-  message.torque_wave_generator_2_phase = indicators.phase(torque, Line::WAVE_GENERATOR_2);
-  message.torque_wave_generator_4_phase = indicators.phase(torque, Line::WAVE_GENERATOR_4);
-  message.torque_circular_spline_2_phase = indicators.phase(torque, Line::CIRCULAR_SPLINE_2);
+  for (const IndicatorField& entry : INDICATOR_FIELDS)
+  {
+    message.*entry.field = indicators.values[entry.indicator];
+  }
+  for (const PhaseField& entry : PHASE_FIELDS)
+  {
+    message.*entry.field = indicators.phase(entry.signal, entry.line);
+  }
+}
+
+SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message) noexcept
+{
+  SignalIndicators indicators;
+  indicators.stamp = fromRosTime(message.window_end);
+  indicators.windows = message.windows;
+  indicators.turns = message.turns;
+  indicators.point = { message.speed, message.direction, message.load, message.temperature };
+  for (const IndicatorField& entry : INDICATOR_FIELDS)
+  {
+    indicators.values[entry.indicator] = message.*entry.field;
+  }
+  for (const PhaseField& entry : PHASE_FIELDS)
+  {
+    const std::size_t line = index(entry.line);
+    const double amplitude = indicators.values[amplitudeIndex(entry.signal, line)];
+    indicators.values[cosineIndex(entry.signal, line)] = amplitude * std::cos(message.*entry.field);
+    indicators.values[sineIndex(entry.signal, line)] = -amplitude * std::sin(message.*entry.field);
+  }
+  return indicators;
 }
 
 harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults)

@@ -92,6 +92,7 @@ TEST(TrackedOrders, AreThoseOfTheGearAndItsBearing)
   const LineOrders orders = trackedOrders(parameters.gear, parameters.bearing);
   EXPECT_NEAR(orders[index(Line::CIRCULAR_SPLINE_2)], 1.9802, 5e-5);
   EXPECT_NEAR(orders[index(Line::CAGE)], 0.4487, 5e-5);
+  EXPECT_NEAR(orders[index(Line::CAGE_LOBES)], 1.10255, 5e-5);
   EXPECT_NEAR(orders[index(Line::BALL)], 4.8244, 5e-5);
   EXPECT_NEAR(orders[index(Line::OUTER)], 10.3207, 5e-5);
   EXPECT_NEAR(orders[index(Line::INNER)], 12.6793, 5e-5);
@@ -313,11 +314,11 @@ TEST(SignalMonitor, PassesOverSamplesThatSayNothing)
 
 TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)
 {
-  const Parameters parameters = shippedParameters({ "indicators.window_turns=20.0", "indicators.baseline_windows=3" });
+  const Parameters parameters = shippedParameters({ "indicators.window_turns=20.0", "indicators.baseline_windows=8" });
   Synthetic joint(parameters);
   Assessor assessor(parameters);
   const std::uint64_t before = allocationCount();
-  for (int window = 0; window < 6; ++window)
+  for (int window = 0; window < 11; ++window)
   {
     assessor.take(joint.nextWindow());
   }
@@ -325,6 +326,8 @@ TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)
 }
 
 /// A joint whose order-2 line and noise are healthy until told otherwise.
+const int LEARNING = shippedParameters().indicators.baseline_windows;
+
 class Assessed : public testing::Test
 {
 protected:
@@ -358,7 +361,7 @@ protected:
 
 TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
 {
-  EXPECT_EQ(windows(10).state, AssessmentState::LEARNING);
+  EXPECT_EQ(windows(LEARNING).state, AssessmentState::LEARNING);
   for (int i = 0; i < 30; ++i)
   {
     const Assessment& assessment = windows(1);
@@ -370,7 +373,7 @@ TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
 
 TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
 {
-  windows(10);
+  windows(LEARNING);
   faulty_ = Line::OUTER;
   fault_amplitude_ = 2.0;
   EXPECT_EQ(windows(1).level, HealthLevel::OK) << "one window is not enough";
@@ -389,14 +392,14 @@ TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
 
 TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
 {
-  windows(10);
+  windows(LEARNING);
   fault_amplitude_ = 1.5;  // at a right angle to the healthy 5 arcsec: the amplitude only grows to 5.2
   EXPECT_GE(windows(2).level, HealthLevel::WARN);
 }
 
 TEST_F(Assessed, DragIsPutDownToTheLubricant)
 {
-  windows(10);
+  windows(LEARNING);
   drag_ = 1.6;
   const Assessment& assessment = windows(2);
   EXPECT_GE(assessment.level, HealthLevel::WARN);
@@ -405,7 +408,7 @@ TEST_F(Assessed, DragIsPutDownToTheLubricant)
 
 TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
 {
-  windows(10);
+  windows(LEARNING);
   joint_.speed = [](double) { return 30.0; };
   drag_ = 0.5;
   windows(1);  // the window that begins at the old speed

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
@@ -64,6 +66,38 @@ TEST(ContactForces, KeepOneEntryPerTooth)
   EXPECT_EQ(message.mesh_force, forces.mesh_force);
   EXPECT_EQ(message.tooth_y, forces.tooth_y);
   EXPECT_EQ(message.rim_tension.size(), 4U);
+}
+
+TEST(Indicators, GoIntoTheMessageAndBack)
+{
+  SignalIndicators indicators;
+  indicators.stamp = 5'000'000'001;
+  indicators.windows = 7;
+  indicators.turns = 101.0;
+  indicators.point = { 100.0, -1.0, 30.0, 25.0 };
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    indicators.values[i] = 1.0 + 0.01 * static_cast<double>(i);
+  }
+  for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+  {
+    for (std::size_t line = 0; line < PHASE_LOCKED; ++line)  // the message has amplitude and phase
+    {
+      indicators.values[amplitudeIndex(signal, line)] =
+          std::hypot(indicators.values[cosineIndex(signal, line)], indicators.values[sineIndex(signal, line)]);
+    }
+  }
+  auto message = makeIndicators(NAMES);
+  fillIndicators(indicators.stamp, indicators, message);
+  const SignalIndicators back = readIndicators(message);
+  EXPECT_EQ(back.stamp, indicators.stamp);
+  EXPECT_EQ(back.windows, indicators.windows);
+  EXPECT_EQ(back.turns, indicators.turns);
+  EXPECT_EQ(back.point.load, indicators.point.load);
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    EXPECT_NEAR(back.values[i], indicators.values[i], 1e-12) << indicatorName(i);
+  }
 }
 
 TEST(MotorTorque, IsTheEffortOfTheJointOrElseOfItsMotor)

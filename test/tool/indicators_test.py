@@ -76,6 +76,20 @@ class Indicators(tool.ToolTest):
             self.assertAlmostEqual(one["indicators"]["running_torque"], other["indicators"]["running_torque"],
                                    delta=1e-9)
 
+    def test_windows_that_were_published_are_those_of_the_signals(self):
+        run = ["--torque", 0.2, "--set", "publish.joint_states_rate=2000", "--set", "publish.indicators_rate=100",
+               "--set", "indicators.window_turns=5.0"]
+        for name, seconds in [("a.bag", 1.5), ("b.bag", 1.2)]:
+            self.succeed("simulate", *run, "--duration", seconds, "--out", name)
+        short = ["--set", "indicators.window_turns=5.0"]
+        told = self.succeed_json("indicators", "--windows", "a.bag", "b.bag", *short)["windows"]
+        self.assertEqual({window["recording"] for window in told}, {"a.bag", "b.bag"})
+        found = self.succeed_json("indicators", "a.bag", "b.bag", *short)["windows"]
+        self.assertEqual([window["recording"] for window in told], [window["recording"] for window in found])
+        for one, other in zip(told, found):
+            for name in ["kinematic_error", "running_torque", "error_wave_generator_2_cos"]:
+                self.assertAlmostEqual(one["indicators"][name], other["indicators"][name], delta=1e-8)
+
     def test_what_cannot_be_read_is_said(self):
         self.write("short.csv", recording(seconds=1.0))
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")

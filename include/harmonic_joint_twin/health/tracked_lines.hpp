@@ -17,6 +17,7 @@ enum class Line : std::size_t
   WAVE_GENERATOR_4,   ///< its second harmonic
   CIRCULAR_SPLINE_2,  ///< each lobe at a place of the circular spline
   CAGE,
+  CAGE_LOBES,   ///< each lobe at a place of the cage
   BALL,         ///< a place on a ball against one race
   BALL_DOUBLE,  ///< against both
   OUTER,
@@ -41,7 +42,7 @@ using LineOrders = std::array<double, LINE_COUNT>;  ///< [1/turn of the motor]
 
 /// Law:   cage   f_c = (1 - d / D) / 2                   outer race standing, inner race with the motor
 ///        outer  Z f_c,   inner  Z (1 - f_c),   ball  D / (2 d) (1 - (d / D)^2)
-///        lobe at a place of the circular spline  2 (1 - 1 / i)
+///        lobe at a place of the cage  2 (1 - f_c),   of the circular spline  2 (1 - 1 / i)
 /// where  d, D, Z  ball diameter, pitch diameter [m], balls [-];  i  nominal ratio [-]
 /// Source: rolling-bearing kinematics without slip, contact angle 0 (e.g. Harris, Rolling Bearing Analysis, ch. 25).
 LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing);

@@ -205,7 +205,7 @@ void visitFields(P& p, Visitor&& visit)
         "K1 is the stiffness at joint torques below this");
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
         "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round");
-  visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 3, 1000 },
+  visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         "windows at one operating point the healthy reference is learned from");
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         "smallest spread of an indicator, as a share of its healthy mean");

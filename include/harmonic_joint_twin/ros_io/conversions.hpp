@@ -48,6 +48,8 @@ void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmoni
 
 harmonic_joint_twin::Indicators makeIndicators(const JointNames& names);
 void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
+/// All but the uncertainties, which the message does not tell.
+SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message) noexcept;
 
 constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closing zero included
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -20,6 +22,7 @@
 #include "harmonic_joint_twin/health/baseline_file.hpp"
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/conversions.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
@@ -31,12 +34,13 @@ using Json = nlohmann::ordered_json;
 
 struct IndicatorsOptions : CommonOptions
 {
-  std::string recording;
+  std::vector<std::string> recordings;
   std::string model;
   std::string baseline;
   std::string save_baseline;
   std::string out;
   std::string joint_namespace{ DEFAULT_NAMESPACE };
+  bool windows{};  ///< the recordings hold the windows' indicators, not the signals
   std::optional<std::string> states_topic;
   std::optional<std::string> load_topic;
   SignalSource source;
@@ -45,6 +49,7 @@ struct IndicatorsOptions : CommonOptions
 /// One window and what was made of it.
 struct WindowResult
 {
+  std::string recording;
   SignalIndicators indicators;
   Deviations deviations;
   Assessment assessment;
@@ -85,7 +90,7 @@ Json numberOrNull(double value)
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// All windows of a recording.
+/// All windows of a recording of signals.
 std::vector<SignalIndicators> readWindows(const std::string& path, const SignalSource& source,
                                           const Parameters& parameters, std::uint64_t& refused)
 {
@@ -101,6 +106,30 @@ std::vector<SignalIndicators> readWindows(const std::string& path, const SignalS
                 return interruptSignal() == 0;
               });
   refused = monitor.refused();
+  return windows;
+}
+
+/// What was published of the windows while they were recorded; each message repeats the last window.
+std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
+{
+  rosbag::Bag bag;
+  try
+  {
+    bag.open(path, rosbag::bagmode::Read);
+  }
+  catch (const std::exception& error)
+  {
+    throw InputError(path + " cannot be read as a bag: " + error.what());
+  }
+  std::vector<SignalIndicators> windows;
+  for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
+  {
+    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
+    if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
+    {
+      windows.push_back(readIndicators(*message));
+    }
+  }
   return windows;
 }
 
@@ -130,7 +159,8 @@ Json toJson(const WindowResult& window)
     scores[indicatorName(i)] = numberOrNull(window.deviations[i].score);
   }
   const OperatingPoint& point = window.indicators.point;
-  return { { "time", toSeconds(window.indicators.stamp) },
+  return { { "recording", window.recording },
+           { "time", toSeconds(window.indicators.stamp) },
            { "turns", window.indicators.turns },
            { "speed", point.speed },
            { "direction", point.direction },
@@ -203,26 +233,14 @@ void printSummary(const std::vector<WindowResult>& windows)
   printValues(lines);
 }
 
-int run(IndicatorsOptions options)
+/// All windows of a recording, less those of the model if there is one. @throws InputError if there are none.
+std::vector<SignalIndicators> readRecording(const std::string& path, const IndicatorsOptions& options,
+                                            const Parameters& parameters)
 {
-  const Parameters parameters = loadParameters(options);
-  options.source.joint = parameters.joint.name;
-  options.source.states_topic = options.states_topic.value_or(options.joint_namespace + "/" + topics::JOINT_STATES);
-  options.source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
-  for (const std::string& file : { options.out, options.save_baseline })
-  {
-    if (!file.empty())
-    {
-      requireWritable(file, options.force, options.recording);
-    }
-  }
-  Assessor assessor(parameters);
-  if (!options.baseline.empty())
-  {
-    assessor.give(readBaseline(options.baseline));
-  }
   std::uint64_t refused = 0;
-  std::vector<SignalIndicators> measured = readWindows(options.recording, options.source, parameters, refused);
+  std::vector<SignalIndicators> measured =
+      options.windows ? readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS) :
+                        readWindows(path, options.source, parameters, refused);
   if (!options.model.empty())
   {
     SignalSource model_source;
@@ -243,15 +261,43 @@ int run(IndicatorsOptions options)
   }
   if (measured.empty())
   {
-    throw InputError(options.recording + " is too short for one window (indicators.window_turns = " +
+    throw InputError(path + " is too short for one window (indicators.window_turns = " +
                      shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
                      shortNumber(parameters.indicators.window_time) + " s)");
   }
-  std::vector<WindowResult> windows;
-  for (const SignalIndicators& indicators : measured)
+  return measured;
+}
+
+int run(IndicatorsOptions options)
+{
+  const Parameters parameters = loadParameters(options);
+  options.source.joint = parameters.joint.name;
+  options.source.states_topic = options.states_topic.value_or(options.joint_namespace + "/" + topics::JOINT_STATES);
+  options.source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  for (const std::string& file : { options.out, options.save_baseline })
   {
-    const Assessment assessment = assessor.take(indicators);
-    windows.push_back({ indicators, assessor.deviations(), assessment });
+    if (!file.empty())
+    {
+      requireWritable(file, options.force, options.recordings.front());
+    }
+  }
+  Assessor assessor(parameters);
+  if (!options.baseline.empty())
+  {
+    assessor.give(readBaseline(options.baseline));
+  }
+  std::vector<WindowResult> windows;
+  for (const std::string& recording : options.recordings)
+  {
+    if (!options.baseline.empty())
+    {
+      assessor.reset();  // each is judged for itself
+    }
+    for (const SignalIndicators& indicators : readRecording(recording, options, parameters))
+    {
+      const Assessment assessment = assessor.take(indicators);
+      windows.push_back({ recording, indicators, assessor.deviations(), assessment });
+    }
   }
   if (!options.out.empty())
   {
@@ -312,7 +358,7 @@ void addIndicatorsCommand(CLI::App& app, int& exit_code)
   auto* command = app.add_subcommand("indicators",
                                      "health indicators and assessment of a recording, from encoders and "
                                      "torque or current alone");
-  command->add_option("recording", options->recording, "the recording")
+  command->add_option("recordings", options->recordings, "one recording, or several of the same joint")
       ->required()
       ->type_name("IN.csv|IN.bag")
       ->check(BAG_OR_CSV);
@@ -320,6 +366,8 @@ void addIndicatorsCommand(CLI::App& app, int& exit_code)
       ->add_option("--model", options->model, "the twin's own recording of the same run: its indicators are taken off")
       ->type_name("FILE.csv|FILE.bag")
       ->check(BAG_OR_CSV);
+  command->add_flag("--windows", options->windows,
+                    "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
   command->add_option("--baseline", options->baseline, "healthy reference; default: learned from the first windows")
       ->type_name("FILE.yaml");
   command->add_option("--save-baseline", options->save_baseline, "writes the reference that was learned")

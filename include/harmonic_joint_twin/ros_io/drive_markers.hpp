@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include "harmonic_joint_twin/ContactForces.h"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// How the drive is drawn.
+struct MarkerStyle
+{
+  std::string frame;    ///< of the markers: the drive's axis is its z axis
+  double exaggeration;  ///< radial distances from the middle of the engaged teeth are drawn this many times as long [-]
+  double arrow_length;  ///< of a force [m/N]
+  double full_force;    ///< force of a tooth drawn in full colour [N]
+};
+
+/// The drive as seen along its axis, for rviz, out of one message of contact forces.
+///
+/// Points are where the message says, in the plane z = 0, with radii stretched. Teeth are drawn as plain trapezoids: the
+/// flanks' shape is not shown.
+///
+/// | namespace of the marker | shows |
+/// |---|---|
+/// | `wave_generator` | its ellipse and major axis |
+/// | `flexspline` | rim and teeth, coloured by the force on the flank |
+/// | `circular_spline` | ring and teeth |
+/// | `wave_generator_force` | arrow onto every tooth that it presses, along the rim's normal |
+/// | `leading_flank_force`, `trailing_flank_force` | arrow onto every loaded flank, along its normal |
+/// | `loads` | teeth loaded and largest forces, as text |
+class DriveMarkers
+{
+public:
+  DriveMarkers(const GearParameters& gear, double flank_angle, const MarkerStyle& style);
+
+  /// @throws std::invalid_argument unless every array has as many entries as the flexspline has teeth.
+  visualization_msgs::MarkerArray draw(const harmonic_joint_twin::ContactForces& forces) const;
+
+private:
+  GearParameters gear_;
+  double flank_angle_;
+  MarkerStyle style_;
+  double fixed_radius_;  // drawn where it is [m]
+};
+}  // namespace hjt

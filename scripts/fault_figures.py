@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One figure for each kind of fault: healthy against faulty where it shows, sensors without error."""
+import csv
+import math
+import subprocess
+import sys
+
+import h5py
+import matplotlib
+import numpy
+
+from health_runs import JUDGED, RATIO, TOP_SEVERITY, place_of
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+
+ARCSEC = math.pi / 180.0 / 3600.0
+RATE = 1000.0
+TURNS = 8                # of the motor in a spectrum
+
+DUTIES = {
+    "swing": ("30°/s, ±130 N·m once a turn of the joint", 12.6, f"{{constant: {math.radians(30.0):.6f}}}",
+              f"{{sinus: {{mean: 0.0, amplitude: 130.0, frequency: {1.0 / 12.0:.9f}, phase: 0.0}}}}"),
+    "steady": ("15°/s, 60 N·m", 2.5, f"{{constant: {math.radians(15.0):.6f}}}", "{constant: 60.0}"),
+    "speeds": ("no load", 22.0, f"{{trapezoid: {{peak: {math.radians(150.0):.6f}, slope: {math.radians(15.0):.6f}, hold: 1.0, pause: 1.0}}}}",
+               "{constant: 0.0}"),
+}
+
+
+def severity(kind):
+    return TOP_SEVERITY.get(kind, 1.0)
+
+
+def plan(duty, classes):
+    _, duration, speed, load = DUTIES[duty]
+    return "\n".join([
+        f"name: {duty}", "seed: 1", f"duration: {duration}", "set:", "  solver.scene: auto", "repeats: 1", "duty:",
+        f"  - name: {duty}", f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {load}", "classes:", "  healthy: []",
+        *classes, "record:", "  format: hdf5", "  start: 0.4", "  deflate: 0", "  groups:",
+        f"    signals: {{rate: {RATE}, type: float64, columns: [motor_angle, output_angle, motor_velocity, motor_torque, "
+        "load_torque]}"]) + "\n"
+
+
+def record(tool, work, duty, kinds):
+    """Signals of the healthy run and of each faulty one, by kind."""
+    classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: {severity(kind['kind'])}, "
+               f"place: {place_of(kind, JUDGED.tooth)}, onset: 0.0}}"
+               for kind in kinds]
+    path, out = work / f"figure_{duty}.yaml", work / f"figure_{duty}"
+    path.write_text(plan(duty, classes))
+    done = subprocess.run([tool, "sweep", path, "--out", out], check=False)
+    if done.returncode not in (0, 1):
+        sys.exit(f"fault_figures: the sweep of {path} ended with {done.returncode}")
+    runs = {}
+    with open(out / "index.csv", newline="", encoding="utf-8") as index:
+        for row in csv.DictReader(index):
+            if row["status"] == "ok":
+                with h5py.File(out / row["file"], "r") as file:
+                    runs[row["fault_kind"] or "healthy"] = {name: data[:] for name, data in file["signals"].items()}
+    return runs
+
+
+def torsion(run):
+    return (run["motor_angle"] / RATIO - run["output_angle"]) / ARCSEC
+
+
+def draw_loop(axis, run, **style):
+    axis.plot(torsion(run), run["load_torque"], **style)
+
+
+def draw_friction(axis, run, **style):
+    axis.plot(run["motor_velocity"], 1e3 * (run["motor_torque"] - run["load_torque"] / RATIO), **style)
+
+
+def spectrum(run):
+    """Amplitudes [arcsec] of the kinematic error over orders, cycles a turn of the motor."""
+    even = numpy.arange(run["motor_angle"][0], run["motor_angle"][0] + TURNS * 2.0 * math.pi, 2.0 * math.pi / 256)
+    error = numpy.interp(even, run["motor_angle"], torsion(run))
+    window = numpy.hanning(len(even))
+    amplitudes = 2.0 * numpy.abs(numpy.fft.rfft((error - error.mean()) * window)) / window.sum()
+    return numpy.arange(len(amplitudes)) / TURNS, amplitudes
+
+
+def draw_spectrum(axis, run, **style):
+    orders, amplitudes = spectrum(run)
+    shown = orders <= 16.0
+    axis.plot(orders[shown], amplitudes[shown], **style)
+
+
+def draw_turn(axis, run, **style):
+    turns = (run["motor_angle"] - run["motor_angle"][0]) / (2.0 * math.pi)
+    shown = turns <= 2.0
+    axis.plot(turns[shown], torsion(run)[shown] - torsion(run)[shown].mean(), **style)
+
+
+VIEWS = {draw_loop: ("swing", "torsion [″]", "torque [N·m]"),
+         draw_friction: ("speeds", "motor speed [rad/s]", "motor torque less load [mN·m]"),
+         draw_spectrum: ("steady", "cycles a turn of the motor", "kinematic error [″]"),
+         draw_turn: ("steady", "turns of the motor", "kinematic error [″]")}
+SHOWN = {"interface_wear": draw_loop, "rear_section_crack": draw_loop, "lubricant_degradation": draw_friction,
+         "tooth_wear": draw_loop, "flange_crack": draw_loop, "wave_generator_wear": draw_loop, "buckling": draw_loop,
+         "ratcheting": draw_turn}  # the others: draw_spectrum
+
+
+def draw_all(tool, work, kinds, images):
+    images.mkdir(parents=True, exist_ok=True)
+    by_duty = {}
+    for kind in kinds:
+        view = SHOWN.get(kind["kind"], draw_spectrum)
+        by_duty.setdefault(VIEWS[view][0], []).append((kind, view))
+    for duty, shown in by_duty.items():
+        runs = record(tool, work, duty, [kind for kind, _ in shown])
+        for kind, view in shown:
+            name = kind["kind"]
+            figure, axis = plt.subplots(figsize=(5.0, 2.9), constrained_layout=True)
+            if name in runs:
+                view(axis, runs[name], color="C3", linewidth=1.1, label=f"{name}, severity {severity(name):g}")
+            view(axis, runs["healthy"], color="C0", linewidth=1.1, label="healthy")
+            axis.set_xlabel(VIEWS[view][1])
+            axis.set_ylabel(VIEWS[view][2])
+            axis.set_title(DUTIES[duty][0], loc="right", fontsize=8)
+            axis.grid(alpha=0.3)
+            axis.legend(frameon=False, fontsize=8)
+            figure.savefig(images / f"{name}.png", dpi=80)
+            plt.close(figure)

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws a twin's drive for rviz: contact forces in, markers out.
+#include <csignal>
+#include <stdexcept>
+#include <string>
+
+#include <ros/ros.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/ros_io/drive_markers.hpp"
+#include "harmonic_joint_twin/ros_io/parameter_server.hpp"
+
+namespace
+{
+/// @throws hjt::ParameterError if the parameter is missing, no number, or not above zero.
+double readPositive(const ros::NodeHandle& node, const std::string& name, const std::string& unit)
+{
+  double value = 0.0;
+  if (!node.getParam(name, value) || !(value > 0.0))
+  {
+    throw hjt::ParameterError(node.resolveName(name) + ": a number above 0 [" + unit + "] is needed");
+  }
+  return value;
+}
+
+/// @throws hjt::ParameterError if the parameter is missing or empty.
+std::string readText(const ros::NodeHandle& node, const std::string& name, const std::string& meaning)
+{
+  std::string value;
+  if (!node.getParam(name, value) || value.empty())
+  {
+    throw hjt::ParameterError(node.resolveName(name) + ": " + meaning + " is needed");
+  }
+  return value;
+}
+
+hjt::DriveMarkers readMarkers(const ros::NodeHandle& node)
+{
+  const std::string twin = ros::names::resolve(readText(node, "twin", "the name of the twin's node"));
+  const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(twin));
+  return { parameters.gear,
+           parameters.mesh.flank_angle,
+           { readText(node, "frame", "a frame to draw in"), readPositive(node, "exaggeration", "-"),
+             readPositive(node, "arrow_length", "m/N"), readPositive(node, "full_force", "N") } };
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "drive_markers");
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  ros::NodeHandle node("~");
+  try
+  {
+    const hjt::DriveMarkers markers = readMarkers(node);
+    ros::Publisher publisher = node.advertise<visualization_msgs::MarkerArray>("markers", 1);
+    const ros::Subscriber subscriber = ros::NodeHandle().subscribe<harmonic_joint_twin::ContactForces>(
+        "contact_forces", 1,
+        [&markers, &publisher](const harmonic_joint_twin::ContactForces::ConstPtr& forces)
+        {
+          try
+          {
+            publisher.publish(markers.draw(*forces));
+          }
+          catch (const std::invalid_argument& error)
+          {
+            ROS_ERROR_STREAM_THROTTLE(5.0, error.what());
+          }
+        });
+    ros::spin();
+  }
+  catch (const hjt::ParameterError& error)
+  {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
+  return 0;
+}

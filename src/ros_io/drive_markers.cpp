@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/drive_markers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+
+namespace hjt
+{
+namespace
+{
+using visualization_msgs::Marker;
+using Point = Eigen::Vector2d;
+
+constexpr double LINE_WIDTH = 0.2e-3;   // [m]
+constexpr double TEXT_HEIGHT = 1.8e-3;  // [m]
+constexpr double ARROW_WIDTH = 0.2e-3;  // of the shaft [m]
+constexpr double ARROW_HEAD = 0.7e-3;   // length and width [m]
+constexpr double LEAST_ARROW = 0.2e-3;  // shorter ones are left out [m]
+constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
+constexpr double ROOT_SHARE = 0.28;
+constexpr double RING_HEIGHTS = 2.0;    // circular spline behind its roots, in tooth heights
+constexpr double ROOT_CLEARANCE = 1.2;  // depth of its spaces, in tooth heights
+constexpr int ELLIPSE_POINTS = 180;
+
+std_msgs::ColorRGBA color(float red, float green, float blue)
+{
+  std_msgs::ColorRGBA made;
+  made.r = red;
+  made.g = green;
+  made.b = blue;
+  made.a = 1.0F;
+  return made;
+}
+
+const std_msgs::ColorRGBA STEEL = color(0.62F, 0.66F, 0.70F);
+const std_msgs::ColorRGBA DARK_STEEL = color(0.35F, 0.39F, 0.44F);
+const std_msgs::ColorRGBA FULL_LOAD = color(0.90F, 0.10F, 0.10F);
+const std_msgs::ColorRGBA GREEN = color(0.25F, 0.65F, 0.35F);
+const std_msgs::ColorRGBA ORANGE = color(0.95F, 0.55F, 0.10F);
+const std_msgs::ColorRGBA BLUE = color(0.20F, 0.45F, 0.90F);
+const std_msgs::ColorRGBA BLACK = color(0.05F, 0.05F, 0.05F);
+
+/// From steel at no force to red at the full one and beyond.
+std_msgs::ColorRGBA loadColor(double force, double full_force)
+{
+  const auto share = static_cast<float>(std::min(1.0, force / full_force));
+  return color(STEEL.r + share * (FULL_LOAD.r - STEEL.r), STEEL.g + share * (FULL_LOAD.g - STEEL.g),
+               STEEL.b + share * (FULL_LOAD.b - STEEL.b));
+}
+
+Marker makeMarker(const std_msgs::Header& header, const char* name, int type, const std_msgs::ColorRGBA& made)
+{
+  Marker marker;
+  marker.header = header;
+  marker.ns = name;
+  marker.type = type;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  marker.color = made;
+  return marker;
+}
+
+void addPoint(Marker& marker, const Point& at)
+{
+  geometry_msgs::Point point;
+  point.x = at.x();
+  point.y = at.y();
+  marker.points.push_back(point);
+}
+
+/// Both faces: rviz does not draw the back of a triangle.
+void addTriangle(Marker& marker, const Point& a, const Point& b, const Point& c, const std_msgs::ColorRGBA& made)
+{
+  for (const Point* corner : { &a, &b, &c, &a, &c, &b })
+  {
+    addPoint(marker, *corner);
+    marker.colors.push_back(made);
+  }
+}
+
+void addQuad(Marker& marker, const Point& a, const Point& b, const Point& c, const Point& d,
+             const std_msgs::ColorRGBA& made)
+{
+  addTriangle(marker, a, b, c, made);
+  addTriangle(marker, a, c, d, made);
+}
+
+/// An arrow that ends at `tip`, `along` long and directed [m].
+void addArrow(Marker& marker, const Point& tip, const Point& along)
+{
+  const double length = along.norm();
+  if (!(length > LEAST_ARROW))
+  {
+    return;
+  }
+  const Point ahead = along / length;
+  const Point aside(-ahead.y(), ahead.x());
+  const Point neck = tip - std::min(length, ARROW_HEAD) * ahead;
+  const Point tail = tip - along;
+  addQuad(marker, tail - 0.5 * ARROW_WIDTH * aside, tail + 0.5 * ARROW_WIDTH * aside, neck + 0.5 * ARROW_WIDTH * aside,
+          neck - 0.5 * ARROW_WIDTH * aside, marker.color);
+  addTriangle(marker, neck - 0.5 * ARROW_HEAD * aside, neck + 0.5 * ARROW_HEAD * aside, tip, marker.color);
+}
+
+Point direction(double angle)
+{
+  return { std::cos(angle), std::sin(angle) };
+}
+
+/// Stretches distances from a circle around the origin.
+struct Stretch
+{
+  double radius;  // of the circle [m]
+  double factor;  // [-]
+
+  Point operator()(const Point& at) const
+  {
+    const double r = at.norm();
+    return at * ((radius + factor * (r - radius)) / r);
+  }
+};
+}  // namespace
+
+DriveMarkers::DriveMarkers(const GearParameters& gear, double flank_angle, const MarkerStyle& style)
+  : gear_(gear)
+  , flank_angle_(flank_angle)
+  , style_(style)
+  , fixed_radius_(gear.flexspline_inner_radius + gear.wave_amplitude + gear.toothMidHeight())
+{
+}
+
+visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::ContactForces& forces) const
+{
+  const auto teeth = static_cast<std::size_t>(gear_.teeth_flexspline);
+  if (forces.tooth_x.size() != teeth || forces.tooth_y.size() != teeth || forces.mesh_force.size() != teeth ||
+      forces.wave_generator_force.size() != teeth)
+  {
+    throw std::invalid_argument("contact forces of " + std::to_string(forces.tooth_x.size()) +
+                                " teeth, but gear.teeth_flexspline is " + std::to_string(teeth));
+  }
+  const Stretch drawn{ fixed_radius_, style_.exaggeration };
+  std_msgs::Header header = forces.header;
+  header.frame_id = style_.frame;
+  Marker wave = makeMarker(header, "wave_generator", Marker::LINE_STRIP, GREEN);
+  Marker axis = makeMarker(header, "wave_generator", Marker::LINE_LIST, GREEN);
+  axis.id = 1;
+  wave.scale.x = axis.scale.x = LINE_WIDTH;
+  Marker flexspline = makeMarker(header, "flexspline", Marker::TRIANGLE_LIST, STEEL);
+  Marker circular = makeMarker(header, "circular_spline", Marker::TRIANGLE_LIST, DARK_STEEL);
+  Marker pressing = makeMarker(header, "wave_generator_force", Marker::TRIANGLE_LIST, GREEN);
+  Marker leading = makeMarker(header, "leading_flank_force", Marker::TRIANGLE_LIST, ORANGE);
+  Marker trailing = makeMarker(header, "trailing_flank_force", Marker::TRIANGLE_LIST, BLUE);
+
+  const double major = gear_.flexspline_inner_radius + gear_.wave_amplitude;
+  const double minor = gear_.flexspline_inner_radius - gear_.wave_amplitude;
+  const Point along = direction(forces.wave_generator_angle);
+  const Point across(-along.y(), along.x());
+  for (int i = 0; i <= ELLIPSE_POINTS; ++i)
+  {
+    const Point at = direction(TWO_PI * i / ELLIPSE_POINTS);
+    addPoint(wave, drawn(major * at.x() * along + minor * at.y() * across));
+  }
+  for (const double side : { -1.0, 1.0 })
+  {
+    addPoint(axis, drawn(side * major * along));
+    addPoint(axis, 0.8 * drawn(side * major * along));
+  }
+
+  const double flexspline_pitch =
+      TWO_PI * (gear_.flexspline_inner_radius + gear_.toothMidHeight()) / gear_.teeth_flexspline;
+  int loaded = 0;
+  double largest = 0.0;
+  double largest_pressing = 0.0;
+  for (std::size_t i = 0; i < teeth; ++i)
+  {
+    const auto point = [&forces, teeth](std::size_t j)
+    { return Point(forces.tooth_x[j % teeth], forces.tooth_y[j % teeth]); };
+    const Point here = point(i);
+    const Point tangent = (point(i + 1) - point(i + teeth - 1)).normalized();
+    const Point outward(tangent.y(), -tangent.x());
+    const double force = std::abs(forces.mesh_force[i]);
+    const std_msgs::ColorRGBA load = loadColor(force, style_.full_force);
+    const Point root = here + gear_.rim_thickness * outward;
+    const Point tip = root + gear_.tooth_height_flexspline * outward;
+    const Point half_root = ROOT_SHARE * flexspline_pitch * tangent;
+    const Point half_tip = TIP_SHARE * flexspline_pitch * tangent;
+    const Point half_rim = 0.5 * flexspline_pitch * tangent;
+    addQuad(flexspline, drawn(here - half_rim), drawn(here + half_rim), drawn(root + half_rim), drawn(root - half_rim),
+            load);
+    addQuad(flexspline, drawn(root - half_root), drawn(root + half_root), drawn(tip + half_tip), drawn(tip - half_tip),
+            load);
+
+    addArrow(pressing, drawn(here), style_.arrow_length * forces.wave_generator_force[i] * outward);
+    const bool is_leading = forces.mesh_force[i] > 0.0;
+    const Point onto = -std::sin(flank_angle_) * outward + (is_leading ? -1.0 : 1.0) * std::cos(flank_angle_) * tangent;
+    addArrow(is_leading ? leading : trailing, drawn(tip), style_.arrow_length * force * onto);
+
+    loaded += force > 0.0 ? 1 : 0;
+    largest = std::max(largest, force);
+    largest_pressing = std::max(largest_pressing, forces.wave_generator_force[i]);
+  }
+
+  const double spline_tip = gear_.tip_radius_circular_spline;
+  const double spline_root = spline_tip + ROOT_CLEARANCE * gear_.tooth_height_flexspline;
+  const double spline_edge = spline_root + RING_HEIGHTS * gear_.tooth_height_flexspline;
+  const double pitch = TWO_PI / gear_.teeth_circular_spline;
+  for (int i = 0; i < gear_.teeth_circular_spline; ++i)
+  {
+    // A tooth stands half a pitch from the space of the same number.
+    const double middle = forces.output_angle + (i + 0.5) * pitch;
+    const auto at = [&](double radius, double pitches) { return drawn(radius * direction(middle + pitches * pitch)); };
+    addQuad(circular, at(spline_tip, -TIP_SHARE), at(spline_tip, TIP_SHARE), at(spline_root, ROOT_SHARE),
+            at(spline_root, -ROOT_SHARE), DARK_STEEL);
+    addQuad(circular, at(spline_root, -0.5), at(spline_root, 0.5), at(spline_edge, 0.5), at(spline_edge, -0.5),
+            DARK_STEEL);
+  }
+
+  Marker text = makeMarker(header, "loads", Marker::TEXT_VIEW_FACING, BLACK);
+  char line[120];
+  std::snprintf(line, sizeof line, "%d teeth loaded, at most %.0f N; wave generator at most %.0f N", loaded, largest,
+                largest_pressing);
+  text.text = line;
+  text.scale.z = TEXT_HEIGHT;
+
+  visualization_msgs::MarkerArray array;
+  array.markers = { std::move(wave),     std::move(axis),    std::move(flexspline), std::move(circular),
+                    std::move(pressing), std::move(leading), std::move(trailing),   std::move(text) };
+  // rviz takes a list of triangles without any for an error.
+  for (Marker& marker : array.markers)
+  {
+    marker.action = marker.points.empty() && marker.text.empty() ? Marker::DELETE : Marker::ADD;
+  }
+  return array;
+}
+}  // namespace hjt

@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The drive drawn from a running twin, and its diagnostics sorted by the aggregator."""
+import math
+import sys
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import Float64
+from visualization_msgs.msg import Marker, MarkerArray
+
+from ros_support import OK, PACKAGE, Listener, wait_until
+
+TORQUE = 0.9  # of the motor [N.m]: loads the flanks while the arm is sped up
+
+
+class View(unittest.TestCase):
+    def drawings(self):
+        return [{(marker.ns, marker.id): marker for marker in array.markers} for array in self.markers.messages()]
+
+    def setUp(self):
+        self.markers = Listener("/base/drive_markers/markers", MarkerArray)
+        self.markers.wait_for(1)
+
+    def test_the_whole_drive_is_drawn(self):
+        drawing = self.drawings()[-1]
+        for part in ("flexspline", "circular_spline", "wave_generator"):
+            marker = drawing[part, 0]
+            self.assertEqual(marker.header.frame_id, "base_link", part)
+            self.assertEqual(marker.action, Marker.ADD, part)
+            radii = [math.hypot(point.x, point.y) for point in marker.points]
+            self.assertGreater(min(radii), 0.015, part)
+            self.assertLess(max(radii), 0.050, part)
+        self.assertEqual(len(drawing["circular_spline", 0].points), 202 * 24)
+        self.assertEqual(len(drawing["flexspline", 0].colors), 200 * 24)
+
+    def test_arrows_and_colours_tell_the_load(self):
+        command = rospy.Publisher("/base/joint_twin/motor_torque_command", Float64, queue_size=10)
+        wait_until(lambda: command.get_num_connections() > 0, "the twin to listen")
+
+        def pressed(sign, flank):
+            command.publish(sign * TORQUE)
+            return self.drawings()[-1][flank, 0].points
+
+        for sign, flank, other in ((1, "trailing_flank_force", "leading_flank_force"),
+                                   (-1, "leading_flank_force", "trailing_flank_force")):
+            wait_until(lambda sign=sign, flank=flank, other=other: pressed(sign, flank) and not pressed(sign, other),
+                       f"arrows on the {flank} alone")
+            drawing = self.drawings()[-1]
+            self.assertEqual(drawing[other, 0].action, Marker.DELETE)
+            reddest = max(drawing["flexspline", 0].colors, key=lambda color: color.r - color.b)
+            self.assertGreater(reddest.r - reddest.b, 0.05)
+            self.assertIn("teeth loaded", drawing["loads", 0].text)
+
+    def test_the_aggregator_sorts_the_diagnostics(self):
+        aggregated = Listener("/diagnostics_agg", DiagnosticArray)
+
+        def parts():
+            messages = aggregated.messages()
+            return {status.name: status for status in messages[-1].status} if messages else {}
+
+        for part in ("Drive", "Input", "Timing", "Health"):
+            name = f"/Harmonic drives/{part}/base joint_twin: {part}"
+            wait_until(lambda name=name: name in parts(), name)
+        wait_until(lambda: parts()["/Harmonic drives/Timing"].level == OK, "the timing to be judged")
+
+
+if __name__ == "__main__":
+    rospy.init_node("view_test")
+    rostest.rosrun(PACKAGE, "view", View, sys.argv)
