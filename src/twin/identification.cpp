@@ -23,7 +23,7 @@ constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.r
                                                                     "telemetry.ripple_flexspline_2",
                                                                     "telemetry.ripple_circular_spline_4",
                                                                     "telemetry.ripple_flexspline_4" };
-constexpr std::size_t MOST_RIPPLE_ROWS = 10000;  // in one fit; a longer recording is thinned out
+constexpr std::size_t MOST_RIPPLE_ROWS = 5000;  // in one fit; a longer recording is thinned out
 
 bool isMoving(const MotionSample& sample)
 {

@@ -89,6 +89,16 @@ class Identify(tool.ToolTest):
         with open(self.path("a.csv")) as file:
             self.assertIn("current_predicted", file.readline())
 
+        # The torque-driven twin has the identified friction too.
+        speed = 0.6  # [rad/s]
+        def friction(*options):
+            rows = self.succeed_json("losses", "--speeds", str(RATIO * speed), "--loads", "10", "--positions", "4",
+                                     "--config", "joints/elbow.yaml", *options)["rows"]
+            return RATIO * rows[0]["gear_loss"]
+        expected = COULOMB + VISCOUS * speed
+        self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
+        self.assertGreater(abs(friction() - expected), 0.12 * expected)
+
     def test_what_is_missing_is_named(self):
         write_telemetry(self.path("a.bag"), 2.0, faults=False, joint="other_joint")
         self.fail_with(1, ["elbow_joint", "joints found: other_joint, wrist_1_joint"], "follow", "a.bag", *OPTIONS)
