@@ -285,7 +285,15 @@ struct TelemetryParameters
   double torque_per_current{};
   double current_offset{};
   double presliding_angle{};
+  double lasting_share{};
   double inertia_in_load{};
+  std::array<double, 2> ripple_circular_spline_2{};
+  std::array<double, 2> ripple_flexspline_2{};
+  std::array<double, 2> ripple_circular_spline_4{};
+  std::array<double, 2> ripple_flexspline_4{};
+  double ripple_resonance{};
+  double ripple_damping{};
+  double ripple_lag{};
   double current_deviation{};
   LoadSource load{};
 };
