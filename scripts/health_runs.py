@@ -13,7 +13,7 @@ import sys
 RATIO = 101.0
 WINDOW_TURNS = 101.0      # of the motor: one of the joint
 START = 0.5               # of a run, before it is steady [s]
-COMMISSIONING = (20, 3)   # sound runs that make the reference at each point, windows of each
+COMMISSIONING = (20, 2)   # sound runs that make the reference at each point, windows of each
 WINDOWS = 2               # of a faulty run: as many as an alarm takes
 SOUND_WINDOWS = 20        # of a sound run
 SET_IN = 1.5              # windows after which a fault sets in on the way
@@ -48,6 +48,7 @@ CHECK_UP = Point("check-up: to and fro at up to 70°/s, ±130 N·m once a second
                  sinus(math.radians(SWING), 1.0 / PERIOD), sinus(130.0, 8.0 / PERIOD), (1000.0, PERIOD))
 POINTS = [steady(5.0, 140.0), steady(15.0, 60.0), steady(45.0, 110.0), steady(90.0, 0.0), steady(170.0, 30.0), TURNING,
           CHECK_UP]
+TRAINING_POINTS = POINTS[1:]
 SHORT_POINTS = [POINTS[1], POINTS[3], POINTS[4], CHECK_UP]  # for what takes long: see `takes_long`
 
 # The grease's temperature is anywhere in a band [°C]; noise of both encoders, times that of real_sensors.yaml.
