@@ -60,10 +60,11 @@ CONDITIONS = [COOL, WARM, NOISY]
 
 Trial = collections.namedtuple("Trial", "name severities slow_severities tooth seed")
 TRAINING = Trial("training", [0.2, 0.6], [0.6], 90, 2)   # that the signatures are fitted to
-JUDGED = Trial("judged", [0.1, 0.3, 1.0], [0.1, 0.3, 1.0], 40, 3)
+JUDGED = Trial("judged", [0.1, 0.3, 1.0], [0.3, 1.0], 40, 3)
 
-# A window: number in its run from 1 on, scores and values by indicator, strongest score over its threshold, verdict.
-Window = collections.namedtuple("Window", "number values scores largest level cause confidence")
+# A window: number in its run from 1 on, values and scores by indicator, scores by feature, strongest score over its
+# threshold, verdict.
+Window = collections.namedtuple("Window", "number values scores features largest level cause confidence")
 Run = collections.namedtuple("Run", "point condition kind severity windows")
 
 
@@ -100,7 +101,8 @@ class Bench:
                  "overlays: [real_sensors.yaml]", "set:", "  solver.scene: auto", *noise,
                  f"  input.temperature: {{uniform: [{low}, {high}]}}", f"  indicators.window_turns: {point.window[0]}",
                  f"  indicators.window_time: {point.window[1]:.6f}",
-                 "  publish.indicators_rate: 1.0", "  publish.joint_states_rate: 0.001",
+                 f"  publish.indicators_rate: {1.0 if window_time(point) > 5.0 else 10.0}",
+                 "  publish.joint_states_rate: 0.001",
                  "  publish.encoders_rate: 0.001", "  publish.contact_forces_rate: 0.001", "  publish.health_rate: 0.001",
                  f"repeats: {repeats}", "duty:", f"  - name: {point.tag}", f"    speed: {point.speed}",
                  "    bandwidth: 8.0", f"    load: {point.load}", "classes:", *classes, "record:", "  format: bag"]
@@ -156,8 +158,8 @@ class Bench:
         windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict, own = window["assessment"], windows[window["recording"]]
-            own.append(Window(len(own) + 1, window["indicators"], window["scores"], verdict["largest_score"],
-                              verdict["level"], verdict["cause"], verdict["confidence"]))
+            own.append(Window(len(own) + 1, window["indicators"], window["scores"], window.get("features"),
+                              verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
         return [Run(point, condition, row["fault_kind"] or "healthy", _severity(row), windows[str(bag)])
                 for bag, row in bags]
 

@@ -13,7 +13,7 @@ namespace
 // Of a column's mean square [-]: what stands out of the others by less than a thousandth has no coefficient of its own,
 // such as the ripple of a steady speed beside the constant.
 constexpr double RIDGE = 1e-6;
-}
+}  // namespace
 
 RunningRegression::RunningRegression(int columns, int targets)
   : normal_(Eigen::MatrixXd::Zero(columns, columns))
