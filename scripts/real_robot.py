@@ -120,7 +120,7 @@ def draw_current(path, results):
         axes.plot(time, rows["current_measured"][part], color=GREY, lw=0.8, label="measured")
         predicted, band = rows["current_predicted"][part], rows["current_band"][part]
         axes.fill_between(time, predicted - band, predicted + band, color=BLUE, alpha=0.2, lw=0,
-                          label="band that the motion leaves open")
+                          label="band of a healthy joint")
         axes.plot(time, predicted, color=BLUE, lw=0.8, label="twin")
         axes.set_title(f"{joint}: motor current [A]")
         axes.set_ylim(*(np.array([-0.6, 0.6]) + np.percentile(rows["current_measured"][part], [0.5, 99.5])))
@@ -136,8 +136,8 @@ def draw_spectrum(path, results):
     for axes, joint in zip(all_axes, JOINTS):
         rows = results[joint][1]
         for sign, colour, name in ((1.0, BLUE, "turning positive"), (-1.0, RED, "negative")):
-            part = (sign * rows["velocity"] > 0.1) & (rows["time"] % FIRST_REPEAT > JOIN)
-            axes.plot(orders, spectrum(rows["position"][part], rows["current_residual"][part], orders), color=colour,
+            part = (sign * rows["velocity_measured"] > 0.1) & (rows["time"] % FIRST_REPEAT > JOIN)
+            axes.plot(orders, spectrum(rows["position_measured"][part], rows["current_residual"][part], orders), color=colour,
                       lw=0.8, label=name)
         for order in (200.0, 202.0, 400.0, 404.0):
             axes.axvline(order, color="0.8", lw=0.6, zorder=0)

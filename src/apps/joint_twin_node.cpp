@@ -5,8 +5,21 @@
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/ros_io/companion_node.hpp"
 #include "harmonic_joint_twin/ros_io/parameter_server.hpp"
 #include "harmonic_joint_twin/ros_io/twin_node.hpp"
+
+namespace
+{
+template <class Node>
+void run(ros::NodeHandle& handle, const hjt::Parameters& parameters)
+{
+  const Node node(handle, parameters);
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  ros::waitForShutdown();
+}
+}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -19,10 +32,14 @@ int main(int argc, char** argv)
   {
     const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
     ROS_INFO_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
-    hjt::TwinNode twin_node(node, parameters);
-    ros::AsyncSpinner spinner(2);
-    spinner.start();
-    ros::waitForShutdown();
+    if (parameters.input.mode == hjt::InputMode::COMMANDS)
+    {
+      run<hjt::TwinNode>(node, parameters);
+    }
+    else
+    {
+      run<hjt::CompanionNode>(node, parameters);
+    }
   }
   catch (const hjt::ParameterError& error)
   {

@@ -47,7 +47,8 @@ const char* stateText(LoopState state)
 constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders",   "contact_forces",
                                                               "health",       "indicators", "assessment" };
 
-/// What the indicators say, whether or not they are up to date. A fault told once stands until windows say otherwise.
+}  // namespace
+
 std::string verdictText(const Assessment& assessment)
 {
   if (assessment.level != HealthLevel::OK)
@@ -70,7 +71,18 @@ std::string verdictText(const Assessment& assessment)
   }
   return "Nothing out of the ordinary";
 }
-}  // namespace
+
+void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status)
+{
+  std::array<char, EVIDENCE_LENGTH> evidence{};
+  writeEvidence(assessment, evidence.data(), evidence.size());
+  status.add("Cause", causeName(assessment.cause));
+  status.add("Confidence [-]", assessment.confidence);
+  status.add("Evidence", evidence.data());
+  status.add("Largest score over threshold [-]", assessment.largest_score);
+  status.add("Windows", assessment.windows);
+  status.add("End of the last window [s]", toSeconds(assessment.stamp));
+}
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop,
                          const RealtimeState& realtime, const Inbox& inbox, const InputSubscribers& subscribers,
@@ -343,15 +355,7 @@ void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
 
 void Diagnostics::reportHealth(DiagnosticStatusWrapper& status) const
 {
-  const Assessment& assessment = snapshot_.loop.assessment;
-  std::array<char, EVIDENCE_LENGTH> evidence{};
-  writeEvidence(assessment, evidence.data(), evidence.size());
   status.summary(verdicts_[HEALTH].level, verdicts_[HEALTH].text);
-  status.add("Cause", causeName(assessment.cause));
-  status.add("Confidence [-]", assessment.confidence);
-  status.add("Evidence", evidence.data());
-  status.add("Largest score over threshold [-]", assessment.largest_score);
-  status.add("Windows", assessment.windows);
-  status.add("End of the last window [s]", toSeconds(assessment.stamp));
+  addAssessment(snapshot_.loop.assessment, status);
 }
 }  // namespace hjt

@@ -13,6 +13,7 @@
 #include "harmonic_joint_twin/params/number_table.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
 
 namespace hjt
 {
@@ -52,7 +53,8 @@ public:
                        ", expected sensor_msgs/JointState");
     }
     const ros::Time stamp = message->header.stamp.isZero() ? instance.getTime() : message->header.stamp;
-    return instance.getTopic() == source_.topic ? readTelemetry(*message, stamp) : readLoad(*message, stamp);
+    return instance.getTopic() == source_.topic ? takeTelemetry(*message, stamp, instance.getTime()) :
+                                                  readLoad(*message, stamp);
   }
 
   bool flush()
@@ -78,7 +80,7 @@ private:
                                     message.name.begin());
   }
 
-  bool readTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& received)
   {
     const std::size_t i = find(message);
     if (i == message.name.size())
@@ -86,8 +88,8 @@ private:
       names_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    if (i >= message.position.size() || i >= message.effort.size() || !std::isfinite(message.position[i]) ||
-        !std::isfinite(message.effort[i]))
+    MotionRow row;
+    if (readTelemetry(message, JointNames(source_.joint), row) != TelemetryStatus::FOUND)
     {
       ++count_.corrupt;
       return true;
@@ -97,9 +99,11 @@ private:
     {
       start_ = stamp;
     }
-    const double time = (stamp - *start_).toSec();
-    count_.duration = std::max(count_.duration, time);
-    waiting_ = MotionRow{ time, message.position[i], message.effort[i], load_ };
+    row.time = (stamp - *start_).toSec();
+    row.received = (received - *start_).toSec();
+    row.load = load_;
+    count_.duration = std::max(count_.duration, row.time);
+    waiting_ = row;
     waiting_stamp_ = stamp;
     return more;
   }
@@ -196,7 +200,9 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
   {
     ++count.rows;
     count.duration = std::max(count.duration, row[0]);
-    if (!visit({ row[0], row[1], row[2], row[3] }))
+    MotionRow motion{ row[0], row[1], row[2], row[3] };
+    motion.received = row[0];
+    if (!visit(motion))
     {
       break;
     }

@@ -2,10 +2,9 @@
 #include "harmonic_joint_twin/twin/observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "harmonic_joint_twin/elements/motor.hpp"
@@ -20,50 +19,23 @@ namespace
 {
 constexpr double DAMPING = 0.02;  // of the torsional swing, of critical [-]
 constexpr std::array<double, 9> CURVE{ 0.0, 5.0, 14.0, 25.0, 48.0, 75.0, 110.0, 150.0, 200.0 };  // [N.m]
+constexpr double DEVIATIONS = 3.0;                                                               // of a band
+constexpr double CONTRADICTING = 5.0;  // deviations of an angle that friction cannot explain; noise never comes there
+constexpr double CONTRADICTION = 0.2;  // for so long friction is not believed to hold the motor [s]
+// Of the first state, rms.
+constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
+constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
+constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // as much as the disturbance changes in this time [s]
 
-using Matrix = ObserverDesign::Matrix;
-using Outputs = Eigen::Matrix<double, 2, 5>;
-
-Outputs measured()
-{
-  Outputs outputs = Outputs::Zero();
-  outputs(0, 0) = 1.0;
-  outputs(1, 2) = 1.0;
-  return outputs;
-}
-
-/// Covariance before a measurement, in the steady state: the Riccati equation by doubling.
-Matrix steadyCovariance(const Matrix& transition, const Matrix& process, const Matrix& information)
-{
-  constexpr int MOST = 60;
-  constexpr double ENOUGH = 1e-14;
-  Matrix a = transition.transpose();
-  Matrix g = information;
-  Matrix h = process;
-  for (int i = 0; i < MOST; ++i)
-  {
-    const Matrix inverse = (Matrix::Identity() + g * h).inverse();
-    const Matrix next_a = a * inverse * a;
-    const Matrix next_g = g + a * inverse * g * a.transpose();
-    const Matrix next_h = h + a.transpose() * h * inverse * a;
-    const double change = (next_h - h).norm();
-    a = next_a;
-    g = next_g;
-    h = next_h;
-    if (change <= ENOUGH * h.norm())
-    {
-      break;
-    }
-  }
-  return h;
-}
+using Vector = ObserverPiece::Vector;
+using Matrix = ObserverPiece::Matrix;
 }  // namespace
 
-ObserverDesign designObserver(const Eigen::Vector2d& inertia, double ratio, double stiffness, double period,
-                              const ObserverNoise& noise)
+ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
+                                const ObserverParameters& noise)
 {
-  ObserverDesign design;
-  design.stiffness = stiffness;
+  ObserverPiece piece;
+  piece.stiffness = stiffness;
   // Damping of the swing of both bodies against each other, seen from the output.
   const double reduced = 1.0 / (1.0 / (inertia[0] * ratio * ratio) + 1.0 / inertia[1]);
   const double damping = 2.0 * DAMPING * std::sqrt(stiffness * reduced);
@@ -78,35 +50,31 @@ ObserverDesign designObserver(const Eigen::Vector2d& inertia, double ratio, doub
   rates.block<1, 4>(3, 0) = torque / inertia[1];
   rates(1, 4) = rates(1, 5) = 1.0 / inertia[0];
   rates(3, 6) = 1.0 / inertia[1];
-  rates *= period;
+  rates *= step;
   const Eigen::Matrix<double, 7, 7> whole = rates.exp();
-  design.transition = whole.block<5, 5>(0, 0);
-  design.input = whole.block<5, 2>(0, 5);
+  piece.transition = whole.block<5, 5>(0, 0);
+  piece.input = whole.block<5, 2>(0, 5);
 
-  const Outputs outputs = measured();
-  const Eigen::Matrix2d noise_power =
-      Eigen::Vector2d(std::pow(noise.motor_angle, 2), std::pow(noise.output_angle, 2)).asDiagonal();
-  Matrix process = design.input.col(1) * design.input.col(1).transpose() * std::pow(noise.load_noise, 2);
-  process(4, 4) += std::pow(noise.disturbance_growth, 2) * period;
-  // In units of their own noise the states are of like size, which the doubling needs.
-  ObserverDesign::Vector unit;
-  unit << noise.motor_angle, noise.motor_angle / period, noise.output_angle, noise.output_angle / period,
-      inertia[0] * noise.motor_angle / (period * period);
-  const Matrix to = unit.cwiseInverse().asDiagonal();
-  const Matrix from = unit.asDiagonal();
-  const Matrix information = from * outputs.transpose() * noise_power.inverse() * outputs * from;
-  const Matrix before = from * steadyCovariance(to * design.transition * from, to * process * to, information) * from;
-
-  design.gain = before * outputs.transpose() * (outputs * before * outputs.transpose() + noise_power).inverse();
-  const Matrix left = Matrix::Identity() - design.gain * outputs;
-  design.disturbance_deviation = std::sqrt(std::max(0.0, (left * before)(4, 4)));
-  design.spectral_radius = (to * left * design.transition * from).eigenvalues().cwiseAbs().maxCoeff();
-  return design;
+  const Eigen::Vector2d power(std::pow(noise.torque_noise, 2) / step, std::pow(noise.load_noise, 2) / step);
+  piece.process = piece.input * power.asDiagonal() * piece.input.transpose();
+  piece.process(4, 4) += std::pow(noise.disturbance_growth, 2) * step;
+  return piece;
 }
 
-Observer::Observer(const Parameters& parameters, const ObserverNoise& noise, double period)
+Vector takeAngle(Matrix& covariance, ObserverPiece::State angle, double noise) noexcept
+{
+  const double power = noise * noise;
+  const Vector gain = covariance.col(angle) / (covariance(angle, angle) + power);
+  Matrix left = Matrix::Identity();
+  left.col(angle) -= gain;
+  covariance = (left * covariance * left.transpose() + power * gain * gain.transpose()).eval();
+  return gain;
+}
+
+Observer::Observer(const Parameters& parameters)
   : friction_(parameters)
   , load_(parameters.output)
+  , noise_(parameters.observer)
   , ratio_(nominalRatio(parameters.gear))
   , temperature_(parameters.input.temperature)
 {
@@ -125,69 +93,139 @@ Observer::Observer(const Parameters& parameters, const ObserverNoise& noise, dou
     {
       const CurvePoint& last = curve_[curve_.size() - 2];
       const double slope = (curve_.back().torque - last.torque) / (curve_.back().torsion - last.torsion);
-      designs_.push_back(designObserver(inertia, ratio_, slope, period, noise));
+      pieces_.push_back(makeObserverPiece(inertia, ratio_, slope, STEP, noise_));
     }
   }
-  reset(0.0, 0.0);
 }
 
-void Observer::reset(double motor_angle, double output_angle) noexcept
+/// The piece of the curve that holds a torsion; the last one goes on for ever.
+std::size_t Observer::pieceAt(double torsion) const noexcept
 {
-  state_ << motor_angle, 0.0, output_angle, 0.0, 0.0;
-}
-
-double Observer::torque(double torsion, double& slope) const noexcept
-{
-  const double size = std::abs(torsion);
-  std::size_t above = 1;
-  while (above + 1 < curve_.size() && curve_[above].torsion < size)
+  std::size_t piece = 0;
+  while (piece + 1 < pieces_.size() && curve_[piece + 1].torsion < std::abs(torsion))
   {
-    ++above;
+    ++piece;
   }
-  const CurvePoint& low = curve_[above - 1];
-  slope = designs_[above - 1].stiffness;
-  return std::copysign(low.torque + slope * (size - low.torsion), torsion);
+  return piece;
 }
 
-const ObserverDesign& Observer::nearest(double slope) const noexcept
+double Observer::torque(double torsion) const noexcept
 {
-  return *std::min_element(designs_.begin(), designs_.end(),
-                           [slope](const ObserverDesign& a, const ObserverDesign& b)
-                           { return std::abs(a.stiffness - slope) < std::abs(b.stiffness - slope); });
+  const std::size_t piece = pieceAt(torsion);
+  const CurvePoint& low = curve_[piece];
+  return std::copysign(low.torque + pieces_[piece].stiffness * (std::abs(torsion) - low.torsion), torsion);
 }
 
-Observation Observer::step(double motor_torque, double load_torque, double motor_angle, double output_angle) noexcept
+double Observer::torsionUnder(double torque) const noexcept
 {
-  double slope{};
+  std::size_t piece = 0;
+  while (piece + 1 < pieces_.size() && curve_[piece + 1].torque < std::abs(torque))
+  {
+    ++piece;
+  }
+  const CurvePoint& low = curve_[piece];
+  return std::copysign(low.torsion + (std::abs(torque) - low.torque) / pieces_[piece].stiffness, torque);
+}
+
+/// At rest under the load; what the first rows say of speed and disturbance is believed at once.
+void Observer::start(const Measurement& measurement) noexcept
+{
+  const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
+  const double motor_angle = ratio_ * (measurement.output_angle + torsionUnder(load));
+  motor_zero_ = measurement.motor_angle - motor_angle;
+  state_ << motor_angle, 0.0, measurement.output_angle, 0.0, 0.0;
+  Vector deviation;
+  deviation << ratio_ * FIRST_TORSION, ratio_ * FIRST_SPEED, noise_.output_angle_noise, FIRST_SPEED,
+      noise_.disturbance_growth * std::sqrt(FIRST_DISTURBANCE_TIME);
+  covariance_ = deviation.cwiseAbs2().asDiagonal();
+  now_ = measurement.time;
+  contradicted_ = now_;
+  started_ = true;
+}
+
+/// One step on.
+void Observer::predict(double motor_torque, double load_torque) noexcept
+{
   const double torsion = state_[0] / ratio_ - state_[2];
-  const double gear = torque(torsion, slope);
-  const ObserverDesign& design = nearest(slope);
+  const double gear = torque(torsion);
+  const ObserverPiece& piece = pieces_[pieceAt(torsion)];
 
   // The curve's own torque where the linear piece gives stiffness times torsion.
-  const double beyond = gear - design.stiffness * torsion;
+  const double beyond = gear - piece.stiffness * torsion;
   const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
-  const ObserverDesign::Vector free =
-      design.transition * state_ +
-      design.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
+  const Vector free =
+      piece.transition * state_ + piece.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
 
   const double most = friction_.at(state_[1], gear, temperature_).sum();
-  const double by_friction = design.input(1, 0);
-  const double friction = std::clamp(free[1] / by_friction, -most, most);
-  state_ = free - design.input.col(0) * friction;
+  const double by_friction = piece.input(1, 0);
+  friction_now_ = std::clamp(free[1] / by_friction, -most, most);
+  sticking_ = std::abs(friction_now_) < most;
+  state_ = free - piece.input.col(0) * friction_now_;
 
-  const Eigen::Vector2d innovation(motor_angle - state_[0], output_angle - state_[2]);
-  state_ += design.gain * innovation;
+  Matrix transition = piece.transition;
+  if (sticking_ && now_ >= contradicted_)
+  {
+    // Friction takes what would move the motor: a linear map too.
+    Matrix held = Matrix::Identity();
+    held.col(1) -= piece.input.col(0) / by_friction;
+    transition = held * transition;
+    covariance_ = (transition * covariance_ * transition.transpose() + held * piece.process * held.transpose()).eval();
+  }
+  else
+  {
+    covariance_ = (transition * covariance_ * transition.transpose() + piece.process).eval();
+  }
+  now_ += STEP;
+}
+
+/// Takes one angle; returns the innovation.
+double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
+{
+  const double innovation = measured - state_[angle];
+  angle_deviation_ = std::sqrt(covariance_(angle, angle) + noise * noise);
+  if (sticking_ && std::abs(innovation) > CONTRADICTING * angle_deviation_)
+  {
+    contradicted_ = now_ + CONTRADICTION;
+  }
+  state_ += takeAngle(covariance_, angle, noise) * innovation;
+  return innovation;
+}
+
+Observation Observer::step(const Measurement& measurement) noexcept
+{
+  if (!started_ || measurement.anew)
+  {
+    start(measurement);
+    last_ = measurement;
+  }
+  const double motor_torque = 0.5 * (last_.motor_torque + measurement.motor_torque);
+  const double load_torque = 0.5 * (last_.load_torque + measurement.load_torque);
+  last_ = measurement;
+  while (now_ + 0.5 * STEP < measurement.time)
+  {
+    predict(motor_torque, load_torque);
+  }
+  // The row lies within half a step of the state.
+  const double beside = measurement.time - now_;
+  if (std::isfinite(measurement.motor_angle))
+  {
+    correct(ObserverPiece::MOTOR_ANGLE, measurement.motor_angle - motor_zero_ - state_[1] * beside,
+            noise_.motor_angle_noise);
+  }
 
   Observation now;
+  now.innovation =
+      correct(ObserverPiece::OUTPUT_ANGLE, measurement.output_angle - state_[3] * beside, noise_.output_angle_noise);
+  now.innovation_band = DEVIATIONS * angle_deviation_;
   now.motor_angle = state_[0];
   now.motor_velocity = state_[1];
   now.output_angle = state_[2];
   now.output_velocity = state_[3];
-  now.joint_torque = torque(state_[0] / ratio_ - state_[2], slope);
-  now.friction_torque = friction;
+  now.joint_torque = torque(state_[0] / ratio_ - state_[2]);
+  now.friction_torque = friction_now_;
   now.residual_torque = state_[4];
-  now.residual_band = 3.0 * design.disturbance_deviation;
-  now.sticking = std::abs(friction) < most;
+  now.residual_band = DEVIATIONS * std::sqrt(covariance_(4, 4));
+  now.sticking = sticking_;
   return now;
 }
 }  // namespace hjt

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The observer beside the twin as a robot: both encoders with noise, torque known, and what the residual says.
-#include <algorithm>
+// The observer beside the twin as a robot: noisy encoders, torque known, and what the residual says.
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
+#include <Eigen/Eigenvalues>
 
 #include "test_parameters.hpp"
 
@@ -19,34 +20,62 @@ namespace hjt
 {
 namespace
 {
-constexpr double PERIOD = 0.002;  // [s]
-const ObserverNoise NOISE{ 4e-4, 4e-6, 0.05, 0.05 };
+enum class Encoders
+{
+  OUTPUT,
+  BOTH
+};
+
+struct Rows
+{
+  double period{ 0.002 };  // [s]
+  Encoders encoders{ Encoders::BOTH };
+  double dropped{};  // share of rows that do not come [-]
+  double jitter{};   // of the stamps, evenly to either side [s]
+};
 
 using Torque = std::function<double(double time, const JointOutputs& now)>;
 
+struct Seen : Observation
+{
+  double time{};
+};
+
 /// The observer of `believed` beside a robot of `real`.
-std::vector<Observation> observe(const Parameters& real, const Parameters& believed, double duration,
-                                 const Torque& motor_torque)
+std::vector<Seen> observe(const Parameters& real, const Parameters& believed, double duration,
+                          const Torque& motor_torque, const Rows& rows = {})
 {
   std::mt19937 engine(5);
   std::normal_distribution<double> unit;
+  std::uniform_real_distribution<double> even(-1.0, 1.0);
   Twin robot(real);
   robot.reset(0);
-  Observer observer(believed, NOISE, PERIOD);
-  observer.reset(robot.outputs().motor_angle, robot.outputs().output_angle);
-  std::vector<Observation> seen;
-  const int steps = static_cast<int>(std::lround(PERIOD * 1e9 / static_cast<double>(robot.stepLength())));
-  while (static_cast<double>(robot.stamp()) < 1e9 * duration)
+  Observer observer(believed);
+  std::vector<Seen> seen;
+  double due = 0.0;
+  for (double time = 0.0; time < duration; time = static_cast<double>(robot.stamp()) / 1e9)
   {
-    double mean = 0.0;
-    for (int i = 0; i < steps; ++i)
+    robot.commandMotorTorque(robot.stamp(), motor_torque(time, robot.outputs()));
+    EXPECT_TRUE(robot.step(robot.stamp() + robot.stepLength()));
+    const JointOutputs& now = robot.outputs();
+    const double stamp = static_cast<double>(now.stamp) / 1e9;
+    if (stamp < due)
     {
-      robot.commandMotorTorque(robot.stamp(), motor_torque(static_cast<double>(robot.stamp()) / 1e9, robot.outputs()));
-      EXPECT_TRUE(robot.step(robot.stamp() + robot.stepLength()));
-      mean += robot.outputs().motor_torque / steps;
+      continue;
     }
-    seen.push_back(observer.step(mean, 0.0, robot.outputs().motor_angle + NOISE.motor_angle * unit(engine),
-                                 robot.outputs().output_angle + NOISE.output_angle * unit(engine)));
+    due = rows.period * (std::floor(stamp / rows.period + 0.5) + 1.0) + rows.jitter * even(engine);
+    if (0.5 * (1.0 + even(engine)) < rows.dropped)
+    {
+      continue;
+    }
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    Seen at;
+    static_cast<Observation&>(at) = observer.step(
+        { stamp, now.motor_torque, 0.0, now.output_angle + believed.observer.output_angle_noise * unit(engine),
+          rows.encoders == Encoders::BOTH ? now.motor_angle + believed.observer.motor_angle_noise * unit(engine) : none,
+          false });
+    at.time = stamp;
+    seen.push_back(at);
   }
   return seen;
 }
@@ -59,90 +88,180 @@ double servo(double time, const JointOutputs& now)
   return 0.3 * (target - now.motor_angle) + 0.02 * (speed - now.motor_velocity);
 }
 
-double meanSize(const std::vector<Observation>& seen, double from)
+/// Of the residual against the motion, where the motor is faster than `speed` [N.m].
+double meanResistance(const std::vector<Seen>& seen, double from, double until, double speed = 30.0)
 {
   double sum = 0.0;
   double count = 0.0;
-  for (std::size_t i = static_cast<std::size_t>(from / PERIOD); i < seen.size(); ++i)
+  for (const Seen& at : seen)
   {
-    if (!seen[i].sticking)
+    if (at.time > from && at.time < until && std::abs(at.motor_velocity) > speed)
     {
-      sum += std::abs(seen[i].residual_torque);
+      sum -= at.motor_velocity > 0.0 ? at.residual_torque : -at.residual_torque;
       ++count;
     }
   }
-  EXPECT_GT(count, 100.0);
+  EXPECT_GT(count, 50.0);
   return sum / count;
+}
+
+/// Share of the rows in motion whose residual lies within its band.
+double shareInside(const std::vector<Seen>& seen)
+{
+  double inside = 0.0;
+  double moving = 0.0;
+  for (const Seen& at : seen)
+  {
+    if (at.time > 1.0 && !at.sticking)
+    {
+      ++moving;
+      inside += std::abs(at.residual_torque) < at.residual_band ? 1.0 : 0.0;
+    }
+  }
+  EXPECT_GT(moving, 100.0);
+  return inside / moving;
 }
 
 const std::vector<std::string> JOINT{ "motor.viscous_friction=0.0", "output.load_inertia=1.5", "solver.rate=5000" };
 
+Parameters jointWith(const std::string& assignment)
+{
+  std::vector<std::string> assignments = JOINT;
+  assignments.push_back(assignment);
+  return shippedParameters(assignments);
+}
+
+// Every size of the catalogue, inertias from none to a stretched arm, periods from 2 kHz to 100 Hz, one encoder or both: the
+// error of the steady filter dies out.
 TEST(Observer, IsStableForEveryStiffness)
 {
+  const ObserverParameters noise = shippedParameters().observer;
+  using Piece = ObserverPiece;
   for (const double output_inertia : { 3e-4, 0.02, 0.5, 3.3, 30.0 })
   {
-    for (const double period : { 1e-3, 2e-3, 8e-3 })
+    for (const int steps : { 1, 2, 8, 10 })
     {
-      for (double stiffness = 31.0; stiffness < 1e7; stiffness *= 1.7)
+      for (double stiffness = 31.0; stiffness < 1e7; stiffness *= 2.5)
       {
-        const ObserverDesign design = designObserver({ 1.69e-4, output_inertia }, 101.0, stiffness, period, NOISE);
-        ASSERT_TRUE(design.gain.allFinite()) << stiffness << " N.m/rad, " << output_inertia << " kg.m^2, " << period;
-        ASSERT_LT(design.spectral_radius, 1.0) << stiffness << " N.m/rad, " << output_inertia << " kg.m^2, " << period;
+        for (const bool both : { false, true })
+        {
+          const Piece piece = makeObserverPiece({ 1.69e-4, output_inertia }, 101.0, stiffness, Observer::STEP, noise);
+          Piece::Matrix covariance = 1e-6 * Piece::Matrix::Identity();
+          Piece::Matrix error;
+          for (int row = 0; row < 4000; ++row)
+          {
+            error.setIdentity();
+            for (int i = 0; i < steps; ++i)
+            {
+              covariance = (piece.transition * covariance * piece.transition.transpose() + piece.process).eval();
+              error = (piece.transition * error).eval();
+            }
+            const auto take = [&](Piece::State angle, double deviation)
+            {
+              const Piece::Vector gain = takeAngle(covariance, angle, deviation);
+              error = (error - gain * error.row(angle)).eval();
+            };
+            if (both)
+            {
+              take(Piece::MOTOR_ANGLE, noise.motor_angle_noise);
+            }
+            take(Piece::OUTPUT_ANGLE, noise.output_angle_noise);
+          }
+          const std::string where = std::to_string(stiffness) + " N.m/rad, " + std::to_string(output_inertia) +
+                                    " kg.m^2, " + std::to_string(steps) + " ms, both " + std::to_string(both);
+          ASSERT_TRUE(covariance.allFinite()) << where;
+          ASSERT_GT(covariance.diagonal().minCoeff(), 0.0) << where;
+          // In units of the deviations, so that states of unlike size weigh alike.
+          const Piece::Vector unit = covariance.diagonal().cwiseSqrt();
+          const Piece::Matrix scaled = unit.cwiseInverse().asDiagonal() * error * unit.asDiagonal();
+          ASSERT_LT(scaled.eigenvalues().cwiseAbs().maxCoeff(), 1.0 - 1e-6) << where;
+        }
       }
     }
   }
 }
 
-TEST(Observer, OfAHealthyJointStaysWithinItsBandAndFollows)
+TEST(Observer, OfAHealthyJointStaysWithinItsBand)
 {
   const Parameters joint = shippedParameters(JOINT);
-  const std::vector<Observation> seen = observe(joint, joint, 5.0, servo);
-  std::size_t inside = 0;
-  std::size_t moving = 0;
-  for (std::size_t i = 500; i < seen.size(); ++i)
+  for (const Rows& rows :
+       { Rows{}, Rows{ 0.008, Encoders::BOTH }, Rows{ 0.008, Encoders::OUTPUT },
+         Rows{ 0.008, Encoders::OUTPUT, 0.05, 0.002 }, Rows{ 0.002, Encoders::OUTPUT, 0.01, 0.0005 } })
   {
-    if (!seen[i].sticking)
-    {
-      ++moving;
-      inside += std::abs(seen[i].residual_torque) < seen[i].residual_band ? 1 : 0;
-    }
+    EXPECT_GT(shareInside(observe(joint, joint, 5.0, servo, rows)), 0.95)
+        << rows.period << " s, dropped " << rows.dropped;
   }
-  ASSERT_GT(moving, 1000u);
-  EXPECT_GT(static_cast<double>(inside), 0.95 * static_cast<double>(moving));
 }
 
 TEST(Observer, ShowsFrictionThatHasGrownAndDoesNotLearnItAway)
 {
   const Parameters healthy = shippedParameters(JOINT);
-  std::vector<std::string> worn = JOINT;
-  worn.emplace_back("motor.coulomb_torque=0.085");  // 0.08 N.m more
-  const std::vector<Observation> seen = observe(shippedParameters(worn), healthy, 5.0, servo);
-  const double found = meanSize(seen, 1.0);
-  EXPECT_NEAR(found, 0.08, 0.02);
-  EXPECT_GT(found, 1.5 * seen.back().residual_band);
-  // As large in the last second as in the first.
-  EXPECT_NEAR(meanSize(seen, 4.0), found, 0.01);
+  const Parameters worn = jointWith("motor.coulomb_torque=0.085");  // 0.08 N.m more
+  for (const Rows& rows : { Rows{}, Rows{ 0.008, Encoders::OUTPUT, 0.01, 0.001 } })
+  {
+    const std::vector<Seen> seen = observe(worn, healthy, 8.0, servo, rows);
+    const double found = meanResistance(seen, 1.0, 8.0);
+    EXPECT_NEAR(found, 0.08, 0.02);
+    // As large at the end as at the start, and beyond what is expected of a healthy joint.
+    EXPECT_NEAR(meanResistance(seen, 5.5, 8.0), meanResistance(seen, 0.5, 3.0), 0.01);
+    EXPECT_LT(shareInside(seen), 0.3);
+  }
+}
+
+/// Stands for a while under torque that friction holds, then turns.
+double standAndTurn(double time, const JointOutputs& now)
+{
+  if (time < 6.0)
+  {
+    return time < 3.0 ? 0.05 : -0.05;
+  }
+  return servo(time - 6.0, now);
 }
 
 TEST(Observer, DoesNotWindUpWhileFrictionHoldsTheMotor)
 {
   const Parameters joint = shippedParameters(JOINT);
-  // Half of what starts the joint, first to one side, then to the other.
-  const std::vector<Observation> seen =
-      observe(joint, joint, 4.0, [](double time, const JointOutputs&) { return time < 2.0 ? 0.03 : -0.03; });
-  double before = 0.0;
-  double last = 0.0;
-  for (std::size_t i = 0; i < seen.size(); ++i)
+  for (const Rows& rows : { Rows{}, Rows{ 0.008, Encoders::OUTPUT } })
   {
-    // Three deviations are passed now and then; torque that is taken for a disturbance would be far beyond.
-    ASSERT_LT(std::abs(seen[i].residual_torque), 2.0 * seen[i].residual_band)
-        << PERIOD * static_cast<double>(i) << " s";
-    const double time = PERIOD * static_cast<double>(i);
-    before += time > 1.0 && time < 2.0 ? PERIOD * seen[i].residual_torque : 0.0;
-    last += time > 3.0 ? PERIOD * seen[i].residual_torque : 0.0;
+    double largest = 0.0;
+    double first_band = 0.0;
+    double last_band = 0.0;
+    double after_start = 0.0;
+    for (const Seen& at : observe(joint, joint, 7.0, standAndTurn, rows))
+    {
+      // 0.05 N.m is most of what holds the motor: taken for a disturbance, it would show whole.
+      largest = at.time > 0.5 && at.time < 6.0 ? std::max(largest, std::abs(at.residual_torque)) : largest;
+      first_band = at.time < 0.5 ? at.residual_band : first_band;
+      last_band = at.time < 3.0 ? at.residual_band : last_band;
+      after_start = at.time > 6.3 ? std::max(after_start, std::abs(at.residual_torque)) : after_start;
+    }
+    EXPECT_LT(largest, 0.03);
+    EXPECT_GT(last_band, 1.5 * first_band);  // standing tells nothing, and the band says so
+    EXPECT_LT(after_start, 0.05);
   }
-  EXPECT_LT(std::abs(before), 0.02);
-  EXPECT_LT(std::abs(last), 0.02);
+}
+
+TEST(Observer, IsNotHeldByFrictionThatTheRobotDoesNotHave)
+{
+  // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes later.
+  const Parameters believed = shippedParameters(JOINT);
+  const Parameters loose = jointWith("bearing.race_preload=0.0");
+  const std::vector<Seen> seen =
+      observe(loose, believed, 5.0, [](double time, const JointOutputs&) { return time < 2.0 ? 0.0 : 0.045; },
+              { 0.008, Encoders::OUTPUT });
+  EXPECT_LT(meanResistance(seen, 3.0, 5.0, 2.0), -0.02);
+}
+
+TEST(Observer, BeginsAnewAfterAGap)
+{
+  const Parameters joint = shippedParameters(JOINT);
+  Observer observer(joint);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  observer.step({ 0.0, 0.0, 0.0, 0.3, none, false });
+  const Observation anew = observer.step({ 50.0, 0.0, 0.0, -1.2, none, true });
+  EXPECT_NEAR(anew.output_angle, -1.2, 1e-9);
+  EXPECT_NEAR(anew.motor_angle, -1.2 * nominalRatio(joint.gear), 0.1);
+  EXPECT_EQ(anew.residual_torque, 0.0);
 }
 }  // namespace
 }  // namespace hjt

@@ -39,4 +39,19 @@ constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
 {
   return { { { "leapfrog", StepperKind::LEAPFROG }, { "runge_kutta4", StepperKind::RUNGE_KUTTA4 } } };
 }
+
+constexpr ChoiceNames<InputMode, 4> choiceNames(InputMode)
+{
+  return { { { "commands", InputMode::COMMANDS },
+             { "torque", InputMode::TORQUE },
+             { "motion", InputMode::MOTION },
+             { "observer", InputMode::OBSERVER } } };
+}
+
+constexpr ChoiceNames<LoadSource, 3> choiceNames(LoadSource)
+{
+  return { { { "model", LoadSource::MODEL },
+             { "load_torque", LoadSource::LOAD_TORQUE },
+             { "target_moment", LoadSource::TARGET_MOMENT } } };
+}
 }  // namespace hjt

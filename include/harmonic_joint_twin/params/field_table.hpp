@@ -256,6 +256,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
         "range of the stress intensity below which a flaw does not grow");
 
+  visit("input.mode", p.input.mode,
+        "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)");
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         "a torque command older than this counts as zero");
   visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
@@ -272,6 +274,23 @@ void visitFields(P& p, Visitor&& visit)
         "motor angle over which friction builds up after a reversal");
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         "of the motor's inertia, what a recorded load torque holds already");
+  visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
+        "by so much a healthy joint's current departs from the predicted one, rms");
+  visit("telemetry.load", p.telemetry.load,
+        "load of a measured joint: model: weight and inertia below output; load_torque: these and what is told; "
+        "target_moment: what is told is all");
+
+  visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
+        "of the measured joint angle, rms");
+  visit("observer.motor_angle_noise", "rad", p.observer.motor_angle_noise, Range{ 1e-9, 1.0 },
+        "of the measured motor angle, rms, where there is one");
+  visit(
+      "observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
+      "of the motor torque told from the current, white: rms of one reading times the root of the time it stands for");
+  visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
+        "of the load torque, white, likewise");
+  visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
+        "rms of what the unmodelled torque at the motor changes in a second");
 
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");

@@ -248,8 +248,26 @@ struct LifeParameters
   double crack_threshold{};
 };
 
+/// What the node runs on.
+enum class InputMode
+{
+  COMMANDS,  ///< commanded torques: the twin alone
+  TORQUE,    ///< beside a robot: its measured current drives the twin, open loop
+  MOTION,    ///< beside a robot: its measured motion tells what torque and current a healthy joint takes
+  OBSERVER   ///< beside a robot: both, the joint's states corrected towards the encoders
+};
+
+/// Where the torque at the output of a measured joint comes from.
+enum class LoadSource
+{
+  MODEL,         ///< weight and inertia as configured below output
+  LOAD_TORQUE,   ///< the same and the external torque that is told
+  TARGET_MOMENT  ///< the torque that is told is all that acts, as a controller's rigid-body torque
+};
+
 struct InputParameters
 {
+  InputMode mode{};
   double command_timeout{};
   double hold_back{};
   bool wait_for_first_input{};
@@ -262,6 +280,18 @@ struct TelemetryParameters
   double current_offset{};
   double presliding_angle{};
   double inertia_in_load{};
+  double current_deviation{};
+  LoadSource load{};
+};
+
+/// What the observer is told of its sensors and of what no model knows. The gains follow from nothing else.
+struct ObserverParameters
+{
+  double output_angle_noise{};
+  double motor_angle_noise{};
+  double torque_noise{};
+  double load_noise{};
+  double disturbance_growth{};
 };
 
 struct PublishParameters
@@ -337,6 +367,7 @@ struct Parameters
   LifeParameters life;
   InputParameters input;
   TelemetryParameters telemetry;
+  ObserverParameters observer;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
   std::vector<Fault> faults;  ///< that it starts with, or gets on its way

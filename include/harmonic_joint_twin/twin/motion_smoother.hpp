@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace hjt
@@ -11,10 +12,12 @@ namespace hjt
 /// One row of a robot's telemetry, of one joint.
 struct MotionRow
 {
-  double time{};      ///< [s]
-  double position{};  ///< of the joint [rad]
-  double current{};   ///< of the motor [A]
-  double load{};      ///< at the output, > 0 resists positive motion [N.m]
+  double time{};                                                   ///< [s]
+  double position{};                                               ///< of the joint [rad]
+  double current{};                                                ///< of the motor [A]
+  double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
+  double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
+  double received{};                                               ///< when it arrived, from the same zero [s]
 };
 
 /// The same with its rates.

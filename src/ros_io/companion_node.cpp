@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/companion_node.hpp"
+
+#include <cmath>
+
+#include <ros/console.h>
+#include <ros/transport_hints.h>
+
+#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+/// Seconds of rows at 500 Hz: while a twin in torque mode catches up none may be lost.
+constexpr std::uint32_t QUEUE_SIZE = 4096;
+/// Between two warnings of the same kind [s].
+constexpr double WARNING_PERIOD = 5.0;
+/// Between two looks at the levels [s].
+constexpr double LOOK_PERIOD = 0.05;
+/// Telemetry that brings nothing for so long has stopped [s].
+constexpr double STOPPED_AFTER = 0.5;
+/// Share of the last seconds' rows outside their band beyond which the joint is said to depart [-].
+constexpr double OUTSIDE_WARNING = 0.1;
+/// Stamps further off the clock are said to be [s].
+constexpr double OFFSET_WARNING = 0.5;
+
+constexpr std::size_t TELEMETRY = 0;
+constexpr std::size_t COMPARISON = 1;
+constexpr std::size_t HEALTH = 2;
+
+/// Surfaces for torque mode: built before the first row is taken, so that the same rows give the same numbers.
+SurfaceSource surfaceSource()
+{
+  return { surfaceCacheDirectory(),
+           [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
+           [](const std::string& what) { ROS_WARN_STREAM(what); },
+           {},
+           false };
+}
+}  // namespace
+
+CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters)
+  : names_(parameters.joint.name)
+  , parameters_(parameters)
+  , companion_(parameters, parameters.input.mode, surfaceSource())
+  , comparison_(makeComparison(names_))
+  , indicators_(makeIndicators(names_))
+  , assessment_(makeAssessment(names_))
+  , indicators_period_(toStampLength(1.0 / parameters.publish.indicators_rate))
+  , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, QUEUE_SIZE))
+  , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
+  , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
+  , reset_service_(node.advertiseService("reset", &CompanionNode::reset, this))
+{
+  updater_.setHardwareID(parameters.joint.hardware_id);
+  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
+  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
+  updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  telemetry_subscriber_ = node.subscribe(topics::MEASURED, QUEUE_SIZE, &CompanionNode::receiveTelemetry, this, hints);
+  load_subscriber_ = node.subscribe(topics::LOAD, QUEUE_SIZE, &CompanionNode::receiveLoad, this, hints);
+  load_torque_subscriber_ = node.subscribe<std_msgs::Float64>(
+      topics::LOAD_TORQUE, QUEUE_SIZE, [this](const std_msgs::Float64::ConstPtr& message) { receiveLoadNow(*message); },
+      ros::VoidConstPtr(), hints);
+}
+
+double CompanionNode::secondsFromStart(const ros::Time& time) const
+{
+  return (time - *start_).toSec();
+}
+
+void CompanionNode::receiveTelemetry(const JointStateEvent& event)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const sensor_msgs::JointState& message = *event.getMessage();
+  MotionRow row;
+  switch (readTelemetry(message, names_, row))
+  {
+    case TelemetryStatus::FOUND:
+      break;
+    case TelemetryStatus::UNKNOWN_JOINT:
+      ++refusals_.unknown_joint;
+      found_names_.clear();
+      for (const std::string& name : message.name)
+      {
+        found_names_ += (found_names_.empty() ? "" : ", ") + name;
+      }
+      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "No " << names_.joint << " on " << telemetry_subscriber_.getTopic()
+                                                     << ", which names " << found_names_);
+      return;
+    case TelemetryStatus::INCOMPLETE:
+      ++refusals_.incomplete;
+      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "No position or no effort (motor current) of "
+                                                   << names_.joint << " on " << telemetry_subscriber_.getTopic());
+      return;
+    case TelemetryStatus::NOT_FINITE:
+      ++refusals_.not_finite;
+      return;
+  }
+  last_received_ = event.getReceiptTime();
+  const ros::Time stamp = message.header.stamp.isZero() ? last_received_ : message.header.stamp;
+  if (!start_)
+  {
+    start_ = stamp;
+    if (last_load_)
+    {
+      companion_.giveLoad(secondsFromStart(last_load_->stamp), last_load_->torque);
+    }
+  }
+  row.time = secondsFromStart(stamp);
+  row.received = secondsFromStart(last_received_);
+  companion_.give(row);
+  publish();
+}
+
+void CompanionNode::receiveLoad(const JointStateEvent& event)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const sensor_msgs::JointState& message = *event.getMessage();
+  double torque = 0.0;
+  if (readLoadTorque(message, names_, torque) != EffortStatus::FOUND || !std::isfinite(torque))
+  {
+    ++refusals_.load;
+    return;
+  }
+  giveLoad(message.header.stamp.isZero() ? event.getReceiptTime() : message.header.stamp, torque);
+}
+
+void CompanionNode::receiveLoadNow(const std_msgs::Float64& message)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!std::isfinite(message.data))
+  {
+    ++refusals_.load;
+    return;
+  }
+  giveLoad(ros::Time::now(), message.data);
+}
+
+void CompanionNode::giveLoad(const ros::Time& stamp, double torque)
+{
+  last_load_ = LoadAt{ stamp, torque };
+  if (start_)
+  {
+    companion_.giveLoad(secondsFromStart(stamp), torque);
+  }
+}
+
+void CompanionNode::publish()
+{
+  while (const std::optional<Comparison> comparison = companion_.take())
+  {
+    const ros::Time stamp = *start_ + ros::Duration(comparison->time);
+    fillComparison(stamp, *comparison, comparison_);
+    comparison_publisher_.publish(comparison_);
+    const std::int64_t due = fromRosTime(stamp) / indicators_period_;
+    if (due != indicators_due_)
+    {
+      indicators_due_ = due;
+      fillIndicators(fromRosTime(stamp), companion_.signalIndicators(), indicators_);
+      fillAssessment(fromRosTime(stamp), companion_.assessment(), assessment_);
+      indicators_publisher_.publish(indicators_);
+      assessment_publisher_.publish(assessment_);
+    }
+  }
+}
+
+bool CompanionNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  companion_.reset();
+  response.success = true;
+  response.message = "the twin starts anew with the next row";
+  return true;
+}
+
+void CompanionNode::look()
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const ros::WallTime now = ros::WallTime::now();
+  const StreamTimingReport timing = companion_.timing();
+  const CompanionCounters counters = companion_.counters();
+  recent_refusals_.update(refusals_.unknown_joint + refusals_.incomplete + refusals_.not_finite + refusals_.load, now);
+  recent_disorder_.update(timing.repeated + timing.backward, now);
+  recent_missing_.update(timing.missing, now);
+  recent_restarts_.update(counters.restarts, now);
+  recent_failures_.update(counters.solver_failures, now);
+  const std::array<Verdict, 3> verdicts{ judgeTelemetry(), judgeComparison(), judgeHealth() };
+  bool changed = false;
+  for (std::size_t task = 0; task < verdicts.size(); ++task)
+  {
+    changed = changed || verdicts[task].level != verdicts_[task].level;
+  }
+  verdicts_ = verdicts;
+  if (changed || (now - last_report_).toSec() >= updater_.getPeriod())
+  {
+    last_report_ = now;
+    updater_.force_update();
+  }
+}
+
+bool CompanionNode::hasStopped() const
+{
+  return (ros::Time::now() - last_received_).toSec() > STOPPED_AFTER;
+}
+
+Verdict CompanionNode::judgeTelemetry() const
+{
+  const StreamTimingReport timing = companion_.timing();
+  const bool refused = recent_refusals_.areRecent();
+  if (timing.rows == 0)
+  {
+    return { DiagnosticStatus::WARN, refused ? "No usable row of " + names_.joint + " yet" :
+                                               "No telemetry yet on " + telemetry_subscriber_.getTopic() };
+  }
+  if (hasStopped())
+  {
+    return { DiagnosticStatus::WARN, "The telemetry has stopped" };
+  }
+  if (recent_restarts_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Stamps jumped back: started anew" };
+  }
+  if (refused)
+  {
+    return { DiagnosticStatus::WARN, "Messages refused: not for this joint, incomplete or not finite" };
+  }
+  if (recent_disorder_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Stamps repeat or go back: those rows are left out" };
+  }
+  if (recent_missing_.areRecent())
+  {
+    return { DiagnosticStatus::WARN, "Rows are missing" };
+  }
+  if (std::abs(timing.offset) > OFFSET_WARNING)
+  {
+    return { DiagnosticStatus::WARN, "Stamps are off this machine's clock" };
+  }
+  if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_)
+  {
+    return { DiagnosticStatus::WARN, "No load has been told: weight and inertia as configured" };
+  }
+  return { DiagnosticStatus::OK, "Telemetry arrives" };
+}
+
+Verdict CompanionNode::judgeComparison() const
+{
+  if (recent_failures_.areRecent())
+  {
+    return { DiagnosticStatus::ERROR, "The solver did not converge: the last good state is held" };
+  }
+  if (hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "Nothing to compare with" };
+  }
+  if (companion_.outsideShare() > OUTSIDE_WARNING)
+  {
+    return { DiagnosticStatus::WARN, "The current departs from a healthy joint's" };
+  }
+  return { DiagnosticStatus::OK, "Within the band of a healthy joint" };
+}
+
+Verdict CompanionNode::judgeHealth() const
+{
+  const Assessment& assessment = companion_.assessment();
+  if (hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
+  }
+  return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
+}
+
+void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
+{
+  const StreamTimingReport timing = companion_.timing();
+  const CompanionCounters counters = companion_.counters();
+  status.summary(verdicts_[TELEMETRY].level, verdicts_[TELEMETRY].text);
+  status.add("Topic", telemetry_subscriber_.getTopic());
+  status.add("Joint", names_.joint);
+  status.add("Rows", timing.rows);
+  status.add("Period [s]", timing.period);
+  status.add("Rows missing", timing.missing);
+  status.add("Longest gap [s]", timing.longest_gap);
+  status.add("Gaps that cut the stream", counters.gaps);
+  status.add("Stamps repeated", timing.repeated);
+  status.add("Stamps going back", timing.backward);
+  status.add("Starts anew", counters.restarts);
+  status.add("Reception less stamp [s]", timing.offset);
+  status.add("Jitter of reception, 95 % [s]", timing.jitter);
+  status.add("Unknown joint, refused", refusals_.unknown_joint);
+  status.add("Names in the last of those", found_names_);
+  status.add("Without position or effort, refused", refusals_.incomplete);
+  status.add("Not finite, refused", refusals_.not_finite);
+  status.add("Loads refused", refusals_.load);
+  status.add("Rows without a told load", counters.without_load);
+  if (last_load_)
+  {
+    status.add("Load's stamp before the newest row's reception [s]", (last_received_ - last_load_->stamp).toSec());
+  }
+}
+
+void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
+{
+  const CompanionCounters counters = companion_.counters();
+  const std::optional<double> lag = companion_.lag();
+  status.summary(verdicts_[COMPARISON].level, verdicts_[COMPARISON].text);
+  status.add("Residual of the current [A]", comparison_.current_residual);
+  status.add("Its band [A]", comparison_.current_band);
+  status.add("Residual of the position [rad]", comparison_.position_residual);
+  status.add("Residual of the velocity [rad/s]", comparison_.velocity_residual);
+  status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
+  status.add("Load [N.m]", comparison_.load_torque);
+  status.add("Rows compared", counters.compared);
+  status.add("Rows outside the band", counters.outside);
+  status.add("Share of the last ones outside [-]", companion_.outsideShare());
+  status.add("Steps failed", counters.solver_failures);
+  if (lag)
+  {
+    status.add("Measured after predicted [s]", *lag);
+  }
+  else
+  {
+    status.add("Measured after predicted [s]", "not told");
+  }
+}
+
+void CompanionNode::reportHealth(DiagnosticStatusWrapper& status) const
+{
+  status.summary(verdicts_[HEALTH].level, verdicts_[HEALTH].text);
+  addAssessment(companion_.assessment(), status);
+}
+}  // namespace hjt

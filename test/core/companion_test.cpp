@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The twin beside measured rows: what a stream does to it, which load it reckons with, how it judges time.
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "test/support/allocation_count.hpp"
+#include "test_parameters.hpp"
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/twin/companion.hpp"
+
+namespace hjt
+{
+namespace
+{
+using testing::Gt;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr double PERIOD = 0.008;  // [s]
+constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+
+/// A swing and a current that fits it but for an offset.
+MotionRow rowAt(double time)
+{
+  MotionRow row;
+  row.time = time;
+  row.position = 0.5 * std::sin(1.3 * time);
+  row.current = 1.0 + 0.8 * std::cos(1.3 * time);
+  row.received = time + 0.003;
+  return row;
+}
+
+std::vector<Comparison> takeAll(Companion& companion, bool at_end = false)
+{
+  std::vector<Comparison> taken;
+  while (const std::optional<Comparison> now = companion.take(at_end))
+  {
+    taken.push_back(*now);
+  }
+  return taken;
+}
+
+bool isFinite(const Comparison& now)
+{
+  double sum = now.joint_torque + now.friction_torque + now.load_torque + now.residual_torque;
+  for (const Compared& both : { now.position, now.velocity, now.current })
+  {
+    sum += both.measured + both.predicted + both.band;
+  }
+  return std::isfinite(sum);
+}
+
+Parameters parametersWith(std::vector<std::string> assignments, const std::vector<std::string>& overlays = {})
+{
+  assignments.insert(assignments.end(), { "motor.viscous_friction=0.0", "solver.rate=2000" });
+  return shippedParameters(assignments, overlays);
+}
+
+class CompanionInMode : public testing::TestWithParam<InputMode>
+{
+};
+
+TEST_P(CompanionInMode, StaysFiniteThroughWhateverComesAndCountsIt)
+{
+  Companion companion(parametersWith({}), GetParam());
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  std::vector<Comparison> taken;
+  const auto keep = [&]
+  {
+    for (const Comparison& now : takeAll(companion))
+    {
+      taken.push_back(now);
+    }
+  };
+  int damaged = 0;
+  for (int i = 0; i < 1500; ++i)
+  {
+    MotionRow row = rowAt(PERIOD * i + 0.002 * even(engine));
+    companion.give(row);
+    companion.give(row);  // its stamp again
+    const std::vector<double> bad{ NONE, std::numeric_limits<double>::infinity(), -1e300 };
+    if (i % 50 == 7)
+    {
+      for (const double value : bad)
+      {
+        row = rowAt(PERIOD * i + 0.003);
+        (even(engine) < 0.5 ? row.position : row.current) = value;
+        companion.give(row);
+        companion.giveLoad(value, value);
+        ++damaged;
+      }
+    }
+    if (i % 50 == 20)
+    {
+      companion.give(rowAt(PERIOD * (i - 3)));  // an earlier one
+      i += 4;                                   // and some that never come
+    }
+    if (i == 700)
+    {
+      i += 100;
+    }
+    keep();
+  }
+  for (const Comparison& now : taken)
+  {
+    ASSERT_TRUE(isFinite(now)) << now.time;
+  }
+  const CompanionCounters counters = companion.counters();
+  EXPECT_EQ(counters.compared, taken.size());
+  EXPECT_GT(taken.size(), 1000u);
+  EXPECT_GE(counters.refused, static_cast<std::uint64_t>(damaged) + 1200);
+  EXPECT_EQ(counters.gaps, 1u);
+  EXPECT_EQ(counters.restarts, 0u);
+  const StreamTimingReport timing = companion.timing();
+  EXPECT_NEAR(timing.period, PERIOD, 0.0015);
+  EXPECT_GT(timing.repeated, 1200u);
+  EXPECT_EQ(timing.backward, 28u);
+  EXPECT_NEAR(static_cast<double>(timing.missing), 28.0 * 4.0 + 100.0, 30.0);
+}
+
+TEST_P(CompanionInMode, BeginsAnewWhenStampsJumpBack)
+{
+  Companion companion(parametersWith({}), GetParam());
+  for (int i = 0; i < 400; ++i)
+  {
+    companion.give(rowAt(100.0 + PERIOD * i));
+    takeAll(companion);
+  }
+  for (int i = 0; i < 400; ++i)
+  {
+    companion.give(rowAt(PERIOD * i));
+  }
+  const std::vector<Comparison> taken = takeAll(companion);
+  EXPECT_THAT(taken, SizeIs(Gt(390u)));
+  EXPECT_TRUE(taken.front().after_gap);
+  EXPECT_TRUE(isFinite(taken.back()));
+  EXPECT_EQ(companion.counters().restarts, 1u);
+}
+
+TEST_P(CompanionInMode, AllocatesNothing)
+{
+  Companion companion(parametersWith({}), GetParam());
+  const std::uint64_t before = allocationCount();
+  for (int i = 0; i < 300; ++i)
+  {
+    companion.giveLoad(PERIOD * i, 3.0);
+    companion.give(rowAt(PERIOD * i));
+    while (companion.take())
+    {
+    }
+  }
+  companion.timing();
+  EXPECT_EQ(allocationCount(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, CompanionInMode,
+                         testing::Values(InputMode::TORQUE, InputMode::MOTION, InputMode::OBSERVER));
+
+/// Comparisons of a joint that stands at an angle under a load of 12 N.m.
+Comparison standing(const Parameters& parameters, bool told)
+{
+  Companion companion(parameters, InputMode::MOTION);
+  Comparison last;
+  for (int i = 0; i < 100; ++i)
+  {
+    if (told)
+    {
+      companion.giveLoad(PERIOD * i, 12.0);
+    }
+    MotionRow row = rowAt(PERIOD * i);
+    row.position = 0.5;
+    companion.give(row);
+    for (const Comparison& now : takeAll(companion))
+    {
+      last = now;
+    }
+  }
+  return last;
+}
+
+TEST(Companion, TakesTheLoadFromWhereItIsTold)
+{
+  const double weight = 20.0 * std::sin(0.5);
+  const auto with = [](const char* source) {
+    return parametersWith({ "output.gravity_torque=20.0", std::string("telemetry.load=") + source });
+  };
+  EXPECT_NEAR(standing(with("model"), true).load_torque, weight, 1e-6);
+  EXPECT_FALSE(standing(with("model"), true).load_told);
+  EXPECT_NEAR(standing(with("load_torque"), true).load_torque, weight + 12.0, 1e-6);
+  EXPECT_NEAR(standing(with("target_moment"), true).load_torque, 12.0, 1e-6);
+  EXPECT_TRUE(standing(with("target_moment"), true).load_told);
+  EXPECT_NEAR(standing(with("target_moment"), false).load_torque, weight, 1e-6);
+}
+
+TEST(Companion, TakesTheLoadByItsStampHoweverLateItComes)
+{
+  const Parameters parameters = parametersWith({ "telemetry.load=target_moment" });
+  std::vector<double> loads[2];
+  for (const int late : { 0, 1 })
+  {
+    Companion companion(parameters, InputMode::MOTION);
+    for (int i = 0; i < 200; ++i)
+    {
+      const int told = i - 5 * late;  // 40 ms
+      if (told >= 0)
+      {
+        companion.giveLoad(PERIOD * told, told);
+      }
+      companion.give(rowAt(PERIOD * i));
+      for (const Comparison& now : takeAll(companion))
+      {
+        loads[late].push_back(now.load_torque);
+      }
+    }
+  }
+  EXPECT_EQ(loads[0], loads[1]);
+  EXPECT_EQ(loads[0].back(), static_cast<double>(loads[0].size() - 1));
+}
+
+TEST(Companion, RefusesAWeightThatTheLoadHoldsAlready)
+{
+  const Parameters parameters = parametersWith({ "output.gravity_torque=20.0", "telemetry.load=target_moment" });
+  for (const InputMode mode : { InputMode::TORQUE, InputMode::OBSERVER })
+  {
+    try
+    {
+      Companion companion(parameters, mode);
+      ADD_FAILURE() << "the weight counts twice";
+    }
+    catch (const ParameterError& error)
+    {
+      EXPECT_THAT(error.what(), HasSubstr("output.gravity_torque"));
+    }
+  }
+}
+
+TEST(Companion, TellsHowManyOfTheLastRowsDepart)
+{
+  const auto shareWith = [](double offset, int rows)
+  {
+    Companion companion(parametersWith({ "output.load_inertia=0.02" }), InputMode::MOTION);
+    for (int i = 0; i < rows; ++i)
+    {
+      MotionRow row = rowAt(PERIOD * i);
+      row.position = 0.5 * PERIOD * i;
+      row.current = offset;
+      companion.give(row);
+      takeAll(companion);
+    }
+    return companion.outsideShare();
+  };
+  EXPECT_LT(shareWith(0.8, 1000), 0.05);
+  EXPECT_GT(shareWith(5.0, 1000), 0.95);
+  EXPECT_LT(shareWith(5.0, 50), 0.3);
+}
+
+TEST(Companion, SeesTheMeasuredJointWithTheHealthMonitor)
+{
+  Companion companion(parametersWith({ "indicators.window_turns=20" }), InputMode::MOTION);
+  for (int i = 0; i < 2000; ++i)
+  {
+    MotionRow row = rowAt(PERIOD * i);
+    row.position = PERIOD * i * 0.5;
+    companion.give(row);
+    takeAll(companion);
+  }
+  EXPECT_GT(companion.signalIndicators().windows, 2u);
+  EXPECT_NEAR(companion.signalIndicators().point.speed, 101.0 * 0.5, 1.0);
+}
+
+TEST(LagEstimate, FindsALagFromUnevenRows)
+{
+  for (const double lag : { -0.05, 0.0, 0.013, 0.06 })
+  {
+    LagEstimate estimate;
+    std::mt19937 engine(2);
+    std::uniform_real_distribution<double> even(0.0, 1.0);
+    std::normal_distribution<double> unit;
+    const auto signal = [](double time) { return std::sin(2.1 * time) + 0.4 * std::sin(7.3 * time) + 0.1 * time; };
+    for (int i = 0; i < 2000; ++i)
+    {
+      if (even(engine) < 0.05)
+      {
+        continue;
+      }
+      const double time = PERIOD * (i + 0.3 * even(engine));
+      estimate.add(time, signal(time), 3.0 * signal(time - lag) + 5.0 + 0.1 * unit(engine));
+    }
+    ASSERT_TRUE(estimate.lag().has_value()) << lag;
+    EXPECT_NEAR(*estimate.lag(), lag, 0.002);
+  }
+}
+
+TEST(LagEstimate, TellsNothingOfSignalsThatAreUnlike)
+{
+  LagEstimate estimate;
+  for (int i = 0; i < 2000; ++i)
+  {
+    estimate.add(PERIOD * i, std::sin(2.1 * PERIOD * i), std::sin(9.0 * PERIOD * i));
+  }
+  EXPECT_FALSE(estimate.lag().has_value());
+}
+
+TEST(StreamTiming, TellsClocksOffsetAndJitter)
+{
+  StreamTiming timing;
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  for (int i = 0; i < 1000; ++i)
+  {
+    if (i % 100 != 50)
+    {
+      timing.add(0.002 * i, 0.002 * i - 3.0 + 0.004 * even(engine));
+    }
+  }
+  const StreamTimingReport report = timing.report();
+  EXPECT_NEAR(report.period, 0.002, 1e-6);
+  EXPECT_EQ(report.missing, 10u);
+  EXPECT_NEAR(report.longest_gap, 0.004, 1e-9);
+  EXPECT_NEAR(report.offset, -3.0, 1e-4);
+  EXPECT_NEAR(report.jitter, 0.0038, 3e-4);
+}
+}  // namespace
+}  // namespace hjt

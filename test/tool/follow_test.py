@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin follow`: the twin beside a recorded robot, in each mode. The robots are twins, led by a speed control, with the
+noise of real sensors; `joint_twin sweep` runs them."""
+import csv
+import glob
+import math
+import os
+
+import rosbag
+from sensor_msgs.msg import JointState
+
+import tool
+
+RATIO, GAIN = 101.0, 10.7  # [-], [N.m/A] at the joint
+JOINT = "shoulder_pan_joint"
+OPTIONS = ["--joint", "base", "--config", "joints/base.yaml"]
+PLAN = """name: robot
+seed: 3
+duration: 8.0
+repeats: 1
+overlays: [joints/base.yaml, real_sensors.yaml]
+set: {publish.joint_states_rate: 125.0, publish.encoders_rate: 1.0, publish.contact_forces_rate: 1.0}
+duty:
+  - name: swing
+    speed: {trapezoid: {peak: 0.8, slope: 2.0, hold: 1.0, pause: 0.4}}
+    bandwidth: 8.0
+    load: {constant: 0.0}
+classes:
+  healthy: []
+  rubbing:
+    - {kind: lubricant_degradation, severity: 1.0, place: -1, onset: 0.0}
+record: {format: bag}
+"""
+
+
+def as_ur_tells(source, target, lag=0.0, both=False):
+    """The robot's own joint states as a UR driver publishes them; received 4 ms after their stamps, one in 50 lost."""
+    with rosbag.Bag(source) as robot, rosbag.Bag(target, "w") as bag:
+        states = [message for _, message, _ in robot.read_messages("/joint_twin/joint_states")]
+        behind = round(lag / 0.008)
+        for row, state in enumerate(states):
+            if row < behind or row % 50 == 30:
+                continue
+            current = states[row - behind].effort[0] * RATIO / GAIN
+            told = JointState(name=["elbow_joint", JOINT, "wrist_1_joint"], position=[0.1, state.position[1], 0.2],
+                              velocity=[0.0] * 3, effort=[0.0, current, 0.0])
+            if both:
+                told.name.append(JOINT + "_motor")
+                told.position.append(state.position[0])
+            told.header.stamp = state.header.stamp
+            bag.write("/joint_states", told, state.header.stamp + tool.genpy.Duration(0, 4_000_000))
+
+
+class Follow(tool.ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("plan.yaml", PLAN)
+        self.succeed("sweep", "plan.yaml", "--out", "robots")
+        self.healthy, self.rubbing = sorted(glob.glob(os.path.join(self.path("robots"), "runs", "*.bag")))
+        as_ur_tells(self.healthy, self.path("a.bag"))
+
+    def rows(self, name):
+        with open(self.path(name)) as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_every_mode_fills_the_same_fields_and_keeps_a_healthy_joint_within_its_band(self):
+        fields = set()
+        for mode in ("torque", "motion", "observer"):
+            summary = self.succeed_json("follow", "a.bag", *OPTIONS, "--mode", mode, "--out", f"{mode}.csv")
+            rows = self.rows(f"{mode}.csv")
+            fields.add(tuple(rows[0]))
+            self.assertEqual(len(rows), summary["rows"])
+            self.assertTrue(all(math.isfinite(value) for row in rows for value in row.values()), mode)
+            self.assertEqual(summary["missing"], 19)
+            self.assertAlmostEqual(summary["period"], 0.008, places=6)
+            self.assertAlmostEqual(summary["reception_offset"], 0.004, places=4)
+            self.assertEqual(summary["without_load"], summary["rows"])
+            if mode != "torque":
+                self.assertLess(summary["outside"], 0.02 * len(rows), mode)
+                self.assertLess(summary["current_residual_rms"], 0.3, mode)
+        self.assertEqual(len(fields), 1)
+        # Open loop: it turns as the robot does, though how far is left to what adds up.
+        torque = self.rows("torque.csv")
+        self.assertLess(max(abs(row["velocity_residual"]) for row in torque), 0.2)
+
+    def test_a_fault_shows_in_the_residual_with_one_encoder_and_with_both(self):
+        as_ur_tells(self.rubbing, self.path("worn.bag"))
+        as_ur_tells(self.rubbing, self.path("both.bag"), both=True)
+        for bag, mode in (("worn.bag", "motion"), ("worn.bag", "observer"), ("both.bag", "observer")):
+            summary = self.succeed_json("follow", bag, *OPTIONS, "--mode", mode, "--out", "worn.csv", "--force")
+            moving = [row for row in self.rows("worn.csv") if abs(row["velocity_measured"]) > 0.6]
+            more = sum(math.copysign(1.0, row["velocity_measured"]) * row["current_residual"]
+                       for row in moving) / len(moving)
+            self.assertGreater(more, 0.3, (bag, mode, summary))
+
+    def test_a_current_that_comes_late_is_told(self):
+        as_ur_tells(self.healthy, self.path("late.bag"), lag=0.024)
+        lags = {bag: self.succeed_json("follow", bag, *OPTIONS)["lag"] for bag in ("a.bag", "late.bag")}
+        self.assertAlmostEqual(lags["late.bag"] - lags["a.bag"], 0.024, delta=0.008)
+
+    def test_what_cannot_be_is_refused_with_its_reason(self):
+        self.fail_with(2, ["--mode"], "follow", "a.bag", *OPTIONS, "--mode", "guess")
+        self.fail_with(1, ["output.gravity_torque", "recorded_load.yaml"], "follow", "a.bag", "--joint", JOINT,
+                       "--config", "joints/elbow.yaml", "--mode", "observer")
+        self.fail_with(1, [JOINT], "follow", "a.bag", "--joint", "shoulder_joint")
+
+
+if __name__ == "__main__":
+    tool.main()
