@@ -12,8 +12,9 @@ import numpy
 
 import fault_figures
 import health_runs
+import health_signatures
 import page_section
-from health_runs import CHECK_UP, CONDITIONS, COOL, JUDGED, NOISY, POINTS, SHORT_POINTS, TRAINING, WARM
+from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, SHORT_POINTS, WARM
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -273,9 +274,15 @@ def main():
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds health.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
+    parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes anew, and no more")
     parser.add_argument("--sound-hours", type=float, default=2.0, help="of sound running in each motion [2]")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
+    if options.fit:
+        source = options.docs.parent / "src" / "health" / "fault_signatures.inc"
+        health_signatures.write(bench, source, options.docs / "indicators.md")
+        print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
+        return
     images = options.docs / "images" / "health"
     fault_figures.draw_all(options.tool, options.work, bench.kinds, images)
     sound, faulty, delayed = collect(bench, options.sound_hours)

@@ -13,7 +13,7 @@ import sys
 RATIO = 101.0
 WINDOW_TURNS = 101.0      # of the motor: one of the joint
 START = 0.5               # of a run, before it is steady [s]
-COMMISSIONING = (20, 3)   # sound runs that make the reference at each point, windows of each
+COMMISSIONING = (20, 2)   # sound runs that make the reference at each point, windows of each
 WINDOWS = 2               # of a faulty run: as many as an alarm takes
 SOUND_WINDOWS = 20        # of a sound run
 SET_IN = 1.5              # windows after which a fault sets in on the way
@@ -48,6 +48,7 @@ CHECK_UP = Point("check-up: to and fro at up to 70°/s, ±130 N·m once a second
                  sinus(math.radians(SWING), 1.0 / PERIOD), sinus(130.0, 8.0 / PERIOD), (1000.0, PERIOD))
 POINTS = [steady(5.0, 140.0), steady(15.0, 60.0), steady(45.0, 110.0), steady(90.0, 0.0), steady(170.0, 30.0), TURNING,
           CHECK_UP]
+TRAINING_POINTS = POINTS[1:]
 SHORT_POINTS = [POINTS[1], POINTS[3], POINTS[4], CHECK_UP]  # for what takes long: see `takes_long`
 
 # The grease's temperature is anywhere in a band [°C]; noise of both encoders, times that of real_sensors.yaml.
@@ -59,10 +60,11 @@ CONDITIONS = [COOL, WARM, NOISY]
 
 Trial = collections.namedtuple("Trial", "name severities slow_severities tooth seed")
 TRAINING = Trial("training", [0.2, 0.6], [0.6], 90, 2)   # that the signatures are fitted to
-JUDGED = Trial("judged", [0.1, 0.3, 1.0], [0.1, 0.3, 1.0], 40, 3)
+JUDGED = Trial("judged", [0.1, 0.3, 1.0], [0.3, 1.0], 40, 3)
 
-# A window: number in its run from 1 on, scores and values by indicator, strongest score over its threshold, verdict.
-Window = collections.namedtuple("Window", "number values scores largest level cause confidence")
+# A window: number in its run from 1 on, values and scores by indicator, scores by feature, strongest score over its
+# threshold, verdict.
+Window = collections.namedtuple("Window", "number values scores features largest level cause confidence")
 Run = collections.namedtuple("Run", "point condition kind severity windows")
 
 
@@ -99,7 +101,8 @@ class Bench:
                  "overlays: [real_sensors.yaml]", "set:", "  solver.scene: auto", *noise,
                  f"  input.temperature: {{uniform: [{low}, {high}]}}", f"  indicators.window_turns: {point.window[0]}",
                  f"  indicators.window_time: {point.window[1]:.6f}",
-                 "  publish.indicators_rate: 1.0", "  publish.joint_states_rate: 0.001",
+                 f"  publish.indicators_rate: {1.0 if window_time(point) > 5.0 else 10.0}",
+                 "  publish.joint_states_rate: 0.001",
                  "  publish.encoders_rate: 0.001", "  publish.contact_forces_rate: 0.001", "  publish.health_rate: 0.001",
                  f"repeats: {repeats}", "duty:", f"  - name: {point.tag}", f"    speed: {point.speed}",
                  "    bandwidth: 8.0", f"    load: {point.load}", "classes:", *classes, "record:", "  format: bag"]
@@ -155,8 +158,8 @@ class Bench:
         windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict, own = window["assessment"], windows[window["recording"]]
-            own.append(Window(len(own) + 1, window["indicators"], window["scores"], verdict["largest_score"],
-                              verdict["level"], verdict["cause"], verdict["confidence"]))
+            own.append(Window(len(own) + 1, window["indicators"], window["scores"], window.get("features"),
+                              verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
         return [Run(point, condition, row["fault_kind"] or "healthy", _severity(row), windows[str(bag)])
                 for bag, row in bags]
 

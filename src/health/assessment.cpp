@@ -106,9 +106,9 @@ void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& 
   }
   // That something is wrong is settled: only what, is asked.
   const std::array<double, CAUSE_COUNT> probabilities = causeProbabilities(scores);
-  const auto best = std::max_element(probabilities.begin() + 1, probabilities.end());
+  const auto best = std::max_element(probabilities.begin(), probabilities.end());
   assessment_.cause = static_cast<Cause>(best - probabilities.begin());
-  assessment_.confidence = *best / (1.0 - probabilities[0]);
+  assessment_.confidence = *best;
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;
   std::sort(sorted.begin(), sorted.end(),
             [](const FeatureScore& a, const FeatureScore& b) { return std::abs(a.score) > std::abs(b.score); });

@@ -3,165 +3,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_SCORE = 12.0;
+constexpr double SHARPNESS = 12.0;
 
-// Features: ratio, kinematic error, stiffness, lost motion, loop | running torque, Coulomb, viscous, efficiency
-//           | residual, impulses | orders 1, 2, 4, circular spline | cage, ball, outer, inner, tooth pass
-/// By cause, in the order of `Feature`: . still, + up, - down, * any.
-constexpr std::array<const char*, CAUSE_COUNT> SIGNATURES{
-  // none
-  "....."
-  "...."
-  ".."
-  "...."
-  ".....",
-  // interface_wear
-  ".*-*."
-  "++*-"
-  "*."
-  ".**."
-  ".....",
-  // rear_section_crack
-  ".*-.*"
-  "...."
-  "*."
-  "**.."
-  ".....",
-  // lubricant_degradation
-  "....."
-  "+++-"
-  ".."
-  "...."
-  ".....",
-  // tooth_wear
-  ".*-++"
-  "***."
-  "**"
-  ".**."
-  "....*",
-  // tooth_root_crack
-  ".+*.."
-  "...."
-  "**"
-  ".+**"
-  "....*",
-  // flange_crack
-  ".*-*."
-  "...."
-  "*."
-  "+*.."
-  ".....",
-  // tooth_tip_crack
-  ".+..."
-  "...."
-  "++"
-  ".+**"
-  "....*",
-  // pitting
-  ".**.."
-  "**.*"
-  "++"
-  ".***"
-  "....+",
-  // wave_generator_wear
-  ".+-+."
-  "--*+"
-  "*."
-  ".++."
-  ".....",
-  // flexspline_crack
-  ".+-.."
-  "...."
-  "*."
-  ".++."
-  ".....",
-  // buckling
-  "++-++"
-  "**.-"
-  "+*"
-  "*++*"
-  ".....",
-  // ratcheting
-  "++.+*"
-  "*..*"
-  "++"
-  "****"
-  "....*",
-  // bearing_inner_race
-  ".*..."
-  "*..."
-  "*+"
-  "...."
-  "...+.",
-  // bearing_outer_race
-  ".*..."
-  "*..."
-  "*+"
-  "...."
-  "..+..",
-  // bearing_ball
-  ".*..."
-  "*..."
-  "*+"
-  "...."
-  ".+...",
-  // bearing_cage
-  ".*..."
-  "*..."
-  "*."
-  "...."
-  "+....",
-  // circular_spline_tooth
-  ".+..."
-  "...."
-  "**"
-  "...+"
-  "....*",
+constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
+  "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",
+  "coulomb", "viscous",         "efficiency",      "residual",    "impulses", "order_1",
+  "order_2", "order_4",         "circular_spline", "cage",        "ball",     "outer",
+  "inner",   "tooth_pass"
 };
 
-Move moveOf(char letter) noexcept
-{
-  switch (letter)
-  {
-    case '+':
-      return Move::UP;
-    case '-':
-      return Move::DOWN;
-    case '*':
-      return Move::ANY;
-    default:
-      return Move::STILL;
-  }
-}
+const std::vector<Signature> SIGNATURES{
+#include "fault_signatures.inc"
+};
 
-double normal(double x, double mean, double spread) noexcept
+/// Cosine of the angle between the scores and a signature, over the features compared; 0 if they say nothing.
+double likeness(const FeatureScores& scores, const Signature& signature) noexcept
 {
-  constexpr double ROOT_TWO_PI = 2.5066282746310002;
-  const double z = (x - mean) / spread;
-  return std::exp(-0.5 * z * z) / (spread * ROOT_TWO_PI);
-}
-
-double likelihood(double score, Move move) noexcept
-{
-  constexpr double WIDE = 8.0;
-  const double still = 0.95 * normal(score, 0.0, 1.5) + 0.05 * normal(score, 0.0, WIDE);
-  switch (move)
+  double product = 0.0;
+  double score_square = 0.0;
+  double direction_square = 0.0;
+  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
   {
-    case Move::UP:
-      return 0.2 * still + 0.8 * normal(score, 8.0, 4.0);
-    case Move::DOWN:
-      return 0.2 * still + 0.8 * normal(score, -8.0, 4.0);
-    case Move::ANY:
-      return 0.5 * still + 0.5 * normal(score, 0.0, WIDE);
-    case Move::STILL:
-      break;
+    if (scores[i].compared)
+    {
+      const double score = std::asinh(scores[i].score);
+      product += score * signature.direction[i];
+      score_square += score * score;
+      direction_square += signature.direction[i] * signature.direction[i];
+    }
   }
-  return still;
+  const double square = score_square * direction_square;
+  return square > 0.0 ? product / std::sqrt(square) : 0.0;
 }
 
 /// Gathers the deviations of one feature.
@@ -228,9 +106,14 @@ const char* causeName(Cause cause) noexcept
   return describe(static_cast<FaultKind>(kind)).name;
 }
 
-Move expectedMove(Cause cause, Feature feature) noexcept
+const char* featureName(Feature feature) noexcept
 {
-  return moveOf(SIGNATURES[static_cast<std::size_t>(cause)][static_cast<std::size_t>(feature)]);
+  return FEATURE_NAMES[static_cast<std::size_t>(feature)];
+}
+
+const std::vector<Signature>& faultSignatures() noexcept
+{
+  return SIGNATURES;
 }
 
 FeatureScores featureScores(const Deviations& deviations) noexcept
@@ -270,31 +153,17 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
 
 std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept
 {
-  std::array<double, CAUSE_COUNT> logs{};
-  double largest = -HUGE_VAL;
-  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  std::array<double, CAUSE_COUNT> probabilities{};
+  for (const Signature& signature : SIGNATURES)
   {
-    for (std::size_t feature = 0; feature < FEATURE_COUNT; ++feature)
-    {
-      if (scores[feature].compared)
-      {
-        const double score = std::clamp(scores[feature].score, -LARGEST_SCORE, LARGEST_SCORE);
-        logs[cause] +=
-            std::log(likelihood(score, expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature))));
-      }
-    }
-    largest = std::max(largest, logs[cause]);
+    double& probability = probabilities[static_cast<std::size_t>(signature.cause)];
+    probability = std::max(probability, std::exp(SHARPNESS * likeness(scores, signature)));
   }
-  double sum = 0.0;
-  for (double& value : logs)
+  const double sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
+  for (double& probability : probabilities)
   {
-    value = std::exp(value - largest);
-    sum += value;
+    probability /= sum;
   }
-  for (double& value : logs)
-  {
-    value /= sum;
-  }
-  return logs;
+  return probabilities;
 }
 }  // namespace hjt

@@ -31,7 +31,8 @@ void OrderTracker::reset() noexcept
 void OrderTracker::add(const LineSample& sample) noexcept
 {
   row_.head<NUISANCES>() << 1.0, sample.direction, sample.speed, std::cos(sample.output_angle),
-      std::sin(sample.output_angle), sample.load;
+      std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
+      sample.load * sample.load * sample.load;
   for (std::size_t line = 0; line < LINE_COUNT; ++line)
   {
     const auto column = static_cast<Eigen::Index>(NUISANCES + 2 * line);

@@ -10,8 +10,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double RIDGE = 1e-9;  // of a column's mean square [-]
-}
+// Of a column's mean square [-]: what stands out of the others by less than a thousandth has no coefficient of its own,
+// such as the ripple of a steady speed beside the constant.
+constexpr double RIDGE = 1e-6;
+}  // namespace
 
 RunningRegression::RunningRegression(int columns, int targets)
   : normal_(Eigen::MatrixXd::Zero(columns, columns))

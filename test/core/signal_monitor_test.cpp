@@ -418,18 +418,18 @@ TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
 
 TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
 {
-  for (std::size_t cause = 1; cause < CAUSE_COUNT; ++cause)
+  constexpr double SIZE = 8.0;
+  for (const Signature& signature : faultSignatures())
   {
     FeatureScores scores{};
     for (std::size_t feature = 0; feature < FEATURE_COUNT; ++feature)
     {
-      const Move move = expectedMove(static_cast<Cause>(cause), static_cast<Feature>(feature));
       scores[feature].compared = true;
-      scores[feature].score = move == Move::UP ? 8.0 : move == Move::DOWN ? -8.0 : 0.0;
+      scores[feature].score = std::sinh(SIZE * signature.direction[feature]);
     }
     const auto probabilities = causeProbabilities(scores);
     const auto best = std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin();
-    EXPECT_STREQ(causeName(static_cast<Cause>(best)), causeName(static_cast<Cause>(cause)));
+    EXPECT_STREQ(causeName(static_cast<Cause>(best)), causeName(signature.cause));
   }
 }
 /// The twin held at 150 rad/s under a load that swings; its indicators of the second window of 30 turns.

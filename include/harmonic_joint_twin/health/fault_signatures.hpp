@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "harmonic_joint_twin/health/baseline.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
@@ -56,6 +57,8 @@ enum class Feature : std::size_t
 };
 constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);
 
+const char* featureName(Feature feature) noexcept;  ///< "lost_motion"
+
 /// The strongest of a group's deviations.
 struct FeatureScore
 {
@@ -68,24 +71,21 @@ using FeatureScores = std::array<FeatureScore, FEATURE_COUNT>;
 
 FeatureScores featureScores(const Deviations& deviations) noexcept;
 
-/// How a feature moves under a cause.
-enum class Move : std::uint8_t
+/// Where a cause drives the features: a direction in the space of their compressed scores.
+struct Signature
 {
-  STILL,
-  UP,
-  DOWN,
-  ANY  ///< may move either way, or not
+  Cause cause;
+  std::array<double, FEATURE_COUNT> direction;
 };
 
-/// The table of docs/indicators.md.
-Move expectedMove(Cause cause, Feature feature) noexcept;
+/// The table of docs/indicators.md, fitted to the model's own faults by `scripts/evaluate_health --fit`.
+const std::vector<Signature>& faultSignatures() noexcept;
 
-/// Probabilities of the causes, NONE included, given the scores: naive Bayes, equal priors.
+/// Probabilities of the causes given the scores, NONE left out: 0. All alike if no feature says anything.
 ///
-/// Law:   P(c | s) ~ product over the compared features of p(s_f | move of f under c)
-/// where  still  0.95 N(0, 1.5) + 0.05 N(0, 8)
-///        up     0.2 still + 0.8 N(+8, 4),   down  0.2 still + 0.8 N(-8, 4)
-///        any    0.5 still + 0.5 N(0, 8)
-/// Scores count as 12 at most.
+/// Law:   P(c | s) ~ exp(k max cos(y, d)),  over the signatures d of the cause, of different motions
+/// where  y   asinh of the scores of the features compared, the others left out of both: however large a fault has grown,
+///            its direction is nearly the same
+///        k   sharpness, set on the runs that the signatures are fitted to
 std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept;
 }  // namespace hjt

@@ -153,10 +153,16 @@ Json toJson(const WindowResult& window)
 {
   Json values;
   Json scores;
+  Json features;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     values[indicatorName(i)] = numberOrNull(window.indicators.values[i]);
     scores[indicatorName(i)] = numberOrNull(window.deviations[i].score);
+  }
+  const FeatureScores found = featureScores(window.deviations);
+  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
+  {
+    features[featureName(static_cast<Feature>(i))] = found[i].compared ? Json(found[i].score) : Json(nullptr);
   }
   const OperatingPoint& point = window.indicators.point;
   return { { "recording", window.recording },
@@ -168,6 +174,7 @@ Json toJson(const WindowResult& window)
            { "temperature", numberOrNull(point.temperature) },
            { "indicators", values },
            { "scores", scores },
+           { "features", features },
            { "assessment", toJson(window.assessment) } };
 }
 

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fits the signatures of the causes to the model's own faults, and writes them as data of the source and as a table."""
+import collections
+import math
+
+import numpy
+
+import page_section
+from health_runs import COOL, TRAINING, TRAINING_POINTS
+
+LEAST = 1.0  # of a window's strongest score, over the threshold: what is weaker is no alarm and needs no cause
+TABLE_LEAST = 0.1  # shown from this size on
+
+
+def compressed(features):
+    """As the assessment takes them; what was not compared is NaN."""
+    return numpy.array([math.nan if score is None else math.asinh(score) for score in features.values()])
+
+
+def unit(direction):
+    return direction / math.sqrt(numpy.nansum(direction ** 2))
+
+
+def fit(runs):
+    """Mean direction of the windows that speak, by cause and motion."""
+    directions = collections.defaultdict(list)
+    for run in runs:
+        for window in run.windows:
+            if window.largest >= LEAST:
+                directions[run.kind, run.point.tag].append(unit(compressed(window.features)))
+    return {key: unit(numpy.nan_to_num(numpy.nanmean(numpy.array(own), axis=0))) for key, own in directions.items()}
+
+
+def circular_spline_tooth(names):
+    """Not among the faults: by the kinematics, the lobes over a place of the circular spline."""
+    direction = numpy.array([{"circular_spline": 1.0, "kinematic_error": 0.3}.get(name, 0.0) for name in names])
+    return {("circular_spline_tooth", "any"): unit(direction)}
+
+
+def in_source(cause):
+    return "Cause::CIRCULAR_SPLINE_TOOTH" if cause == "circular_spline_tooth" else f"causeOf(FaultKind::{cause.upper()})"
+
+
+def write(bench, source, page):
+    runs = []
+    reference = bench.reference(COOL)
+    for point in TRAINING_POINTS:
+        runs += bench.judge(bench.faulty(TRAINING, COOL, point), COOL, point, reference)
+    names = list(next(window for run in runs for window in run.windows).features)
+    signatures = fit(runs) | circular_spline_tooth(names)
+    order = [kind["kind"] for kind in bench.kinds] + ["circular_spline_tooth"]
+    rows = sorted(signatures.items(), key=lambda item: (order.index(item[0][0]), item[0][1]))
+    lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`: cause, direction by Feature.",
+             "// clang-format off"]
+    lines += [f"{{ {in_source(cause)}, {{ {', '.join(f'{value:.3f}' for value in direction)} }} }},  // {motion}"
+              for (cause, motion), direction in rows]
+    source.write_text("\n".join(lines) + "\n// clang-format on\n")
+    shown = ["<details>", f"<summary>{len(rows)} signatures</summary>", "",
+             "| cause | motion | " + " | ".join(name.replace("_", " ") for name in names) + " |",
+             "|---|---|" + "---|" * len(names)]
+    shown += [f"| {cause} | {motion} | " + " | ".join(f"{value:.1f}" if abs(value) >= TABLE_LEAST else "" for value in direction)
+              + " |" for (cause, motion), direction in rows]
+    page_section.write(page, "signatures", [*shown, "", "</details>"])
