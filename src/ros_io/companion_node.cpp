@@ -24,6 +24,8 @@ constexpr double WARNING_PERIOD = 5.0;
 constexpr double LOOK_PERIOD = 0.05;
 /// Telemetry that brings nothing for so long has stopped [s].
 constexpr double STOPPED_AFTER = 0.5;
+/// Share of the last seconds' rows outside their band beyond which the joint is said to depart [-].
+constexpr double OUTSIDE_WARNING = 0.1;
 /// Stamps further off the clock are said to be [s].
 constexpr double OFFSET_WARNING = 0.5;
 
@@ -56,8 +58,8 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
   , reset_service_(node.advertiseService("reset", &CompanionNode::reset, this))
 {
   updater_.setHardwareID(parameters.joint.hardware_id);
-  updater_.add("Telemetry", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
-  updater_.add("Comparison", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
+  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
+  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
   updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
   timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
@@ -258,7 +260,7 @@ Verdict CompanionNode::judgeComparison() const
   {
     return { DiagnosticStatus::STALE, "Nothing to compare with" };
   }
-  if (comparison_.outside_band)
+  if (companion_.outsideShare() > OUTSIDE_WARNING)
   {
     return { DiagnosticStatus::WARN, "The current departs from a healthy joint's" };
   }
@@ -317,6 +319,7 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
+  status.add("Share of the last ones outside [-]", companion_.outsideShare());
   status.add("Steps failed", counters.solver_failures);
   if (lag)
   {

@@ -84,7 +84,7 @@ public:
     // Of the rotor: the output's own swings by what the load is not known.
     now.velocity.predicted = seen.motor_velocity / ratio_;
     now.current.predicted = sample.current + to_current * seen.residual_torque;
-    now.current.band = DEVIATIONS * telemetry_.current_deviation + to_current * seen.residual_band;
+    now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
     now.sticking = seen.sticking;
     now.friction_torque = ratio_ * seen.friction_torque;
     now.joint_torque = seen.joint_torque;
@@ -140,6 +140,7 @@ void Companion::reset() noexcept
   smoother_ = MotionSmoother();
   restarted_ = true;
   loads_end_ = 0;
+  outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
   signals_.reset();
@@ -227,6 +228,9 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
     lag_.add(now.time, judged.predicted, judged.measured);
   }
+  const double step = now.after_gap ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
+  outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
+  last_compared_ = now.time;
   ++counters_.compared;
   counters_.outside += now.isOutside() ? 1 : 0;
   counters_.without_load += load_source_ != LoadSource::MODEL && !told ? 1 : 0;

@@ -241,6 +241,26 @@ TEST(Companion, RefusesAWeightThatTheLoadHoldsAlready)
   }
 }
 
+TEST(Companion, TellsHowManyOfTheLastRowsDepart)
+{
+  const auto shareWith = [](double offset, int rows)
+  {
+    Companion companion(parametersWith({ "output.load_inertia=0.02" }), InputMode::MOTION);
+    for (int i = 0; i < rows; ++i)
+    {
+      MotionRow row = rowAt(PERIOD * i);
+      row.position = 0.5 * PERIOD * i;
+      row.current = offset;
+      companion.give(row);
+      takeAll(companion);
+    }
+    return companion.outsideShare();
+  };
+  EXPECT_LT(shareWith(0.8, 1000), 0.05);
+  EXPECT_GT(shareWith(5.0, 1000), 0.95);
+  EXPECT_LT(shareWith(5.0, 50), 0.3);
+}
+
 TEST(Companion, SeesTheMeasuredJointWithTheHealthMonitor)
 {
   Companion companion(parametersWith({ "indicators.window_turns=20" }), InputMode::MOTION);

@@ -22,7 +22,9 @@ from harmonic_joint_twin.msg import Assessment, Comparison, Indicators
 from ros_support import PACKAGE, WARN, Diagnostics, Listener, executable, wait_until
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint"}
-TWINS = [("motion", joint) for joint in JOINTS] + [("observer", joint) for joint in JOINTS] + [("torque", "base")]
+TWINS = [("motion", joint) for joint in JOINTS] + [("observer", joint) for joint in JOINTS] + [("torque", "base"), ("loaded", "base")]
+MODES = {"loaded": "motion"}  # of the others, their names
+LOADS = {"loaded": "target_moment"}  # of the others, the model
 RATIO, GAIN = 101.0, 10.7  # [-], [N.m/A] at the joint
 PERIOD = 0.008  # [s]
 FIELDS = [field for field in Comparison.__slots__ if field != "header"]
@@ -66,6 +68,8 @@ class UR5(unittest.TestCase):
         cls.assessments = Listener("/motion/base/joint_twin/assessment", Assessment)
         robot = {joint: run_robot(cls.directory, joint) for joint in JOINTS}
         cls.publisher = rospy.Publisher("/joint_states", JointState, queue_size=1000)
+        cls.load_publisher = rospy.Publisher("/target_moments", JointState, queue_size=1000)
+        wait_until(lambda: cls.load_publisher.get_num_connections() == 1, "the twin that is told its load")
         wait_until(lambda: cls.publisher.get_num_connections() == len(TWINS), "all twins")
         for listener in cls.comparisons.values():
             listener.wait_for_connection()
@@ -85,6 +89,10 @@ class UR5(unittest.TestCase):
             for row in range(len(robot["base"])):
                 stamp = begin + rospy.Duration.from_sec(PERIOD * row)
                 time.sleep(max(0.0, (stamp - rospy.Time.now()).to_sec()))
+                load = JointState(name=list(JOINTS.values()), effort=[8.0 * math.sin(0.02 * row)] * 3)
+                load.header.stamp = stamp
+                cls.load_publisher.publish(load)
+                bag.write("/joint_twin/load", load, rospy.Time.now())
                 if row % 40 == 25 or 300 <= row < 330:
                     continue
                 message = JointState(name=["wrist_1_joint", *JOINTS.values()],
@@ -128,23 +136,26 @@ class UR5(unittest.TestCase):
             self.assertLess(max(abs(more["base"]), abs(more["shoulder"])), 0.15, (mode, more))
 
     def test_live_and_offline_give_the_same_numbers(self):
-        for mode, joint in TWINS:
-            out = os.path.join(self.directory, f"{mode}_{joint}.csv")
+        for twin in TWINS:
+            name, joint = twin
+            mode, load = MODES.get(name, name), LOADS.get(name, "model")
+            out = os.path.join(self.directory, f"{name}_{joint}.csv")
             subprocess.run([executable("joint_twin"), "follow", self.bag_path, "--joint", joint, "--mode", mode, "--config",
-                            f"joints/{joint}.yaml", "--set", "telemetry.load=model", "--out", out],
+                            f"joints/{joint}.yaml", "--set", f"telemetry.load={load}", "--out", out],
                            check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with open(out) as file:
                 offline = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
-            live = self.wait_for_rows((mode, joint))
+            live = self.wait_for_rows(twin)
+            self.assertEqual(all(message.load_told for message in live), name in LOADS)
             self.assertIn(len(offline) - len(live), range(9))
             for message, row in zip(live, offline):
                 for field in FIELDS:
-                    self.assertEqual(getattr(message, field), row[field], (mode, joint, field, row["time"]))
+                    self.assertEqual(getattr(message, field), row[field], (twin, field, row["time"]))
 
     def test_what_was_wrong_with_the_messages_is_told(self):
         for twin in TWINS:
             self.wait_for_rows(twin)
-            told = self.diagnostics[twin].fresh("Telemetry")
+            told = self.diagnostics[twin].fresh("Input")
             self.assertEqual(told["Topic"], "/joint_states")
             self.assertEqual(int(told["Not finite, refused"]), self.sent["not_finite"])
             self.assertEqual(int(told["Without position or effort, refused"]), self.sent["incomplete"])
@@ -159,9 +170,9 @@ class UR5(unittest.TestCase):
     def test_telemetry_that_stops_is_told_and_health_comes_from_it(self):
         twin = ("motion", "base")
         self.wait_for_rows(twin)
-        wait_until(lambda: any("stopped" in status.message for status in self.diagnostics[twin].statuses("Telemetry")),
+        wait_until(lambda: any("stopped" in status.message for status in self.diagnostics[twin].statuses("Input")),
                    "the end of the telemetry")
-        self.assertEqual(self.diagnostics[twin].level("Telemetry"), WARN)
+        self.assertEqual(self.diagnostics[twin].level("Input"), WARN)
         self.assertGreater(len(self.indicators.messages()), 3)
         self.assertEqual(self.assessments.messages()[-1].header.frame_id, JOINTS["base"])
 

@@ -67,6 +67,7 @@ class Companion
 public:
   /// Stamps that go back by more are a new recording or a clock that was set [s].
   static constexpr double RESTART = 1.0;
+  static constexpr double OUTSIDE_MEMORY = 2.0;  ///< [s]
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -85,6 +86,9 @@ public:
 
   CompanionCounters counters() const noexcept;
   StreamTimingReport timing() const noexcept { return timing_.report(); }
+
+  /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
+  double outsideShare() const noexcept { return outside_share_; }
 
   /// By how much what was measured comes after what is predicted from the other signals: current (motion) or speed (torque);
   /// the observer tells nothing of it [s].
@@ -127,6 +131,8 @@ private:
   double last_time_{};
   std::array<LoadAt, LOADS> loads_{};
   std::uint64_t loads_end_{};
+  double outside_share_{};
+  double last_compared_{};  // [s]
   StreamTiming timing_;
   LagEstimate lag_;
   SignalMonitor signals_;

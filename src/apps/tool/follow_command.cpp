@@ -119,7 +119,7 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
   const bool has_load = recordsLoad(source);
   Progress progress("reading");
   FollowSummary summary;
-  const auto takeAll = [&](bool at_end)
+  const auto take_all = [&](bool at_end)
   {
     while (const std::optional<Comparison> now = companion.take(at_end))
     {
@@ -138,11 +138,11 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
           companion.giveLoad(row.time, row.load);
         }
         companion.give(row);
-        takeAll(false);
+        take_all(false);
         return interruptSignal() == 0;
       },
       [&](double done) { progress.update(done); });
-  takeAll(true);
+  take_all(true);
   summary.counters = companion.counters();
   summary.timing = companion.timing();
   summary.lag = companion.lag();
