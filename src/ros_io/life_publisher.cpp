@@ -78,22 +78,21 @@ void LifePublisher::readRecord()
   }
 }
 
-void LifePublisher::offer(const Twin& twin) noexcept
+void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept
 {
-  const JointOutputs& outputs = twin.outputs();
-  const Stamp elapsed = outputs.stamp - last_;
+  const Stamp elapsed = instant - last_;
   if (elapsed >= 0 && elapsed < COUNT_PERIOD)
   {
     return;
   }
-  last_ = outputs.stamp;
+  last_ = instant;
   if (elapsed < 0 || elapsed > STRETCH)
   {
     return;  // started anew at another instant
   }
-  counted_.use.add({ toSeconds(elapsed), std::abs(outputs.motor_velocity), outputs.joint_torque, outputs.temperature });
-  counted_.until = outputs.stamp;
-  if (outputs.stamp >= counted_from_ && outputs.stamp - counted_from_ < STRETCH)
+  counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
+  counted_.until = instant;
+  if (instant >= counted_from_ && instant - counted_from_ < STRETCH)
   {
     return;
   }
@@ -102,7 +101,7 @@ void LifePublisher::offer(const Twin& twin) noexcept
     *slot = counted_;
     stretches_.commit();
     counted_.use.clear();
-    counted_from_ = outputs.stamp;
+    counted_from_ = instant;
   }
 }
 

@@ -59,7 +59,8 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
           [this](Twin& twin)
           {
             publishers_.offer(twin);
-            life_.offer(twin);
+            const JointOutputs& joint = twin.outputs();
+            life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
           })
   , realtime_(requestRealtime(parameters.realtime, loop_))
   , subscribers_(node, parameters, inbox_)

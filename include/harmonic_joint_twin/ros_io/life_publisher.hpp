@@ -11,13 +11,13 @@
 
 #include "harmonic_joint_twin/RemainingLife.h"
 #include "harmonic_joint_twin/ros_io/slot_ring.hpp"
+#include "harmonic_joint_twin/twin/input_queue.hpp"
 #include "harmonic_joint_twin/twin/life_estimate.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
 
 namespace hjt
 {
-/// Keeps the drive's record of use and publishes what is left of its life. The loop counts; ageing, publishing and the file
-/// are done in a thread of its own, every life.forecast_period by the wall clock and at the end.
+/// Keeps the drive's record of use and publishes what is left of its life. Whoever runs the twin counts; ageing, publishing
+/// and the file are done in a thread of its own, every life.forecast_period by the wall clock and at the end.
 ///
 /// A file that cannot be read is set aside under another name, and the count starts anew.
 class LifePublisher
@@ -25,11 +25,12 @@ class LifePublisher
 public:
   LifePublisher(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// After the loop has ended: takes in what it counted last, and writes.
+  /// After the last `offer`: takes in what was counted, and writes.
   ~LifePublisher();
 
-  /// Loop: counts the time since the last call. No allocation, no lock.
-  void offer(const Twin& twin) noexcept;
+  /// One thread, the loop's: counts the time since the last call. No allocation, no lock.
+  /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC].
+  void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept;
 
 private:
   struct Stretch
