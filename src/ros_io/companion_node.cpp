@@ -108,10 +108,11 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
   if (!start_)
   {
     start_ = stamp;
-    if (last_load_)
+    for (const LoadAt& load : early_loads_)
     {
-      companion_.giveLoad(secondsFromStart(last_load_->stamp), last_load_->torque);
+      companion_.giveLoad(secondsFromStart(load.stamp), load.torque);
     }
+    early_loads_.clear();
   }
   row.time = secondsFromStart(stamp);
   row.received = secondsFromStart(last_received_);
@@ -149,6 +150,12 @@ void CompanionNode::giveLoad(const ros::Time& stamp, double torque)
   if (start_)
   {
     companion_.giveLoad(secondsFromStart(stamp), torque);
+    return;
+  }
+  early_loads_.push_back(*last_load_);
+  if (early_loads_.size() > Companion::LOADS)
+  {
+    early_loads_.pop_front();
   }
 }
 

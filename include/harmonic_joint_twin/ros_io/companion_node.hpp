@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -75,7 +76,8 @@ private:
   std::optional<ros::Time> start_;  // stamp of the first row: the companion's zero
   ros::Time last_received_;
   std::optional<LoadAt> last_load_;
-  std::string found_names_;  // in the last message without this joint
+  std::deque<LoadAt> early_loads_;  // told before there was a zero
+  std::string found_names_;         // in the last message without this joint
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;
