@@ -4,19 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/params/faults.hpp"
-
 namespace hjt
 {
 namespace
 {
 constexpr double LARGEST_SCORE = 12.0;
-
-/// The kinds of faults stand among the causes in their own order.
-constexpr auto FIRST_FAULT = static_cast<std::size_t>(Cause::INTERFACE_WEAR);
-static_assert(static_cast<std::size_t>(Cause::BEARING_CAGE) ==
-                  FIRST_FAULT + static_cast<std::size_t>(FaultKind::BEARING_CAGE),
-              "causes and kinds of faults differ");
 
 // Features: ratio, kinematic error, stiffness, lost motion, loop | running torque, Coulomb, viscous, efficiency
 //           | residual, impulses | orders 1, 2, 4, circular spline | cage, ball, outer, inner, tooth pass
@@ -232,7 +224,8 @@ const char* causeName(Cause cause) noexcept
   {
     return cause == Cause::NONE ? "none" : "circular_spline_tooth";
   }
-  return describe(static_cast<FaultKind>(static_cast<std::size_t>(cause) - FIRST_FAULT)).name;
+  const std::size_t kind = static_cast<std::size_t>(cause) - static_cast<std::size_t>(Cause::FIRST_FAULT);
+  return describe(static_cast<FaultKind>(kind)).name;
 }
 
 Move expectedMove(Cause cause, Feature feature) noexcept

@@ -4,6 +4,7 @@ import io
 import random
 
 import rosbag
+import yaml
 from sensor_msgs.msg import JointState
 
 import robot
@@ -37,7 +38,7 @@ def write_telemetry(path, duration, faults=True):
 class Identify(tool.ToolTest):
     def test_a_bag_with_faults_gives_gain_and_friction_and_an_overlay_that_loads(self):
         write_telemetry(self.path("a.bag"), 60.0)
-        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml")
+        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml", "--folds", "4")
         values = {value["key"]: value for value in found["values"]}
         gain = values["telemetry.torque_per_current"]
         self.assertEqual(gain["refusal"], "")
@@ -45,6 +46,15 @@ class Identify(tool.ToolTest):
         self.assertIn("temperature", values["bearing.viscosity_slope"]["refusal"])
         judged = found["judged"]
         self.assertLess(judged["identified"]["all"], 0.5 * judged["configured"]["all"])
+        self.assertEqual(found["train"][1], found["judge"][0])
+        left_out = found["left_out"]["identified"]
+        self.assertLess(left_out["all"], 0.5 * judged["configured"]["all"])
+        self.assertLess(abs(left_out["rows"] - 0.5 * judged["identified"]["rows"]), 50)
+        with open(self.path("found.yaml")) as file:
+            overlay = yaml.safe_load(file)  # as rosparam reads it
+        for key in ("ripple_circular_spline_2", "ripple_flexspline_4"):
+            self.assertEqual([type(value) for value in overlay["telemetry"][key]], [float, float])
+        self.assertTrue(all(isinstance(value, float) for value in overlay["bearing"].values()))
         loaded = self.succeed_json("parameters", "--config", "joints/elbow.yaml", "--config", self.path("found.yaml"))
         self.assertIn(str(gain["value"])[:8], str(loaded))
         before = self.succeed_json("follow", "a.bag", *OPTIONS)
@@ -53,6 +63,16 @@ class Identify(tool.ToolTest):
         self.assertIn(after["unreadable"], range(10, 15))  # of 14 some may have been dropped
         with open(self.path("a.csv")) as file:
             self.assertIn("current_predicted", file.readline())
+
+        # The torque-driven twin has the identified friction too.
+        speed = 0.6  # [rad/s]
+        def friction(*options):
+            rows = self.succeed_json("losses", "--speeds", str(RATIO * speed), "--loads", "10", "--positions", "4",
+                                     "--config", "joints/elbow.yaml", *options)["rows"]
+            return RATIO * rows[0]["gear_loss"]
+        expected = COULOMB + VISCOUS * speed
+        self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
+        self.assertGreater(abs(friction() - expected), 0.12 * expected)
 
     def test_what_is_missing_is_named(self):
         write_telemetry(self.path("a.bag"), 2.0, faults=False)

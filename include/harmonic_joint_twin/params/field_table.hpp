@@ -255,6 +255,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
         "range of the stress intensity below which a flaw does not grow");
+  visit("life.use_record", p.life.use_record,
+        "live: none, or the absolute path of the file that keeps the drive's use from one start to the next");
+  visit("life.forecast_period", "s", p.life.forecast_period, Range{ 0.1, 1e5 },
+        "live: time between two forecasts of the remaining life, and between two writes of the record");
 
   visit("input.mode", p.input.mode,
         "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)");
@@ -264,7 +268,8 @@ void visitFields(P& p, Visitor&& visit)
         "live, the twin stays this far behind the clock, so that stamped commands arrive in time");
   visit("input.wait_for_first_input", p.input.wait_for_first_input,
         "true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant");
-  visit("input.temperature", "degC", p.input.temperature, Range{ -40.0, 150.0 }, "temperature of the drive");
+  visit("input.temperature", "degC", p.input.temperature, Range{ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE },
+        "temperature of the drive");
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
         "torque at the joint per measured motor current");
@@ -272,8 +277,25 @@ void visitFields(P& p, Visitor&& visit)
         "current measured where there is none");
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
         "motor angle over which friction builds up after a reversal");
+  visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
+        "share of the friction that a small motion does not turn round, and that stays at rest");
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         "of the motor's inertia, what a recorded load torque holds already");
+  visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
+        "kinematic error times stiffness, cos and sin of two waves a turn of the motor against the circular spline");
+  visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
+        "the same against the flexspline");
+  visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
+        "four waves against the circular spline");
+  visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
+        "four waves against the flexspline");
+  visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
+        "of what the joint carries on the joint's stiffness: far below it the load follows the kinematic error, "
+        "far above it stands");
+  visit("telemetry.ripple_damping", "-", p.telemetry.ripple_damping, Range{ 0.001, 10.0 },
+        "damping ratio of that resonance");
+  visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
+        "of the current's ripple behind the angle");
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
         "by so much a healthy joint's current departs from the predicted one, rms");
   visit("telemetry.load", p.telemetry.load,
@@ -349,6 +371,8 @@ void visitFields(P& p, Visitor&& visit)
         "what bearing.race_preload falls by with the mean radius of the wave generator");
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
         "part of bearing.race_preload that bends the race, which wear does not take away");
+  visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
+        "cracks of the rim at severity 1: depth over the rim's thickness");
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
         "flexspline_crack: segments to either side over which the crack fades out");
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },

@@ -20,6 +20,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "harmonic_joint_twin/ros_io/diagnostics.hpp"
+#include "harmonic_joint_twin/ros_io/life_publisher.hpp"
 #include "harmonic_joint_twin/ros_io/recent_events.hpp"
 #include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
 #include "harmonic_joint_twin/twin/companion.hpp"
@@ -73,6 +74,7 @@ private:
   const JointNames names_;
   const Parameters parameters_;
   Companion companion_;
+  LifePublisher life_;
   std::optional<ros::Time> start_;  // stamp of the first row: the companion's zero
   ros::Time last_received_;
   std::optional<LoadAt> last_load_;
