@@ -67,10 +67,10 @@ class Identify(tool.ToolTest):
         # The torque-driven twin has the identified friction too.
         speed = 0.6  # [rad/s]
         def friction(*options):
-            rows = self.succeed_json("losses", "--speeds", str(RATIO * speed), "--loads", "10", "--positions", "4",
+            rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions", "4",
                                      "--config", "joints/elbow.yaml", *options)["rows"]
-            return RATIO * rows[0]["gear_loss"]
-        expected = COULOMB + VISCOUS * speed
+            return robot.RATIO * rows[0]["gear_loss"]
+        expected = robot.COULOMB + robot.VISCOUS * speed
         self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
         self.assertGreater(abs(friction() - expected), 0.12 * expected)
 
