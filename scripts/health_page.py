@@ -14,7 +14,7 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, SHORT_POINTS, WARM
+from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, STEADY_POINTS, TURNING, WARM
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -32,7 +32,7 @@ def collect(bench, sound_hours):
     sound, faulty = [], []
     for condition in (WARM, NOISY):
         reference = bench.reference(condition)
-        for point in POINTS if condition is WARM else SHORT_POINTS:
+        for point in health_runs.points_of(condition):
             window = health_runs.window_time(point)
             repeats = max(round(3600.0 * sound_hours / (health_runs.SOUND_WINDOWS * window)), 1)
             bags = bench.sound("sound", condition, point, health_runs.SOUND_WINDOWS, repeats, 4)
@@ -113,7 +113,6 @@ def share(flags):
 
 def fault_table(kinds, faulty, limit):
     severities = JUDGED.severities
-    steady = [point for point in POINTS if point.tag.startswith("steady")]
     lines = ["| kind | " + " | ".join(f"alarms at {severity:g}" for severity in severities)
              + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or of its set |",
              "|---|" + "---|" * (len(severities) + 4)]
@@ -123,7 +122,7 @@ def fault_table(kinds, faulty, limit):
         told = [run for run in own if alarm(run)]
         totals += told
         cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
-        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, steady)
+        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
                      + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
                      f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
@@ -247,8 +246,8 @@ def draw_confusion(kinds, faulty, path):
 
 def draw_roc(sound, faulty, path):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, constrained_layout=True)
-    for axis, name, points in ((axes[0], "steady speed and load", [p for p in POINTS if p.tag.startswith("steady")]),
-                               (axes[1], "swinging load", [p for p in POINTS if not p.tag.startswith("steady")])):
+    for axis, name, points in ((axes[0], "steady speed and load", STEADY_POINTS),
+                               (axes[1], "swinging load", [TURNING, CHECK_UP])):
         healthy = numpy.array([window.largest for run in sound if run.point in points for window in run.windows])
         thresholds = numpy.unique(numpy.concatenate([healthy, numpy.linspace(0.0, 5.0, 400)]))
         share_sound = [(healthy > threshold).mean() for threshold in thresholds]

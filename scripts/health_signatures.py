@@ -6,9 +6,9 @@ import math
 import numpy
 
 import page_section
-from health_runs import COOL, TRAINING, TRAINING_POINTS
+from health_runs import COOL, STEADY_POINTS, TRAINING, TRAINING_POINTS
 
-LEAST = 1.0  # of a window's strongest score, over the threshold: what is weaker is no alarm and needs no cause
+LEAST = 0.7  # of a window's strongest score, over the threshold: what is weaker says little of its cause
 TABLE_LEAST = 0.1  # shown from this size on
 
 
@@ -27,8 +27,8 @@ def fit(runs):
     for run in runs:
         for window in run.windows:
             if window.largest >= LEAST:
-                directions[run.kind, run.point.tag].append(unit(compressed(window.features)))
-    return {key: unit(numpy.nan_to_num(numpy.nanmean(numpy.array(own), axis=0))) for key, own in directions.items()}
+                directions[run.kind, "steady" if run.point in STEADY_POINTS else "swinging"].append(unit(compressed(window.features)))
+    return {key: unit(numpy.ma.masked_invalid(own).mean(axis=0).filled(0.0)) for key, own in directions.items()}
 
 
 def circular_spline_tooth(names):
