@@ -189,7 +189,7 @@ def loop_table(sound, faulty):
 
 
 def delay_table(kinds, delayed):
-    lines = ["| kind | from the onset to the alarm [motor turns] |", "|---|---|"]
+    lines = ["| kind | from the onset to the end of the window with the alarm [motor turns] |", "|---|---|"]
     for kind in kinds:
         for run in delayed:
             if run.kind == kind["kind"]:
@@ -289,7 +289,9 @@ def main():
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_roc(sound, faulty, images / "roc.png")
     page_section.write(options.docs / "health.md", "health", [
-        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs.", "",
+        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs; " + ", ".join(
+            f"`{condition.name}`: {condition.temperatures[0]:g} to {condition.temperatures[1]:g} °C, noise of the encoders × {condition.noise:g}"
+            for condition in sorted({run.condition for run in faulty}, key=lambda condition: condition.noise)) + ".", "",
         "### Sound drives", "", *sound_table(sound), "",
         "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
         "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",

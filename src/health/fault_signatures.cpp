@@ -17,7 +17,7 @@ static_assert(static_cast<std::size_t>(Cause::BEARING_CAGE) ==
                   FIRST_FAULT + static_cast<std::size_t>(FaultKind::BEARING_CAGE),
               "causes and kinds of faults differ");
 
-constexpr double SHARPNESS = 12.0;
+constexpr double SHARPNESS = 20.0;
 
 constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
   "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",
