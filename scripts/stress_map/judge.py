@@ -65,7 +65,7 @@ class Runner:
         for key, value in changes.items():
             line += ["--set", f"{key}={text(value)}"]
         line += ["--set", "fault_scale.rim_crack_segments=1"]
-        for fault, teeth in [("tooth_tip_crack:1", cell.missing), ("flexspline_crack:1", cell.cut)]:
+        for fault, teeth in [("tooth_root_crack:1", cell.missing), ("flexspline_crack:1", cell.cut)]:
             for tooth in teeth:
                 line += ["--fault", f"{fault}:{tooth}"]
         done = subprocess.run(line, capture_output=True, text=True, timeout=TIMEOUT, check=False)

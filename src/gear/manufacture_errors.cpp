@@ -60,7 +60,7 @@ Eigen::VectorXd readDeviations(const std::string& path, int teeth)
 
 Eigen::VectorXd pitchDeviations(const PitchParameters& pitch, int teeth, const std::string& key)
 {
-  if (pitch.table == NO_TABLE)
+  if (pitch.table == NO_FILE)
   {
     return seededDeviations(pitch.deviation, pitch.seed, teeth);
   }

@@ -5,18 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "harmonic_joint_twin/params/faults.hpp"
-
 namespace hjt
 {
 namespace
 {
-/// The kinds of faults stand among the causes in their own order.
-constexpr auto FIRST_FAULT = static_cast<std::size_t>(Cause::INTERFACE_WEAR);
-static_assert(static_cast<std::size_t>(Cause::BEARING_CAGE) ==
-                  FIRST_FAULT + static_cast<std::size_t>(FaultKind::BEARING_CAGE),
-              "causes and kinds of faults differ");
-
 constexpr double SHARPNESS = 20.0;
 
 constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
@@ -110,7 +102,8 @@ const char* causeName(Cause cause) noexcept
   {
     return cause == Cause::NONE ? "none" : "circular_spline_tooth";
   }
-  return describe(static_cast<FaultKind>(static_cast<std::size_t>(cause) - FIRST_FAULT)).name;
+  const std::size_t kind = static_cast<std::size_t>(cause) - static_cast<std::size_t>(Cause::FIRST_FAULT);
+  return describe(static_cast<FaultKind>(kind)).name;
 }
 
 const char* featureName(Feature feature) noexcept

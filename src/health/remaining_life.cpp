@@ -106,6 +106,26 @@ void RemainingLife::read(const WearReading& reading) noexcept
   }
 }
 
+bool RemainingLife::hasEnded(const Particle& particle) const noexcept
+{
+  return particle.flank_wear >= parameters_.flank_wear_limit ||
+         particle.interface_wear >= parameters_.interface_wear_limit ||
+         spallSize(natureOf(particle), bearing_turns_) >= 1.0;
+}
+
+void RemainingLife::survive() noexcept
+{
+  double left = 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+  {
+    left += hasEnded(particles_[i]) ? 0.0 : weights_[i];
+  }
+  for (std::size_t i = 0; i < particles_.size() && left > 0.0; ++i)
+  {
+    weights_[i] = hasEnded(particles_[i]) ? 0.0 : weights_[i] / left;
+  }
+}
+
 void RemainingLife::resample() noexcept
 {
   // Systematic: one draw for all.

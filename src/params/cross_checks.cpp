@@ -65,10 +65,10 @@ void checkPitch(const PitchParameters& pitch, const std::string& member, Contrad
 {
   const std::string table_key = "manufacture." + member + "_pitch_table";
   const std::string deviation_key = "manufacture." + member + "_pitch_deviation";
-  const bool from_table = pitch.table != NO_TABLE;
+  const bool from_table = pitch.table != NO_FILE;
   // A node does not know where its configuration lay, so there is no directory a path could be relative to.
   check.require(!from_table || pitch.table.front() == '/', { table_key },
-                table_key + " = '" + pitch.table + "' must be an absolute path, or " + NO_TABLE);
+                table_key + " = '" + pitch.table + "' must be an absolute path, or " + NO_FILE);
   check.require(!from_table || pitch.deviation == 0.0, { table_key, deviation_key },
                 deviation_key + " = " + numberText(pitch.deviation) + " [m] must be 0 where " + table_key +
                     " gives the deviations");
@@ -95,6 +95,8 @@ void checkElements(const Parameters& p, Contradictions& check)
 
 void checkLife(const Parameters& p, Contradictions& check)
 {
+  check.require(p.life.use_record == NO_FILE || p.life.use_record.front() == '/', { "life.use_record" },
+                "life.use_record = '" + p.life.use_record + "' must be an absolute path, or " + NO_FILE);
   check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
                 "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
                     " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");

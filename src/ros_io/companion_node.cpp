@@ -6,6 +6,7 @@
 #include <ros/console.h>
 #include <ros/transport_hints.h>
 
+#include "harmonic_joint_twin/gear/ratio.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
 #include "harmonic_joint_twin/ros_io/topics.hpp"
 
@@ -48,6 +49,7 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
   : names_(parameters.joint.name)
   , parameters_(parameters)
   , companion_(parameters, parameters.input.mode, surfaceSource())
+  , life_(node, parameters)
   , comparison_(makeComparison(names_))
   , indicators_(makeIndicators(names_))
   , assessment_(makeAssessment(names_))
@@ -108,10 +110,11 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
   if (!start_)
   {
     start_ = stamp;
-    if (last_load_)
+    for (const LoadAt& load : early_loads_)
     {
-      companion_.giveLoad(secondsFromStart(last_load_->stamp), last_load_->torque);
+      companion_.giveLoad(secondsFromStart(load.stamp), load.torque);
     }
+    early_loads_.clear();
   }
   row.time = secondsFromStart(stamp);
   row.received = secondsFromStart(last_received_);
@@ -149,6 +152,12 @@ void CompanionNode::giveLoad(const ros::Time& stamp, double torque)
   if (start_)
   {
     companion_.giveLoad(secondsFromStart(stamp), torque);
+    return;
+  }
+  early_loads_.push_back(*last_load_);
+  if (early_loads_.size() > Companion::LOADS)
+  {
+    early_loads_.pop_front();
   }
 }
 
@@ -159,6 +168,8 @@ void CompanionNode::publish()
     const ros::Time stamp = *start_ + ros::Duration(comparison->time);
     fillComparison(stamp, *comparison, comparison_);
     comparison_publisher_.publish(comparison_);
+    life_.offer(fromRosTime(stamp), nominalRatio(parameters_.gear) * comparison->velocity.measured,
+                comparison->joint_torque, parameters_.input.temperature);
     const std::int64_t due = fromRosTime(stamp) / indicators_period_;
     if (due != indicators_due_)
     {

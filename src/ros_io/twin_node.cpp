@@ -54,7 +54,14 @@ Twin watchedTwin(const Parameters& parameters)
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
   : twin_(watchedTwin(parameters))
   , publishers_(node, twin_)
-  , loop_(twin_, inbox_, now, clockKind(), [this](Twin& twin) { publishers_.offer(twin); })
+  , life_(node, parameters)
+  , loop_(twin_, inbox_, now, clockKind(),
+          [this](Twin& twin)
+          {
+            publishers_.offer(twin);
+            const JointOutputs& joint = twin.outputs();
+            life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
+          })
   , realtime_(requestRealtime(parameters.realtime, loop_))
   , subscribers_(node, parameters, inbox_)
   , timing_publisher_(node, parameters, loop_)

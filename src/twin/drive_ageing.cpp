@@ -61,10 +61,9 @@ DriveAge DriveAgeing::rates(const DriveNature& nature, const DriveAge& age) cons
   const double grease_factor = greaseWearFactor(life_, age.grease);
   double time = 0.0;
   DriveAge rate;
-  for (std::size_t i = 0; i < duty_.phases.size(); ++i)
+  for (const DutyPhase& phase : duty_.phases)
   {
-    const DutyPhase& phase = duty_.phases[i];
-    const Exposure exposure = exposures_.at(i, age.flank_wear, age.interface_wear);
+    const Exposure exposure = exposures_.at(phase.load_torque, age.flank_wear, age.interface_wear);
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
@@ -107,6 +106,7 @@ std::optional<EndOfLife> DriveAgeing::ended(const DriveNature& nature, const Dri
   }
   return std::nullopt;
 }
+
 DriveAgeing::Life DriveAgeing::live(const DriveNature& nature, double hours, double every, bool grease_changes,
                                     const std::function<void(double, const DriveAge&)>& visit) const
 {

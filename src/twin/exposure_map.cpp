@@ -19,7 +19,7 @@ Exposure blend(const Exposure& a, const Exposure& b, double share)
 
 struct Cell
 {
-  int index;
+  std::size_t index;
   double share;
 };
 
@@ -27,7 +27,7 @@ Cell cellOf(double value, double step, int stages)
 {
   const double place = std::clamp(value / step, 0.0, static_cast<double>(stages - 1));
   const int index = std::min(static_cast<int>(place), stages - 2);
-  return { index, place - index };
+  return { static_cast<std::size_t>(index), place - index };
 }
 
 /// Entry by entry.
@@ -46,12 +46,28 @@ Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
   return worn;
 }
 
-ExposureMap::ExposureMap(const Parameters& parameters, const DutyCycle& duty, int positions,
-                         const std::function<void(double)>& progress)
-  : flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
+ExposureMap::ExposureMap(const Parameters& parameters, int positions)
+  : parameters_(parameters)
+  , positions_(positions)
+  , flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
   , interface_step_(parameters.life.interface_wear_limit / (STAGES - 1))
-  , nodes_(duty.phases.size() * STAGES * STAGES)
 {
+}
+
+void ExposureMap::cover(const DutyCycle& duty, const std::function<void(double)>& progress)
+{
+  std::map<double, Stages> added;
+  for (const DutyPhase& phase : duty.phases)
+  {
+    if (nodes_.count(phase.load_torque) == 0)
+    {
+      added[phase.load_torque] = {};
+    }
+  }
+  if (added.empty())
+  {
+    return;
+  }
   for (int flank = 0; flank < STAGES; ++flank)
   {
     for (int interface = 0; interface < STAGES; ++interface)
@@ -59,10 +75,10 @@ ExposureMap::ExposureMap(const Parameters& parameters, const DutyCycle& duty, in
       DriveAge age;
       age.flank_wear = flank * flank_step_;
       age.interface_wear = interface * interface_step_;
-      ExposureAnalysis analysis(wornDrive(parameters, age), positions);
-      for (std::size_t phase = 0; phase < duty.phases.size(); ++phase)
+      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      for (auto& [load, stages] : added)
       {
-        nodes_[place(phase, flank, interface)] = analysis.under(duty.phases[phase].load_torque);
+        stages[static_cast<std::size_t>(flank)][static_cast<std::size_t>(interface)] = analysis.under(load);
       }
       if (progress)
       {
@@ -70,21 +86,20 @@ ExposureMap::ExposureMap(const Parameters& parameters, const DutyCycle& duty, in
       }
     }
   }
+  nodes_.merge(added);
 }
 
-Exposure ExposureMap::at(std::size_t phase, double flank_wear, double interface_wear) const
+Exposure ExposureMap::at(double load_torque, double flank_wear, double interface_wear) const
 {
   const Cell flank = cellOf(flank_wear, flank_step_, STAGES);
   const Cell interface = cellOf(interface_wear, interface_step_, STAGES);
-  const auto along = [&](int row)
-  {
-    return blend(nodes_[place(phase, row, interface.index)], nodes_[place(phase, row, interface.index + 1)],
-                 interface.share);
-  };
+  const Stages& stages = nodes_.at(load_torque);
+  const auto along = [&](std::size_t row)
+  { return blend(stages[row][interface.index], stages[row][interface.index + 1], interface.share); };
   return blend(along(flank.index), along(flank.index + 1), flank.share);
 }
 
-double ExposureMap::largestError(const Parameters& parameters, const DutyCycle& duty, int positions) const
+double ExposureMap::largestError() const
 {
   Exposure miss;
   Exposure largest;
@@ -95,11 +110,11 @@ double ExposureMap::largestError(const Parameters& parameters, const DutyCycle& 
       DriveAge age;
       age.flank_wear = (flank + 0.5) * flank_step_;
       age.interface_wear = (interface + 0.5) * interface_step_;
-      ExposureAnalysis analysis(wornDrive(parameters, age), positions);
-      for (std::size_t phase = 0; phase < duty.phases.size(); ++phase)
+      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      for (const auto& [load, stages] : nodes_)
       {
-        const Exposure measured = analysis.under(duty.phases[phase].load_torque);
-        const Exposure mapped = at(phase, age.flank_wear, age.interface_wear);
+        const Exposure measured = analysis.under(load);
+        const Exposure mapped = at(load, age.flank_wear, age.interface_wear);
         largest = larger(largest, measured);
         miss = larger(miss, { std::abs(mapped.flank_sliding - measured.flank_sliding),
                               std::abs(mapped.interface_sliding - measured.interface_sliding),

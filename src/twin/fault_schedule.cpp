@@ -1,8 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/twin/fault_schedule.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace hjt
 {
+FaultSchedule::FaultSchedule(const Parameters& parameters)
+{
+  for (std::size_t kind = 0; kind < FAULT_KINDS; ++kind)
+  {
+    const int places = lastPlace(static_cast<FaultKind>(kind), parameters) - WHOLE_MEMBER + 1;
+    last_taken_[kind].resize(static_cast<std::size_t>(places));
+  }
+  clear();
+}
+
+void FaultSchedule::clear() noexcept
+{
+  size_ = 0;
+  for (std::vector<Stamp>& stamps : last_taken_)
+  {
+    std::fill(stamps.begin(), stamps.end(), std::numeric_limits<Stamp>::min());
+  }
+}
+
+Stamp& FaultSchedule::lastTaken(const Fault& fault) noexcept
+{
+  return last_taken_[static_cast<std::size_t>(fault.kind)][static_cast<std::size_t>(fault.place - WHOLE_MEMBER)];
+}
+
 bool FaultSchedule::push(const Fault& fault, Stamp stamp) noexcept
 {
   if (size_ == CAPACITY)
@@ -20,13 +47,18 @@ bool FaultSchedule::push(const Fault& fault, Stamp stamp) noexcept
 
 bool FaultSchedule::pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept
 {
-  if (size_ == 0 || waiting_[size_ - 1].stamp > instant)
+  while (size_ > 0 && waiting_[size_ - 1].stamp <= instant)
   {
-    return false;
+    --size_;
+    fault = waiting_[size_].fault;
+    stamp = waiting_[size_].stamp;
+    Stamp& last = lastTaken(fault);
+    if (stamp >= last)
+    {
+      last = stamp;
+      return true;
+    }
   }
-  --size_;
-  fault = waiting_[size_].fault;
-  stamp = waiting_[size_].stamp;
-  return true;
+  return false;
 }
 }  // namespace hjt

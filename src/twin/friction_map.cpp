@@ -22,8 +22,8 @@ constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0
 Parameters withoutErrors(Parameters parameters)
 {
   parameters.manufacture = {};
-  parameters.manufacture.flexspline_pitch.table = NO_TABLE;
-  parameters.manufacture.circular_spline_pitch.table = NO_TABLE;
+  parameters.manufacture.flexspline_pitch.table = NO_FILE;
+  parameters.manufacture.circular_spline_pitch.table = NO_FILE;
   return parameters;
 }
 }  // namespace

@@ -20,8 +20,6 @@ namespace
 constexpr double DAMPING = 0.02;  // of the torsional swing, of critical [-]
 constexpr std::array<double, 9> CURVE{ 0.0, 5.0, 14.0, 25.0, 48.0, 75.0, 110.0, 150.0, 200.0 };  // [N.m]
 constexpr double DEVIATIONS = 3.0;                                                               // of a band
-constexpr double CONTRADICTING = 5.0;  // deviations of an angle that friction cannot explain; noise never comes there
-constexpr double CONTRADICTION = 0.2;  // for so long friction is not believed to hold the motor [s]
 // Of the first state, rms.
 constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
 constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
@@ -139,7 +137,6 @@ void Observer::start(const Measurement& measurement) noexcept
       noise_.disturbance_growth * std::sqrt(FIRST_DISTURBANCE_TIME);
   covariance_ = deviation.cwiseAbs2().asDiagonal();
   now_ = measurement.time;
-  contradicted_ = now_;
   started_ = true;
 }
 
@@ -163,7 +160,7 @@ void Observer::predict(double motor_torque, double load_torque) noexcept
   state_ = free - piece.input.col(0) * friction_now_;
 
   Matrix transition = piece.transition;
-  if (sticking_ && now_ >= contradicted_)
+  if (sticking_)
   {
     // Friction takes what would move the motor: a linear map too.
     Matrix held = Matrix::Identity();
@@ -183,10 +180,6 @@ double Observer::correct(ObserverPiece::State angle, double measured, double noi
 {
   const double innovation = measured - state_[angle];
   angle_deviation_ = std::sqrt(covariance_(angle, angle) + noise * noise);
-  if (sticking_ && std::abs(innovation) > CONTRADICTING * angle_deviation_)
-  {
-    contradicted_ = now_ + CONTRADICTION;
-  }
   state_ += takeAngle(covariance_, angle, noise) * innovation;
   return innovation;
 }

@@ -34,12 +34,13 @@ namespace fs = std::filesystem;
 constexpr const char* FORMAT = "harmonic_joint_twin response surface 3\n";
 /// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
 /// the friction is added when the surface is read.
-constexpr std::array<const char*, 25> OTHER_KEYS{ "joint.",
+constexpr std::array<const char*, 26> OTHER_KEYS{ "joint.",
                                                   "fault",
                                                   "brake.",
                                                   "solver.",
                                                   "sensors.",
                                                   "health.",
+                                                  "life.",
                                                   "input.",
                                                   "publish.",
                                                   "realtime.",

@@ -5,17 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
-#include <string>
 #include <utility>
 
 #include "harmonic_joint_twin/health/health_monitor.hpp"
 #include "harmonic_joint_twin/health/lobe_loads.hpp"
 #include "harmonic_joint_twin/health/signal_monitor.hpp"
 #include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/solver/joint_stepper.hpp"
 #include "harmonic_joint_twin/twin/surface_worker.hpp"
 
@@ -23,27 +19,6 @@ namespace hjt
 {
 namespace
 {
-/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
-std::string keyOf(const FaultList& faults, const Parameters& parameters)
-{
-  if (faults.empty())
-  {
-    return "";
-  }
-  std::ostringstream text;
-  for (const ActiveFault& active : faults)
-  {
-    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
-         << '\n';
-  }
-  std::istringstream lines(describeParameters(parameters));
-  for (std::string line; std::getline(lines, line);)
-  {
-    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
-  }
-  return text.str();
-}
-
 bool isSame(const FaultList& one, const FaultList& other) noexcept
 {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
@@ -51,14 +26,6 @@ bool isSame(const FaultList& one, const FaultList& other) noexcept
                       return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place &&
                              a.fault.severity == b.fault.severity;
                     });
-}
-
-/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
-bool isOfTheBalls(const ActiveFault& active) noexcept
-{
-  const FaultKind kind = active.fault.kind;
-  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
-         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
 }
 }  // namespace
 
@@ -68,6 +35,7 @@ struct Twin::Impl
     : parameters(given)
     , model(given)
     , faults(given, model)
+    , waiting(given)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
     , sensors(given.sensors, 1.0 / given.solver.rate)
@@ -96,29 +64,23 @@ struct Twin::Impl
   void prepareSurface(const SurfaceSource& source)
   {
     surface_faults = active;
-    if (std::any_of(active.begin(), active.end(), isOfTheBalls))
+    if (source.background)
     {
-      if (source.notice)
-      {
-        source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
-      }
-    }
-    else if (source.background)
-    {
-      surface_awaited = true;
-      surface_worker = std::make_unique<SurfaceWorker>(parameters, model, keyOf(surface_faults, parameters), source);
+      surface_worker = std::make_unique<SurfaceWorker>(parameters, active, source);
     }
     else
     {
-      surface = sharedSurface(parameters, model, keyOf(surface_faults, parameters), source);
+      surface = surfaceWithFaults(parameters, active, source);
     }
   }
 
-  /// The surface while it is that of the present faults; else the full ring.
+  /// The surface while it is that of the present faults; else the full ring, until one is there that was built beside.
   void useSurface() noexcept
   {
     const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
-    stepper.useSurface(isSame(active, surface_faults) ? ready : nullptr);
+    const bool fits = ready != nullptr && isSame(active, surface_faults);
+    stepper.useSurface(fits ? ready : nullptr);
+    surface_awaited = surface_worker && !fits;
   }
 
   bool reset(Stamp stamp) noexcept
@@ -137,6 +99,7 @@ struct Twin::Impl
     commanded = false;
     load_torque = 0.0;
     load_clamped = false;
+    temperature = parameters.input.temperature;
     brake_engaged = parameters.brake.engaged_at_start;
     sensors.reset();
     monitor.reset();
@@ -149,7 +112,6 @@ struct Twin::Impl
     return settled;
   }
 
-  static bool setsInAtOnce(const Fault& fault) noexcept { return fault.severity > 0.0 && fault.onset == 0.0; }
   static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
 
   void scheduleConfigured(Stamp stamp) noexcept;
@@ -170,7 +132,7 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
-  FaultList surface_faults;  // that the surface is made for
+  FaultList surface_faults;  // that the surface was asked for with
   std::shared_ptr<const ResponseSurface> surface;
   std::unique_ptr<SurfaceWorker> surface_worker;
   bool surface_awaited{};
@@ -185,6 +147,7 @@ struct Twin::Impl
   bool commanded{};      // a command is in force, not timed out
   double load_torque{};  // last load torque, clamped [N.m]
   bool load_clamped{};
+  double temperature{};  // [degC]
   bool brake_engaged{};
   JointOutputs outputs;
   JointSensors sensors;
@@ -204,7 +167,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   waiting.clear();
   for (const Fault& fault : parameters.faults)
   {
-    if (setsInAtOnce(fault))
+    if (fault.isThereFromTheStart())
     {
       active.set(fault, stamp);
     }
@@ -261,6 +224,9 @@ void Twin::Impl::takeInputs() noexcept
       case InputKind::BRAKE:
         brake_engaged = input.value != 0.0;
         break;
+      case InputKind::TEMPERATURE:
+        temperature = std::clamp(input.value, LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE);
+        break;
       case InputKind::FAULT:
         break;
     }
@@ -268,12 +234,22 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
-/// The surface that was built beside, when it is there.
+/// The surface of the present faults that is built beside: asked for, and used when it is there.
 void Twin::Impl::takeSurface() noexcept
 {
-  if (surface_awaited && surface_worker->surface() != nullptr)
+  if (!surface_awaited)
   {
-    surface_awaited = false;
+    return;
+  }
+  if (!isSame(active, surface_faults))
+  {
+    if (surface_worker->request(active))
+    {
+      surface_faults = active;
+    }
+  }
+  else if (surface_worker->surface() != nullptr)
+  {
     useSurface();
   }
 }
@@ -305,8 +281,7 @@ void Twin::Impl::step() noexcept
   takeInputs();
   takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged =
-      stepper.step({ drive.torque, load_torque, brake_engaged, parameters.input.temperature }) && followed;
+  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, temperature }) && followed;
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -330,6 +305,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = motor_torque;
   outputs.load_torque = load_torque;
+  outputs.temperature = temperature;
   outputs.wave_generator_torque = -ring.wave_generator_torque;
   outputs.joint_torque = ring.output_torque;
   outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
@@ -366,7 +342,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
   sample.load_torque = load_torque;
-  sample.temperature = parameters.input.temperature;
+  sample.temperature = temperature;
   if (signals.update(sample))
   {
     assessor.take(signals.indicators());
@@ -439,6 +415,11 @@ void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
 void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
 {
   impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
+}
+
+void Twin::setTemperature(Stamp stamp, double temperature) noexcept
+{
+  impl_->queue.push({ stamp, InputKind::TEMPERATURE, temperature }, impl_->simulated_until);
 }
 
 void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -13,6 +14,7 @@
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/twin/drive_ageing.hpp"
 #include "harmonic_joint_twin/twin/exposure_analysis.hpp"
+#include "harmonic_joint_twin/twin/life_estimate.hpp"
 #include "harmonic_joint_twin/twin/life_trials.hpp"
 
 namespace hjt
@@ -40,9 +42,10 @@ struct RatedUse
   RatedUse()
     : parameters(shippedParameters())
     , duty(ratedDuty(parameters.life.grease_temperature))
-    , exposures(parameters, duty, POSITIONS, {})
+    , exposures(parameters, POSITIONS)
     , ageing(parameters.life, parameters.gear, duty, exposures)
   {
+    exposures.cover(duty, {});
   }
 
   Parameters parameters;
@@ -118,8 +121,8 @@ TEST(ExposureMap, IsTheToothModelAtItsStagesAndNearItBetween)
 {
   const RatedUse& use = ratedUse();
   const Exposure fresh = ExposureAnalysis(use.parameters, POSITIONS).under(use.duty.phases[0].load_torque);
-  EXPECT_DOUBLE_EQ(use.exposures.at(0, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
-  EXPECT_LT(use.exposures.largestError(use.parameters, use.duty, POSITIONS), 0.05);
+  EXPECT_DOUBLE_EQ(use.exposures.at(use.duty.phases[0].load_torque, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
+  EXPECT_LT(use.exposures.largestError(), 0.05);
 }
 
 TEST(DriveAgeing, NominalWearIsTheClosedFormAsLongAsWearChangesLittle)
@@ -221,6 +224,118 @@ TEST(RemainingLife, IntervalsHoldTheTruthAsOftenAsTheySay)
   ASSERT_GT(all.said, 1000);
   EXPECT_GT(all.share(), 0.70);
   EXPECT_LT(all.share(), 0.90);
+}
+
+/// A motion like a robot's, as the loop counts it and as one duty cycle.
+struct CountedMotion
+{
+  CountedMotion() : record(shippedLife())
+  {
+    constexpr int SAMPLES = 36000;  // of a tenth of a second
+    for (int i = 0; i < SAMPLES; ++i)
+    {
+      const double swing = std::sin(1e-3 * i);
+      const DutyPhase sample{ 0.1, 150.0 * std::abs(swing), 60.0 * swing, 25.0 + 20.0 * i / SAMPLES };
+      record.add(sample);
+      motion.phases.push_back(sample);
+    }
+  }
+
+  UseRecord record;
+  DutyCycle motion;
+};
+
+TEST(UseRecord, KeepsTimeTurnsAndLoadsOfAMotion)
+{
+  const CountedMotion counted;
+  const DutyCycle duty = counted.record.duty();
+  EXPECT_LT(duty.phases.size(), 100U) << "of 36000 samples";
+  EXPECT_NEAR(counted.record.hours(), 1.0, 1e-9);
+  EXPECT_NEAR(counted.record.turns(), counted.motion.turnsPerHour(), 1e-6);
+  const LifeParameters life = shippedLife();
+  const auto sums = [&](const DutyCycle& of)
+  {
+    std::array<double, 4> sum{};
+    for (const DutyPhase& phase : of.phases)
+    {
+      sum[0] += phase.turns() * std::abs(phase.load_torque);
+      sum[1] += phase.turns() * phase.temperature;
+      sum[2] += phase.turns() * bearingWear(life, phase.load_torque);
+      sum[3] += phase.turns() * greaseAgeing(life, phase.temperature);
+    }
+    return sum;
+  };
+  const std::array<double, 4> kept = sums(duty);
+  const std::array<double, 4> truth = sums(counted.motion);
+  EXPECT_NEAR(kept[0] / truth[0], 1.0, 1e-9) << "load";
+  EXPECT_NEAR(kept[1] / truth[1], 1.0, 1e-9) << "temperature";
+  EXPECT_NEAR(kept[2] / truth[2], 1.0, 5e-3) << "wear of the bearing, by the cube of the load";
+  EXPECT_NEAR(kept[3] / truth[3], 1.0, 2e-2) << "ageing of the grease, halved every 15 K";
+}
+
+TEST(UseRecord, AgesTheDriveAsItsMotionDoes)
+{
+  const Parameters parameters = shippedParameters();
+  DutyCycle motion;
+  UseRecord record(parameters.life);
+  for (int i = 0; i < 20; ++i)
+  {
+    motion.phases.push_back({ 1800.0, 200.0, 3.3 * i, 40.0 });
+    record.add(motion.phases.back());
+  }
+  ExposureMap exposures(parameters, 8);
+  exposures.cover(motion, {});
+  const DriveAgeing ageing(parameters.life, parameters.gear, motion, exposures);
+  const DriveAge age = ageing.live(nominalDrive(parameters.life), 10.0, 10.0, true, {}).age;
+  const LifeEstimate estimate = LifeEstimator(parameters).estimate(record);
+  EXPECT_NEAR(estimate.hours, 10.0, 1e-9);
+  const auto expectShare = [&](EndOfLife limit, double of)
+  { EXPECT_NEAR(estimate.usedOf(limit) / of, 1.0, 0.01) << nameOf(limit); };
+  expectShare(EndOfLife::FLANK_WEAR, age.flank_wear / parameters.life.flank_wear_limit);
+  expectShare(EndOfLife::INTERFACE_WEAR, age.interface_wear / parameters.life.interface_wear_limit);
+  const DriveNature nominal = nominalDrive(parameters.life);
+  expectShare(EndOfLife::BEARING, age.bearing_turns / nominal.bearing_life / (1.0 + nominal.spall_growth));
+  EXPECT_NEAR(estimate.grease_used, age.grease, 1e-9);
+}
+
+TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
+{
+  const Parameters parameters = shippedParameters();
+  LifeEstimator estimator(parameters);
+  UseRecord record(parameters.life);
+  DutyPhase rated = ratedDuty(parameters.life.grease_temperature).phases[0];
+  record.add(rated);
+  const LifeEstimate fresh = estimator.estimate(record);
+  EXPECT_EQ(fresh.nearest(), EndOfLife::BEARING);
+  EXPECT_NEAR(fresh.remaining.quantile[1], (1.0 + parameters.life.spall_growth) * parameters.life.bearing_l10,
+              0.15 * parameters.life.bearing_l10);
+  // Who has come so far is one of the better drives, and has less before it than they had when new.
+  rated.duration = 3600.0 * parameters.life.bearing_l50;
+  record.add(rated);
+  const LifeEstimate worn = estimator.estimate(record);
+  EXPECT_EQ(worn.remaining.ended, 0.0);
+  EXPECT_GT(worn.remaining.quantile[2], fresh.remaining.quantile[2] - parameters.life.bearing_l50);
+  EXPECT_LT(worn.remaining.quantile[2], fresh.remaining.quantile[2]);
+}
+
+TEST(UseRecord, IsTheSameAfterItsFile)
+{
+  const std::string path = ::testing::TempDir() + "/use.csv";
+  const CountedMotion counted;
+  std::ofstream(path) << counted.record.text();
+  const UseRecord read(shippedLife(), path);
+  const DutyCycle before = counted.record.duty();
+  const DutyCycle after = read.duty();
+  ASSERT_EQ(after.phases.size(), before.phases.size());
+  for (std::size_t i = 0; i < after.phases.size(); ++i)
+  {
+    EXPECT_EQ(after.phases[i].duration, before.phases[i].duration);
+    EXPECT_NEAR(after.phases[i].motor_speed, before.phases[i].motor_speed, 1e-12 * before.phases[i].motor_speed);
+    EXPECT_EQ(after.phases[i].load_torque, before.phases[i].load_torque);
+    EXPECT_EQ(after.phases[i].temperature, before.phases[i].temperature);
+  }
+  std::ofstream(path) << "duration,motor_speed,load_torque\n10,0,5\n";
+  EXPECT_THROW(UseRecord(shippedLife(), path), InputError);
 }
 
 TEST(DutyCycle, RefusesAFileWithoutMotion)

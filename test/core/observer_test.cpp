@@ -235,8 +235,11 @@ TEST(Observer, DoesNotWindUpWhileFrictionHoldsTheMotor)
       last_band = at.time < 3.0 ? at.residual_band : last_band;
       after_start = at.time > 6.3 ? std::max(after_start, std::abs(at.residual_torque)) : after_start;
     }
-    EXPECT_LT(largest, 0.03);
-    EXPECT_GT(last_band, 1.5 * first_band);  // standing tells nothing, and the band says so
+    EXPECT_LT(largest, 0.04);
+    if (rows.encoders == Encoders::OUTPUT)
+    {
+      EXPECT_GT(last_band, 1.5 * first_band);  // standing tells nothing, and the band says so
+    }
     EXPECT_LT(after_start, 0.05);
   }
 }
@@ -246,10 +249,12 @@ TEST(Observer, IsNotHeldByFrictionThatTheRobotDoesNotHave)
   // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes later.
   const Parameters believed = shippedParameters(JOINT);
   const Parameters loose = jointWith("bearing.race_preload=0.0");
-  const std::vector<Seen> seen =
-      observe(loose, believed, 5.0, [](double time, const JointOutputs&) { return time < 2.0 ? 0.0 : 0.045; },
-              { 0.008, Encoders::OUTPUT });
-  EXPECT_LT(meanResistance(seen, 3.0, 5.0, 2.0), -0.02);
+  for (const Rows& rows : { Rows{}, Rows{ 0.008, Encoders::OUTPUT } })
+  {
+    const std::vector<Seen> seen = observe(
+        loose, believed, 5.0, [](double time, const JointOutputs&) { return time < 2.0 ? 0.0 : 0.045; }, rows);
+    EXPECT_LT(meanResistance(seen, 3.0, 5.0, 2.0), -0.02);
+  }
 }
 
 TEST(Observer, BeginsAnewAfterAGap)

@@ -479,6 +479,42 @@ TEST(SceneAuto, RunsOnTheFullRingWhileTheSurfaceIsBuiltBeside)
   EXPECT_LT(step_at_change, largest_step + 1e-3);
 }
 
+/// By the wall clock, with patience. False: it did not come onto the surface.
+bool comesOntoTheSurface(Twin& twin)
+{
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+  while (!twin.onSurface() && std::chrono::steady_clock::now() < deadline)
+  {
+    twin.commandMotorTorque(twin.stamp(), 0.3 - 0.01 * twin.outputs().motor_velocity);
+    twin.step(twin.stamp() + twin.stepLength());
+  }
+  return twin.onSurface();
+}
+
+TEST(SceneAuto, FaultsOfARunningTwinGetASurfaceBuiltBeside)
+{
+  SurfaceSource beside = cached();
+  beside.background = true;
+  Twin twin(surfaceParameters(), beside);
+  ASSERT_TRUE(comesOntoTheSurface(twin));
+  const Fault soft{ FaultKind::FLANGE_CRACK, 0.5 };
+  twin.injectFault(twin.stamp(), soft);
+  twin.step(twin.stamp() + twin.stepLength());
+  EXPECT_FALSE(twin.onSurface()) << "the full ring at once";
+  ASSERT_TRUE(comesOntoTheSurface(twin));
+  const double on_surface = twin.outputs().torsional_stiffness;
+  Parameters parameters = surfaceParameters();
+  parameters.faults.push_back(soft);
+  Twin configured(parameters, cached());
+  ASSERT_TRUE(comesOntoTheSurface(configured));
+  EXPECT_NEAR(on_surface, configured.outputs().torsional_stiffness, 0.05 * on_surface);
+  twin.injectFault(twin.stamp(), { FaultKind::FLANGE_CRACK, 0.0 });
+  twin.step(twin.stamp() + twin.stepLength());
+  EXPECT_FALSE(twin.onSurface());
+  ASSERT_TRUE(comesOntoTheSurface(twin));
+  EXPECT_GT(twin.outputs().torsional_stiffness, 1.05 * on_surface);
+}
+
 /// A twin that goes before its surface is built does not wait for it.
 TEST(SceneAuto, GivesUpASurfaceThatIsNotWaitedFor)
 {

@@ -379,7 +379,7 @@ TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
   EXPECT_EQ(windows(1).level, HealthLevel::OK) << "one window is not enough";
   const Assessment faulty = windows(1);
   EXPECT_GE(faulty.level, HealthLevel::WARN);
-  EXPECT_EQ(faulty.cause, Cause::BEARING_OUTER_RACE);
+  EXPECT_EQ(faulty.cause, causeOf(FaultKind::BEARING_OUTER_RACE));
   EXPECT_GT(faulty.confidence, 0.5);
   ASSERT_GT(faulty.evidence_count, 0U);
   EXPECT_STREQ(indicatorName(faulty.evidence[0].indicator), "error_outer");
@@ -403,7 +403,7 @@ TEST_F(Assessed, DragIsPutDownToTheLubricant)
   drag_ = 1.6;
   const Assessment& assessment = windows(2);
   EXPECT_GE(assessment.level, HealthLevel::WARN);
-  EXPECT_EQ(assessment.cause, Cause::LUBRICANT_DEGRADATION);
+  EXPECT_EQ(assessment.cause, causeOf(FaultKind::LUBRICANT_DEGRADATION));
 }
 
 TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)

@@ -93,6 +93,14 @@ class Follow(tool.ToolTest):
                        for row in moving) / len(moving)
             self.assertGreater(more, 0.3, (bag, mode, summary))
 
+    def test_both_encoders_agree_within_the_band_of_the_angle(self):
+        as_ur_tells(self.healthy, self.path("both.bag"), both=True)
+        self.succeed("follow", "both.bag", *OPTIONS, "--mode", "observer", "--out", "both.csv")
+        rows = self.rows("both.csv")[100:]
+        inside = sum(abs(row["position_residual"]) < row["position_band"] for row in rows)
+        self.assertGreater(inside, 0.97 * len(rows))
+        self.assertEqual(sum(row["outside_band"] for row in rows), 0)
+
     def test_a_current_that_comes_late_is_told(self):
         as_ur_tells(self.healthy, self.path("late.bag"), lag=0.024)
         lags = {bag: self.succeed_json("follow", bag, *OPTIONS)["lag"] for bag in ("a.bag", "late.bag")}

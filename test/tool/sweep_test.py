@@ -179,6 +179,70 @@ record:
         self.assertEqual(torques, sorted(torques, reverse=True))
         self.assertGreater(torques[0], 1.3 * torques[-1])
 
+    def test_the_temperature_may_change_within_a_run(self):
+        wave = "temperature: {sinus: {mean: 20.0, amplitude: 20.0, frequency: 25.0, phase: 0.0}}"
+        self.write("plan.yaml", PLAN.replace("load: {constant: 5.0}", "load: {constant: 5.0}\n    " + wave)
+                   .replace("repeats: 3", "repeats: 1").replace("{grid: [10.0, 40.0]}", "10.0")
+                   .replace("speed: {sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}",
+                            "speed: {constant: 1.0}")
+                   .replace("[mesh_force, joint_torque]", "[temperature, friction_torque]")
+                   .replace("rate: 100.0", "rate: 1000.0"))
+        self.sweep("a")
+        with h5py.File(self.path("a/" + self.index("a")[0]["file"]), "r") as file:
+            time_axis = 0.01 + 0.001 * numpy.arange(1, 51)
+            temperature = file["teeth/temperature"][:]
+            friction = file["teeth/friction_torque"][:]
+        numpy.testing.assert_allclose(temperature, 20.0 + 20.0 * numpy.sin(2.0 * numpy.pi * 25.0 * time_axis), atol=1e-9)
+        settled = time_axis > 0.03
+        self.assertLess(numpy.corrcoef(temperature[settled], friction[settled])[0, 1], -0.8)
+
+    def test_indicators_of_each_window_stand_in_the_file(self):
+        self.write("plan.yaml", PLAN.replace("duration: 0.06", "duration: 0.5").replace("repeats: 3", "repeats: 1")
+                   .replace("speed: {sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}",
+                            "speed: {constant: 1.0}")
+                   .replace("  output.load_inertia: {log_uniform: [0.5, 2.0]}", "  indicators.window_turns: 2.0")
+                   .replace("deflate: 0", "deflate: 0\n  indicators: true"))
+        self.sweep("a")
+        cold, warm = [row["file"] for row in self.index("a")]
+        torque = {}
+        for file_name in (cold, warm):
+            with h5py.File(self.path("a/" + file_name), "r") as file:
+                indicators = file["indicators"]
+                self.assertGreaterEqual(len(indicators["window_end"]), 2)
+                self.assertTrue((numpy.diff(indicators["window_end"]) > 0.0).all())
+                self.assertEqual(indicators["running_torque"].attrs["unit"], b"N.m")
+                self.assertEqual(len(indicators["torque_outer"]), len(indicators["window_end"]))
+                self.assertAlmostEqual(indicators["window_turns"][-1], 2.0, delta=0.1)
+                torque[file_name] = indicators["running_torque"][-1]
+        self.assertGreater(torque[cold], 1.2 * torque[warm])
+
+    def test_the_grid_of_faults_shows_severity_in_its_files(self):
+        with open(os.path.join(tool.CHECKOUT, "plans", "fault_grid.yaml")) as file:
+            plan = file.read()
+        for old, new in [("duration: 12.0", "duration: 0.2"), ("start: 1.0", "start: 0.1"),
+                         ("solver.scene: auto", "solver.scene: full_ring\n  sensors.noise_seed: 5"),
+                         ("{grid: [15.0, 40.0]}", "15.0"), ("{grid: [0.5, 1.5]}", "1.0"),
+                         ("{grid: [0.0, 30.0, 60.0]}", "60.0")]:
+            self.assertIn(old, plan)
+            plan = plan.replace(old, new, 1)
+        self.write("plan.yaml", plan)
+        self.sweep("a")
+        rows = self.index("a")
+        self.assertEqual(len(rows), 1 + 16 * 3)
+        truth = {}
+        for row in rows:
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                truth.setdefault(row["class"], []).append(
+                    numpy.array([file["truth/friction_torque"][:], file["truth/torsional_stiffness"][:]]))
+        healthy = truth.pop("healthy")[0]
+        scale = numpy.abs(healthy).mean(axis=1)[:, None]
+        self.assertEqual(len(truth), 16)
+        for kind, runs in truth.items():
+            with self.subTest(kind):
+                departures = [numpy.sqrt((((run - healthy) / scale) ** 2).mean()) for run in runs]
+                self.assertGreater(departures[0], 0.0)
+                self.assertEqual(departures, sorted(departures))
+
     def test_what_is_drawn_depends_on_seed_name_and_run_alone(self):
         def drawn(plan):
             self.write("other.yaml", plan)
@@ -246,6 +310,9 @@ record:
                 ("rate: 500.0", "rate: 333.0", ["rate = 333.0 [Hz] must divide solver.rate = 10000"]),
                 ("float32", "float16", ["type = 'float16' is unknown; allowed: float32, float64"]),
                 ("format: hdf5", "format: hdf6", ["record.format = 'hdf6' is unknown; allowed: hdf5, bag"]),
+                ("load: {constant: 5.0}", "temperature: {sinus: {mean: 100.0, amplitude: 60.0, frequency: 1.0, phase: 0.0}}",
+                 ["plan.yaml:14: duty.0.temperature reaches 40 ... 160 [degC], allowed: -40 ... 150 [degC]"]),
+                ("deflate: 0", "deflate: 0\n  indicators: some", ["record.indicators = 'some' must be true or false"]),
                 ("load: {constant: 5.0}", "load: {csv: {file: none.csv, column: load}}", ["none.csv cannot be read"]),
                 ("seed: 7", "seed: 7\nseed: 8", ["seed"]),
                 ("name: test", "name: [", ["plan.yaml:"])]:
@@ -261,7 +328,16 @@ record:
         self.sweep("a")
         before = tree(self.path("a"))
         self.write("plan.yaml", PLAN.replace("seed: 7", "seed: 8"))
-        self.fail_with(1, ["a/plan.json is of another plan"], "sweep", "plan.yaml", "--out", "a")
+        self.fail_with(1, ["a/plan.json is of another plan; give another --out"], "sweep", "plan.yaml", "--out", "a")
+        self.write("plan.yaml", PLAN)
+        self.fail_with(1, ["a/plan.json is of another configuration"], "sweep", "plan.yaml", "--out", "a",
+                       "--set", "output.load_inertia=2.0")
+        with open(self.path("a/plan.json")) as file:
+            text = file.read()
+        version = json.loads(text)["version"]
+        self.write("a/plan.json", text.replace(f'"version": "{version}"', '"version": "0.0.1"'))
+        before["plan.json"] = tool.read_bytes(self.path("a/plan.json"))
+        self.fail_with(1, ["a/plan.json is of another version of the software"], "sweep", "plan.yaml", "--out", "a")
         self.assertEqual(tree(self.path("a")), before)
 
     def test_dry_run_tells_runs_and_size_and_writes_nothing(self):
@@ -271,7 +347,7 @@ record:
         self.assertFalse(os.path.exists(self.path("a")))
 
     def test_the_shipped_plans_are_right(self):
-        for name in ["small.yaml", "temperature_grid.yaml"]:
+        for name in ["small.yaml", "temperature_grid.yaml", "fault_grid.yaml"]:
             rows = self.sweep("unused", "--list", plan=os.path.join(tool.CHECKOUT, "plans", name)).stdout.splitlines()
             self.assertGreater(len(rows), 2)
 

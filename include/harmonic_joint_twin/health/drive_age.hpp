@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 #include <boost/random/lognormal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
@@ -38,6 +40,11 @@ enum class EndOfLife
   ROOT_CRACK,
   BEARING
 };
+
+constexpr std::size_t ENDS_OF_LIFE = 4;
+
+/// In words: flank wear, interface wear, root crack, bearing; still in use.
+const char* nameOf(const std::optional<EndOfLife>& end) noexcept;
 
 /// One drive out of many: factors of wear log-normal, the bearing's life after the catalogue's Weibull distribution.
 template <class Engine>

@@ -8,33 +8,25 @@
 
 #include "harmonic_joint_twin/health/baseline.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
+#include "harmonic_joint_twin/params/faults.hpp"
 
 namespace hjt
 {
-/// What may be wrong with the drive: the kinds of faults, in their order, and a damaged tooth of the circular spline.
+/// What may be wrong with the drive: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of the
+/// circular spline.
 enum class Cause : std::uint8_t
 {
   NONE,
-  INTERFACE_WEAR,
-  REAR_SECTION_CRACK,
-  LUBRICANT_DEGRADATION,
-  TOOTH_WEAR,
-  TOOTH_ROOT_CRACK,
-  FLANGE_CRACK,
-  TOOTH_TIP_CRACK,
-  PITTING,
-  WAVE_GENERATOR_WEAR,
-  FLEXSPLINE_CRACK,
-  BUCKLING,
-  RATCHETING,
-  BEARING_INNER_RACE,
-  BEARING_OUTER_RACE,
-  BEARING_BALL,
-  BEARING_CAGE,
-  CIRCULAR_SPLINE_TOOTH,
+  FIRST_FAULT,
+  CIRCULAR_SPLINE_TOOTH = FIRST_FAULT + FAULT_KINDS,
   COUNT
 };
 constexpr auto CAUSE_COUNT = static_cast<std::size_t>(Cause::COUNT);
+
+constexpr Cause causeOf(FaultKind kind)
+{
+  return static_cast<Cause>(static_cast<std::size_t>(Cause::FIRST_FAULT) + static_cast<std::size_t>(kind));
+}
 
 const char* causeName(Cause cause) noexcept;  ///< "tooth_root_crack"
 

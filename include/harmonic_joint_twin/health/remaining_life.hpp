@@ -68,6 +68,9 @@ public:
   /// Weighs all particles. Allocates nothing.
   void read(const WearReading& reading) noexcept;
 
+  /// The drive is known to be in use still: particles at their end lose their weight, unless all are. Allocates nothing.
+  void survive() noexcept;
+
   /// The hours until each particle's end, with this use ahead. Allocates nothing.
   RemainingHours remaining(const Outlook& outlook) noexcept;
 
@@ -79,6 +82,7 @@ private:
     double interface_wear;
   };
   static constexpr double LARGEST_SPALL = 3.0;  // beyond the end of use one is as bad as the other
+  bool hasEnded(const Particle& particle) const noexcept;
   static DriveNature natureOf(const Particle& particle) noexcept;
   void resample() noexcept;
 

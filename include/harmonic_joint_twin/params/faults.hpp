@@ -48,6 +48,9 @@ struct Fault
     WHOLE_MEMBER
   };               ///< tooth, segment, lobe or ball by kind, from 0 on; WHOLE_MEMBER where the kind allows it
   double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
+
+  /// Of a configured one: the twin starts with it.
+  bool isThereFromTheStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
 /// What a place counts.

@@ -255,6 +255,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
         "range of the stress intensity below which a flaw does not grow");
+  visit("life.use_record", p.life.use_record,
+        "live: none, or the absolute path of the file that keeps the drive's use from one start to the next");
+  visit("life.forecast_period", "s", p.life.forecast_period, Range{ 0.1, 1e5 },
+        "live: time between two forecasts of the remaining life, and between two writes of the record");
 
   visit("input.mode", p.input.mode,
         "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)");
@@ -264,7 +268,8 @@ void visitFields(P& p, Visitor&& visit)
         "live, the twin stays this far behind the clock, so that stamped commands arrive in time");
   visit("input.wait_for_first_input", p.input.wait_for_first_input,
         "true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant");
-  visit("input.temperature", "degC", p.input.temperature, Range{ -40.0, 150.0 }, "temperature of the drive");
+  visit("input.temperature", "degC", p.input.temperature, Range{ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE },
+        "temperature of the drive");
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
         "torque at the joint per measured motor current");
@@ -342,6 +347,8 @@ void visitFields(P& p, Visitor&& visit)
         "what bearing.race_preload falls by with the mean radius of the wave generator");
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
         "part of bearing.race_preload that bends the race, which wear does not take away");
+  visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
+        "cracks of the rim at severity 1: depth over the rim's thickness");
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
         "flexspline_crack: segments to either side over which the crack fades out");
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },

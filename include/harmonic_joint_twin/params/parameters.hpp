@@ -91,8 +91,8 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Where a table could be named: there is none.
-constexpr const char* NO_TABLE = "none";
+/// Where a file could be named: there is none.
+constexpr const char* NO_FILE = "none";
 
 /// Pitch errors of one toothed member: seeded, or from a table.
 struct PitchParameters
@@ -246,7 +246,13 @@ struct LifeParameters
   double crack_coefficient{};
   double crack_exponent{};
   double crack_threshold{};
+  std::string use_record;
+  double forecast_period{};
 };
+
+/// Temperatures that the drive can have [degC].
+constexpr double LOWEST_TEMPERATURE = -40.0;
+constexpr double HIGHEST_TEMPERATURE = 150.0;
 
 /// What the node runs on.
 enum class InputMode
@@ -335,6 +341,7 @@ struct FaultScaleParameters
   double wave_generator_wear_depth{};
   double race_fit_stiffness{};
   double race_bending_preload{};
+  double rim_crack_depth{};
   int rim_crack_segments{};
   double buckling_stiffness_loss{};
   double buckling_out_of_round{};

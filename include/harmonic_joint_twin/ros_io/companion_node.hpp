@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "harmonic_joint_twin/ros_io/diagnostics.hpp"
+#include "harmonic_joint_twin/ros_io/life_publisher.hpp"
 #include "harmonic_joint_twin/ros_io/recent_events.hpp"
 #include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
 #include "harmonic_joint_twin/twin/companion.hpp"
@@ -72,10 +74,12 @@ private:
   const JointNames names_;
   const Parameters parameters_;
   Companion companion_;
+  LifePublisher life_;
   std::optional<ros::Time> start_;  // stamp of the first row: the companion's zero
   ros::Time last_received_;
   std::optional<LoadAt> last_load_;
-  std::string found_names_;  // in the last message without this joint
+  std::deque<LoadAt> early_loads_;  // told before there was a zero
+  std::string found_names_;         // in the last message without this joint
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;

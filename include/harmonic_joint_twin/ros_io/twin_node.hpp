@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/ros_io/diagnostics.hpp"
 #include "harmonic_joint_twin/ros_io/inbox.hpp"
 #include "harmonic_joint_twin/ros_io/input_subscribers.hpp"
+#include "harmonic_joint_twin/ros_io/life_publisher.hpp"
 #include "harmonic_joint_twin/ros_io/output_publishers.hpp"
 #include "harmonic_joint_twin/ros_io/realtime.hpp"
 #include "harmonic_joint_twin/ros_io/timing_publisher.hpp"
@@ -19,7 +20,7 @@ namespace hjt
 {
 /// The live twin: wires a `Twin` to the topics and services of a node. Translates only; computes nothing.
 ///
-/// Threads: the loop advances the twin; a publisher sends what it filled; the callbacks, diagnostics and services run
+/// Threads: the loop advances the twin; a publisher sends what it filled; another ages the drive; the callbacks, diagnostics and services run
 /// in whoever spins, at least two threads, since a reset waits for the loop.
 class TwinNode
 {
@@ -34,6 +35,7 @@ private:
   Twin twin_;
   Inbox inbox_;
   OutputPublishers publishers_;
+  LifePublisher life_;
   TwinLoop loop_;
   RealtimeState realtime_;
   InputSubscribers subscribers_;

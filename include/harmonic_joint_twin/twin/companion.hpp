@@ -68,6 +68,8 @@ public:
   /// Stamps that go back by more are a new recording or a clock that was set [s].
   static constexpr double RESTART = 1.0;
   static constexpr double OUTSIDE_MEMORY = 2.0;  ///< [s]
+  /// Loads that are kept for rows to come.
+  static constexpr std::size_t LOADS = 512;
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -114,8 +116,6 @@ private:
     double time;
     double torque;
   };
-  static constexpr std::size_t LOADS = 512;
-
   std::optional<double> loadAt(double time) const noexcept;
   void watch(const MotionSample& sample, double load) noexcept;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "harmonic_joint_twin/params/faults.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
@@ -25,10 +26,13 @@ class FaultSchedule
 public:
   static constexpr std::size_t CAPACITY = 2 * MOST_FAULTS;
 
-  void clear() noexcept { size_ = 0; }
-  /// @returns false if it is full.
+  explicit FaultSchedule(const Parameters& parameters);
+
+  void clear() noexcept;
+  /// `fault` valid. @returns false if it is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
-  /// Takes the earliest with a stamp not after `instant`. False: there is none.
+  /// Takes the earliest with a stamp not after `instant`. False: there is none. One that comes late, after a newer one of
+  /// its kind and place was taken, is dropped.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:
@@ -37,7 +41,10 @@ private:
     Stamp stamp;
     Fault fault;
   };
+  Stamp& lastTaken(const Fault& fault) noexcept;
+
   std::array<Waiting, CAPACITY> waiting_{};  // latest first
   std::size_t size_{};
+  std::array<std::vector<Stamp>, FAULT_KINDS> last_taken_;  // by kind and place, the whole member first
 };
 }  // namespace hjt

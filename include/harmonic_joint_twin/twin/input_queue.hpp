@@ -17,9 +17,10 @@ enum class InputKind : std::uint8_t
   MOTOR_TORQUE,
   LOAD_TORQUE,
   BRAKE,
+  TEMPERATURE,
   FAULT  ///< for Twin::injectFault: the queue takes none
 };
-constexpr std::size_t INPUT_KINDS = 3;  ///< of those with a value
+constexpr std::size_t INPUT_KINDS = 4;  ///< of those with a value
 
 struct Input
 {

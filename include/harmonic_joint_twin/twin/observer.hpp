@@ -72,7 +72,8 @@ struct Observation
 ///
 /// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed to
 /// stop the motor, at most what it is. While friction holds the motor, no torque within it moves anything, so angles teach
-/// nothing of the disturbance and nothing winds up; its band widens instead. An angle that contradicts ends that for a while.
+/// nothing of the disturbance and nothing winds up; its band widens instead. A robot that moves all the same pulls the model's
+/// output along, whose spring then tears the motor loose.
 /// What the encoders ask for beyond is one torque, the residual: friction that has grown, a load that was not told. The
 /// model's own parameters are never adapted, so a fault cannot be learnt away. A step costs about a microsecond.
 class Observer
@@ -113,7 +114,6 @@ private:
   double motor_zero_{};    // of the motor encoder [rad]
   double friction_now_{};  // [N.m]
   bool sticking_{};
-  double contradicted_{};     // until then an angle has contradicted that friction holds the motor [s]
   double angle_deviation_{};  // expected of the innovation of the angle taken last [rad]
 };
 }  // namespace hjt

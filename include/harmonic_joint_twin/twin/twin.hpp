@@ -27,6 +27,7 @@ struct JointOutputs
   double output_velocity{};
   double motor_torque{};           ///< applied, after command timeout and limits
   double load_torque{};            ///< external torque at the output, > 0 resists positive motion
+  double temperature{};            ///< of the drive [degC]
   double wave_generator_torque{};  ///< of the wave generator on the flexspline: the motor's, less friction and inertia
   double joint_torque{};           ///< of the mesh on the circular spline
   double friction_torque{};        ///< all friction reduced to the motor shaft by power, >= 0
@@ -128,6 +129,7 @@ public:
   void commandMotorTorque(Stamp stamp, double torque) noexcept;  ///< [N.m] motor shaft
   void commandLoadTorque(Stamp stamp, double torque) noexcept;   ///< [N.m] output, > 0 resists positive motion
   void commandBrake(Stamp stamp, bool engaged) noexcept;
+  void setTemperature(Stamp stamp, double temperature) noexcept;  ///< of the drive, kept within its range [degC]
 
   /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one that
   /// is not valid is refused and counted. While any is active all teeth are solved at every step.

@@ -11,6 +11,8 @@
 #include "../tool/run_summary.hpp"
 #include "../tool/validators.hpp"
 
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+
 namespace hjt
 {
 namespace

@@ -28,6 +28,7 @@ const std::vector<Column>& columns()
     { "motor_torque", "N.m", "applied by the motor", [](I i) { return i.outputs.motor_torque; }, nullptr },
     { "load_torque", "N.m", "external, at the output; > 0 resists positive motion",
       [](I i) { return i.outputs.load_torque; }, nullptr },
+    { "temperature", "degC", "of the drive", [](I i) { return i.outputs.temperature; }, nullptr },
     { "wave_generator_torque", "N.m", "of the wave generator on the flexspline",
       [](I i) { return i.outputs.wave_generator_torque; }, nullptr },
     { "joint_torque", "N.m", "of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; },

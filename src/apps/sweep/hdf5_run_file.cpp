@@ -9,6 +9,7 @@
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 namespace hjt
 {
@@ -67,6 +68,23 @@ bool writeTextDataset(hid_t file, const char* name, const std::string& text)
                            H5Dclose);
   return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
 }
+
+/// Numbers as a data set. @returns its success as the library does.
+herr_t writeRows(hid_t group, const char* name, const char* unit, const std::vector<double>& rows)
+{
+  const hsize_t count = rows.size();
+  const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
+  const Hdf5Handle dataset(
+      H5Dcreate2(group, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid())
+  {
+    return -1;
+  }
+  writeText(dataset.get(), "unit", unit);
+  return rows.empty() ? 0 : H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+}
+
 /// A fault as it lies in memory and, without the gaps, in the file.
 struct FaultRow
 {
@@ -119,7 +137,7 @@ Hdf5Handle::~Hdf5Handle()
 }
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
-  : path_(std::move(path)), temporary_(path_ + ".part")
+  : path_(std::move(path)), temporary_(path_ + ".part"), indicators_(recording.indicators)
 {
   const auto lock = lockLibrary();
   const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
@@ -206,6 +224,10 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
 void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
 {
   const Stamp now = twin.stamp();
+  if (indicators_ && twin.signalIndicators().windows > windows_.size())
+  {
+    windows_.push_back(twin.signalIndicators());
+  }
   for (Group& group : groups_)
   {
     if (now <= from_ || (now - from_) % group.period != 0)
@@ -254,6 +276,33 @@ void Hdf5RunFile::flush(Group& group)
   group.buffered = 0;
 }
 
+void Hdf5RunFile::writeIndicators()
+{
+  const Hdf5Handle properties = withoutTimes(H5P_GROUP_CREATE);
+  const Hdf5Handle group(H5Gcreate2(file_.get(), "indicators", H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose);
+  check(group.get());
+  const auto write = [&](const char* name, const char* unit, const auto& value)
+  {
+    std::vector<double> rows;
+    for (const SignalIndicators& window : windows_)
+    {
+      rows.push_back(value(window));
+    }
+    check(writeRows(group.get(), name, unit, rows));
+  };
+  using W = const SignalIndicators&;
+  write("window_end", "s", [this](W w) { return toSeconds(w.stamp - begin_); });
+  write("window_turns", "-", [](W w) { return w.turns; });
+  write("window_speed", "rad/s", [](W w) { return w.point.speed; });
+  write("window_direction", "-", [](W w) { return w.point.direction; });
+  write("window_load", "N.m", [](W w) { return w.point.load; });
+  write("window_temperature", "degC", [](W w) { return w.point.temperature; });
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    write(indicatorName(i), indicatorUnit(i), [i](W w) { return w.values[i]; });
+  }
+}
+
 void Hdf5RunFile::finish(const nlohmann::ordered_json& record)
 {
   for (Group& group : groups_)
@@ -282,6 +331,10 @@ void Hdf5RunFile::finish(const nlohmann::ordered_json& record)
       {
         writeText(file_.get(), key, value.get<std::string>());
       }
+    }
+    if (indicators_)
+    {
+      writeIndicators();
     }
     if (!writeTextDataset(file_.get(), "record", record.dump()))
     {

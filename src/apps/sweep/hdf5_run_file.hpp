@@ -32,7 +32,8 @@ private:
   Close close_{};
 };
 
-/// A run as an HDF5 file: a group for each rate with a data set a column, the faults, the parameters, the record.
+/// A run as an HDF5 file: a group for each rate with a data set a column, the indicators of each window, the faults, the
+/// parameters, the record.
 /// docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
 class Hdf5RunFile : public RunFile
 {
@@ -66,6 +67,7 @@ private:
 
   void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start, int deflate);
   void flush(Group& group);
+  void writeIndicators();
   void close() noexcept;
   [[noreturn]] void fail() const;
   hid_t check(hid_t result) const;
@@ -77,5 +79,7 @@ private:
   Stamp begin_{};
   ToothForces teeth_;
   std::vector<Group> groups_;
+  bool indicators_;
+  std::vector<SignalIndicators> windows_;
 };
 }  // namespace hjt

@@ -169,7 +169,8 @@ void Plan::readRecording()
   {
     required(record, "format").refuse("is unknown; allowed: hdf5, bag");
   }
-  allowOnly(record, { "format", "start", "deflate", "groups" });
+  allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
+  recording_.indicators = values.flag(record, "indicators");
   recording_.start = values.number(record, "start", "s", { 0, 1e6 });
   recording_.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }));
   for (const auto& [name, node] : required(record, "groups", Kind::MAP).entries)
@@ -196,9 +197,11 @@ void Plan::readRecording()
       }
       group.columns.push_back(column);
     }
-    if (name == "faults" || name == "parameters" || name.find('/') != std::string::npos || group.columns.empty())
+    if (name == "faults" || name == "parameters" || name == "indicators" || name == "record" ||
+        name.find('/') != std::string::npos || group.columns.empty())
     {
-      node.refuse("needs at least one column, and a name other than faults and parameters without '/'");
+      node.refuse(
+          "needs at least one column, and a name other than faults, parameters, indicators and record, without '/'");
     }
     recording_.groups.push_back(group);
   }
@@ -303,7 +306,7 @@ RunSpec Plan::run(std::uint64_t number) const
   {
     required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
   }
-  allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load" });
+  allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load", "temperature" });
   spec.duty_name = values.text(*block.duty, "name");
   spec.duty = dutyOf(*block.duty, values);
   ParameterMap map = settingsOf(values, number);
@@ -337,9 +340,9 @@ ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) co
   return map;
 }
 
-DutyCycle Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
+RunDuty Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
 {
-  DutyCycle cycle;
+  RunDuty cycle;
   const bool torque = duty.find("torque") != nullptr;
   if (torque == (duty.find("speed") != nullptr))
   {
@@ -357,6 +360,17 @@ DutyCycle Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
   if (duty.find("load") != nullptr)
   {
     cycle.load = waveform(duty, "load", "N.m", values);
+  }
+  if (duty.find("temperature") != nullptr)
+  {
+    cycle.temperature = waveform(duty, "temperature", "degC", values);
+    const Range reached = cycle.temperature->range();
+    if (reached.min < LOWEST_TEMPERATURE || reached.max > HIGHEST_TEMPERATURE)
+    {
+      required(duty, "temperature")
+          .refuse("reaches " + rangeText(reached) +
+                  " [degC], allowed: " + rangeText({ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE }) + " [degC]");
+    }
   }
   return cycle;
 }

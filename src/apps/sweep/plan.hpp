@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "columns.hpp"
-#include "duty_cycle.hpp"
 #include "plan_node.hpp"
 #include "plan_values.hpp"
+#include "run_duty.hpp"
 #include "variable.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
@@ -40,8 +40,9 @@ enum class RunFormat
 struct Recording
 {
   RunFormat format{};
-  double start{};  ///< nothing is recorded before [s]
-  int deflate{};   ///< 0 ... 9; 0: not compressed
+  double start{};     ///< nothing is recorded before [s]
+  int deflate{};      ///< 0 ... 9; 0: not compressed
+  bool indicators{};  ///< those of docs/indicators.md, a row a window
   std::vector<RecordingGroup> groups;
 };
 
@@ -63,7 +64,7 @@ struct RunSpec
   std::uint64_t repeat{};
   double duration{};  ///< [s]
   Parameters parameters;
-  DutyCycle duty;
+  RunDuty duty;
   std::vector<FaultLabel> faults;
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
@@ -112,7 +113,7 @@ private:
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
-  DutyCycle dutyOf(const PlanNode& duty, const PlanValues& values) const;
+  RunDuty dutyOf(const PlanNode& duty, const PlanValues& values) const;
   std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
                                            const PlanValues& values) const;
   void checkRates(const Parameters& parameters) const;

@@ -116,6 +116,22 @@ std::string PlanValues::text(const PlanNode& map, const std::string& key) const
   return *text;
 }
 
+bool PlanValues::flag(const PlanNode& map, const std::string& key) const
+{
+  const PlanNode* node = map.find(key);
+  if (node == nullptr)
+  {
+    return false;
+  }
+  const ParameterValue found = value(*node);
+  const auto* flag = std::get_if<bool>(&found.value);
+  if (flag == nullptr)
+  {
+    refuse(*node, found, "must be true or false");
+  }
+  return *flag;
+}
+
 const PlanNode& required(const PlanNode& map, const std::string& key)
 {
   const PlanNode* node = map.find(key);

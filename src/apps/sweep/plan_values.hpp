@@ -23,6 +23,7 @@ public:
   double number(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const;
   std::int64_t whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const;
   std::string text(const PlanNode& map, const std::string& key) const;
+  bool flag(const PlanNode& map, const std::string& key) const;  ///< false where the key is left out
 
   /// A plain value, a variable's or a list of numbers.
   ParameterValue value(const PlanNode& node) const;

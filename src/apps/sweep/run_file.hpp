@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "duty_cycle.hpp"
 #include "plan.hpp"
+#include "run_duty.hpp"
 
 namespace hjt
 {
@@ -35,12 +35,6 @@ const char* runFileExtension(RunFormat format);
 /// The record of a finished run; none if there is no readable file.
 nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path);
 
-/// A text file, whole or not at all, brought to the disk. @throws InputError.
-void writeTextFile(const std::string& path, const std::string& text);
-
 /// Bytes of the numbers of a run.
 double dataSize(const Recording& recording, double duration, int teeth);
-
-/// Brings a written file to the disk and gives it its name. @throws InputError.
-void bringToDisk(const std::string& temporary, const std::string& path);
 }  // namespace hjt

@@ -2,6 +2,7 @@
 #include "sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -23,6 +24,7 @@
 #include "harmonic_joint_twin/params/parameter_error.hpp"
 #include "harmonic_joint_twin/params/text_hash.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
 
 namespace hjt
 {
@@ -63,6 +65,24 @@ std::string cell(const Json& value)
   return "\"" + text + "\"";
 }
 
+/// In what the document of a directory differs from that of a plan.
+std::string otherThan(const Json& found, const Json& wanted)
+{
+  const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
+                                                                    { "version", "another version of the software" },
+                                                                    { "plan", "another plan" },
+                                                                    { "tables", "other tables of the plan" },
+                                                                    { "configuration", "another configuration" } } };
+  for (const auto& [key, what] : parts)
+  {
+    if (!found.is_object() || found.value(key, Json()) != wanted.at(key))
+    {
+      return what;
+    }
+  }
+  return "something else";
+}
+
 /// The run through to its end, into its file.
 class RunSimulation
 {
@@ -91,7 +111,8 @@ public:
       makeRunFile(plan_.recording(), spec, nullptr, path)->finish(record);
       return true;
     }
-    twin->watchSignals(plan_.recording().format == RunFormat::BAG);  // a bag holds the indicators
+    const Recording& recording = plan_.recording();
+    twin->watchSignals(recording.format == RunFormat::BAG || recording.indicators);  // a bag holds the indicators
     twin->reset(SIMULATION_EPOCH);
     const auto file = makeRunFile(plan_.recording(), spec, &*twin, path);
     if (!march(*twin, spec, *file))
@@ -263,7 +284,8 @@ void SweepDirectory::open() const
   const std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (found != text)
   {
-    throw InputError(name + " is of another plan, configuration or version of the software; give another --out");
+    throw InputError(name + " is of " + otherThan(Json::parse(found, nullptr, false), document) +
+                     "; give another --out");
   }
 }
 

@@ -73,6 +73,13 @@ std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string
   return rows;
 }
 
+Range TableWaveform::range() const
+{
+  const auto [least, most] = std::minmax_element(rows_->begin(), rows_->end(),
+                                                 [](const auto& a, const auto& b) { return a.second < b.second; });
+  return { least->second, most->second };
+}
+
 std::size_t TableWaveform::rowAfter(double time) const
 {
   return static_cast<std::size_t>(

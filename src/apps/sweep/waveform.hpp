@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "harmonic_joint_twin/params/field_table.hpp"
 
 namespace hjt
 {
@@ -15,6 +18,7 @@ public:
   virtual ~Waveform() = default;
   virtual double value(double time) const = 0;  ///< `time` [s] from 0 on
   virtual double slope(double time) const = 0;  ///< [1/s] of the quantity's unit
+  virtual Range range() const = 0;              ///< it never leaves
 };
 
 class ConstantWaveform : public Waveform
@@ -23,6 +27,7 @@ public:
   explicit ConstantWaveform(double value) : value_(value) {}
   double value(double) const override { return value_; }
   double slope(double) const override { return 0.0; }
+  Range range() const override { return { value_, value_ }; }
 
 private:
   double value_;
@@ -35,6 +40,7 @@ public:
   SinusWaveform(double mean, double amplitude, double frequency, double phase);
   double value(double time) const override;
   double slope(double time) const override;
+  Range range() const override { return { mean_ - amplitude_, mean_ + amplitude_ }; }
 
 private:
   double mean_, amplitude_, angular_frequency_, phase_;
@@ -49,6 +55,7 @@ public:
   TrapezoidWaveform(double peak, double slope, double hold, double pause);
   double value(double time) const override;
   double slope(double time) const override;
+  Range range() const override { return { -std::abs(peak_), std::abs(peak_) }; }
 
 private:
   struct Place
@@ -73,6 +80,7 @@ public:
   explicit TableWaveform(std::shared_ptr<const Rows> rows) : rows_(std::move(rows)) {}
   double value(double time) const override;
   double slope(double time) const override;
+  Range range() const override;
 
 private:
   std::size_t rowAfter(double time) const;

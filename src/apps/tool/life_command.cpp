@@ -44,26 +44,6 @@ struct TrialsOptions : LifeOptions
   LifeTrialOptions trials{ 100, 1, 250.0, 2000, 1e-6, 0.05, false };
 };
 
-const char* endText(const std::optional<EndOfLife>& end)
-{
-  if (!end)
-  {
-    return "still in use";
-  }
-  switch (*end)
-  {
-    case EndOfLife::FLANK_WEAR:
-      return "flank wear";
-    case EndOfLife::INTERFACE_WEAR:
-      return "interface wear";
-    case EndOfLife::ROOT_CRACK:
-      return "root crack";
-    case EndOfLife::BEARING:
-      return "bearing";
-  }
-  return "";
-}
-
 /// Everything a life is computed from.
 struct LifeBench
 {
@@ -78,7 +58,9 @@ struct LifeBench
   static ExposureMap measure(const Parameters& parameters, const DutyCycle& duty, int positions)
   {
     Progress progress("measuring wear");
-    return { parameters, duty, positions, [&](double done) { progress.update(done); } };
+    ExposureMap exposures(parameters, positions);
+    exposures.cover(duty, [&](double done) { progress.update(done); });
+    return exposures;
   }
 
   Parameters parameters;
@@ -115,22 +97,21 @@ int age(const AgeOptions& options)
     }
     csv.close();
   }
-  const double map_error =
-      options.check ? bench.exposures.largestError(bench.parameters, bench.duty, options.positions) : 0.0;
+  const double map_error = options.check ? bench.exposures.largestError() : 0.0;
   if (options.json)
   {
     Json phases = Json::array();
-    for (std::size_t i = 0; i < bench.duty.phases.size(); ++i)
+    for (const DutyPhase& phase : bench.duty.phases)
     {
-      const Exposure fresh = bench.exposures.at(i, 0.0, 0.0);
-      phases.push_back({ { "load_torque", bench.duty.phases[i].load_torque },
-                         { "turns_per_cycle", bench.duty.phases[i].turns() },
+      const Exposure fresh = bench.exposures.at(phase.load_torque, 0.0, 0.0);
+      phases.push_back({ { "load_torque", phase.load_torque },
+                         { "turns_per_cycle", phase.turns() },
                          { "flank_sliding", fresh.flank_sliding },
                          { "interface_sliding", fresh.interface_sliding },
                          { "rim_stress_range", fresh.rim_stress_range } });
     }
     Json result{ { "hours", life.hours },
-                 { "end", endText(life.end) },
+                 { "end", nameOf(life.end) },
                  { "turns", life.age.turns },
                  { "flank_wear", life.age.flank_wear },
                  { "interface_wear", life.age.interface_wear },
@@ -144,7 +125,7 @@ int age(const AgeOptions& options)
     return EXIT_DONE;
   }
   std::vector<NamedValue> values{ { "hours of use", shortNumber(life.hours), "h" },
-                                  { "end", endText(life.end), "" },
+                                  { "end", nameOf(life.end), "" },
                                   { "turns of the motor", shortNumber(life.age.turns), "" },
                                   { "flank wear", shortNumber(life.age.flank_wear), "m" },
                                   { "interface wear", shortNumber(life.age.interface_wear), "m" },

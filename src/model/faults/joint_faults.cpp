@@ -67,7 +67,7 @@ JointModel startingJoint(const Parameters& parameters)
   FaultList faults;
   for (const Fault& fault : parameters.faults)
   {
-    if (fault.onset == 0.0)
+    if (fault.isThereFromTheStart())
     {
       faults.set(fault, 0);
     }

@@ -7,9 +7,9 @@
 
 namespace hjt
 {
-void crackRim(int segment, double depth, FaultEdits& edits) noexcept
+void crackRim(int segment, double severity, const Parameters& parameters, FaultEdits& edits) noexcept
 {
-  const double left = 1.0 - depth;
+  const double left = 1.0 - severity * parameters.fault_scale.rim_crack_depth;
   edits.tension[segment] *= left;
   edits.bending[segment] *= left * left * left;
 }
@@ -24,7 +24,7 @@ void editFlexsplineCrack(const Fault& fault, const Parameters& parameters, Fault
     const int away = apart < teeth - apart ? apart : teeth - apart;
     if (away < reach)
     {
-      crackRim(i, fault.severity * (1.0 - static_cast<double>(away) / reach), edits);
+      crackRim(i, fault.severity * (1.0 - static_cast<double>(away) / reach), parameters, edits);
     }
   }
 }

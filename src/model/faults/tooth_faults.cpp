@@ -8,13 +8,25 @@ namespace hjt
 {
 namespace
 {
-/// Stiffness of a tooth pair whose flexspline tooth has lost `loss` of its thickness, to that of a sound one: the tooth is
-/// a cantilever, its bending compliance goes with the cube of what is left; the rest of the pair's compliance stays.
-double thinned(double loss, double share) noexcept
+/// Stiffness of a tooth pair, to that of a sound one, whose flexspline tooth has `bending` of its stiffness in bending left:
+/// that part of the pair's compliance grows, the rest stays.
+double softened(double bending, double share) noexcept
+{
+  return bending / (bending + share * (1.0 - bending));
+}
+
+/// Stiffness in bending left of a tooth, a cantilever, that has lost `loss` of its thickness.
+double thinned(double loss) noexcept
 {
   const double left = loss < 1.0 ? 1.0 - loss : 0.0;
-  const double cube = left * left * left;
-  return cube / (cube + share * (1.0 - cube));
+  return left * left * left;
+}
+
+/// The same of one that a crack along its middle has split over `length` of its height from the tip on: there two leaves of
+/// half its thickness bend, four times as much, under a force at the tip.
+double split(double length) noexcept
+{
+  return 1.0 / (1.0 + 3.0 * length * length * length);
 }
 }  // namespace
 
@@ -30,7 +42,7 @@ void editToothWear(const Fault& fault, const Parameters& parameters, FaultEdits&
       fault.severity * parameters.fault_scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
   // Half the pitch at mid-height.
   const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
-  const double factor = thinned(2.0 * across / thickness, parameters.fault_scale.tooth_compliance_share);
+  const double factor = softened(thinned(2.0 * across / thickness), parameters.fault_scale.tooth_compliance_share);
   atPlace(fault.place, edits.clearance, [&](double& clearance) { clearance += across; });
   atPlace(fault.place, edits.mesh_stiffness, [&](double& stiffness) { stiffness *= factor; });
 }
@@ -39,17 +51,18 @@ void editToothRootCrack(const Fault& fault, const Parameters& parameters, FaultE
 {
   if (rootCrackRunsThroughTooth(parameters.gear))
   {
-    edits.mesh_stiffness[fault.place] *= thinned(fault.severity, parameters.fault_scale.tooth_compliance_share);
+    edits.mesh_stiffness[fault.place] *=
+        softened(thinned(fault.severity), parameters.fault_scale.tooth_compliance_share);
   }
   else
   {
-    crackRim(fault.place, fault.severity, edits);
+    crackRim(fault.place, fault.severity, parameters, edits);
   }
 }
 
 void editToothTipCrack(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept
 {
-  edits.tip_loss[fault.place] += fault.severity * parameters.gear.tooth_height_flexspline;
+  edits.mesh_stiffness[fault.place] *= softened(split(fault.severity), parameters.fault_scale.tooth_compliance_share);
 }
 
 void editPitting(const Fault& fault, const Parameters& parameters, FaultEdits& edits, BearingSag&) noexcept

@@ -58,8 +58,8 @@ void editBearingOuterRace(const Fault&, const Parameters&, FaultEdits&, BearingS
 void editBearingBall(const Fault&, const Parameters&, FaultEdits&, BearingSag&) noexcept;
 void editBearingCage(const Fault&, const Parameters&, FaultEdits&, BearingSag&) noexcept;
 
-/// A crack through the rim behind a tooth, `depth` of its thickness: 1 cuts it through.
-void crackRim(int segment, double depth, FaultEdits& edits) noexcept;
+/// A crack into the rim behind a tooth, `severity` times fault_scale.rim_crack_depth of its thickness.
+void crackRim(int segment, double severity, const Parameters& parameters, FaultEdits& edits) noexcept;
 
 /// `change` the entry of a place, or to all for WHOLE_MEMBER.
 template <class Change>

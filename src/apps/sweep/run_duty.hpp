@@ -9,13 +9,14 @@
 
 namespace hjt
 {
-/// What a run asks of the joint: a motor torque, or a speed that a drive's control holds; and a load.
-struct DutyCycle
+/// What a run asks of the joint: a motor torque, or a speed that a drive's control holds; its load and its temperature.
+struct RunDuty
 {
-  std::shared_ptr<const Waveform> torque;  ///< of the motor [N.m]; none: speed is controlled
-  std::shared_ptr<const Waveform> speed;   ///< of the joint [rad/s]
-  double bandwidth{};                      ///< of the speed control [Hz]
-  std::shared_ptr<const Waveform> load;    ///< external torque at the output [N.m]; none: none
+  std::shared_ptr<const Waveform> torque;       ///< of the motor [N.m]; none: speed is controlled
+  std::shared_ptr<const Waveform> speed;        ///< of the joint [rad/s]
+  double bandwidth{};                           ///< of the speed control [Hz]
+  std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; none: none
+  std::shared_ptr<const Waveform> temperature;  ///< of the drive [degC]; none: input.temperature throughout
 };
 
 /// Gives the twin its commands of a duty cycle, step by step.
@@ -30,7 +31,7 @@ struct DutyCycle
 class DutyFeeder
 {
 public:
-  DutyFeeder(const DutyCycle& duty, const Twin& twin);
+  DutyFeeder(const RunDuty& duty, const Twin& twin);
 
   /// Before the step that ends `time` [s] after the start.
   void feed(Twin& twin, double time);
@@ -40,7 +41,7 @@ public:
 private:
   double controlTorque(const Twin& twin, double time);
 
-  DutyCycle duty_;
+  RunDuty duty_;
   double ratio_;
   double motor_inertia_;  // [kg.m^2]
   double inertia_;        // of motor and joint [kg.m^2]

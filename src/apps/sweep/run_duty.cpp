@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "duty_cycle.hpp"
+#include "run_duty.hpp"
 
 #include "harmonic_joint_twin/gear/angle.hpp"
 #include "harmonic_joint_twin/gear/ratio.hpp"
 
 namespace hjt
 {
-DutyFeeder::DutyFeeder(const DutyCycle& duty, const Twin& twin)
+DutyFeeder::DutyFeeder(const RunDuty& duty, const Twin& twin)
   : duty_(duty), ratio_(nominalRatio(twin.parameters().gear))
 {
   const Parameters& p = twin.parameters();
@@ -26,6 +26,10 @@ void DutyFeeder::feed(Twin& twin, double time)
       twin.commandLoadTorque(instant, load);
       last_load_ = load;
     }
+  }
+  if (duty_.temperature)
+  {
+    twin.setTemperature(instant, duty_.temperature->value(time));
   }
 }
 

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/life_publisher.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include <ros/console.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Between two counts of the loop [ns].
+constexpr Stamp COUNT_PERIOD = 1'000'000;
+/// Between two stretches handed over [ns]; a longer gap between two instants is no use of the drive.
+constexpr Stamp STRETCH = 1'000'000'000;
+constexpr std::size_t STRETCH_SLOTS = 2;
+}  // namespace
+
+LifePublisher::LifePublisher(ros::NodeHandle& node, const Parameters& parameters)
+  : parameters_(parameters)
+  , path_(parameters.life.use_record == NO_FILE ? "" : parameters.life.use_record)
+  , counted_{ 0, UseRecord(parameters.life) }
+  , stretches_(STRETCH_SLOTS, counted_)
+  , record_(parameters.life)
+  , estimator_(parameters)
+  , publisher_(node.advertise<harmonic_joint_twin::RemainingLife>(topics::REMAINING_LIFE, 1, true))
+{
+  readRecord();
+  thread_ = std::thread([this] { run(); });
+}
+
+LifePublisher::~LifePublisher()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  wake_up_.notify_all();
+  thread_.join();
+  takeStretches();
+  record_.add(counted_.use);
+  write();
+}
+
+void LifePublisher::readRecord()
+{
+  if (path_.empty())
+  {
+    return;
+  }
+  if (!std::filesystem::exists(path_))
+  {
+    ROS_INFO_STREAM("No record of the drive's use at " << path_ << " yet: it is counted from new");
+    return;
+  }
+  try
+  {
+    record_ = UseRecord(parameters_.life, path_);
+    ROS_INFO_STREAM("The drive has " << record_.hours() << " h of use behind it (" << path_ << ")");
+  }
+  catch (const InputError& error)
+  {
+    const std::string aside = path_ + ".unreadable";
+    std::error_code refused;
+    std::filesystem::rename(path_, aside, refused);
+    ROS_ERROR_STREAM("The record of the drive's use cannot be read: "
+                     << error.what() << ". It is counted from new; "
+                     << (refused ? "the file stays, and nothing is written" : "the file is kept as " + aside));
+    path_ = refused ? "" : path_;
+  }
+}
+
+void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept
+{
+  const Stamp elapsed = instant - last_;
+  if (elapsed >= 0 && elapsed < COUNT_PERIOD)
+  {
+    return;
+  }
+  last_ = instant;
+  if (elapsed < 0 || elapsed > STRETCH)
+  {
+    return;  // started anew at another instant
+  }
+  counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
+  counted_.until = instant;
+  if (instant >= counted_from_ && instant - counted_from_ < STRETCH)
+  {
+    return;
+  }
+  if (Stretch* slot = stretches_.claim())
+  {
+    *slot = counted_;
+    stretches_.commit();
+    counted_.use.clear();
+    counted_from_ = instant;
+  }
+}
+
+void LifePublisher::run()
+{
+  const std::chrono::duration<double> period(parameters_.life.forecast_period);
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!wake_up_.wait_for(lock, period, [this] { return stopping_; }))
+  {
+    lock.unlock();
+    takeStretches();
+    write();
+    publish();
+    lock.lock();
+  }
+}
+
+void LifePublisher::takeStretches()
+{
+  for (const Stretch* stretch = stretches_.front(); stretch != nullptr; stretch = stretches_.front())
+  {
+    record_.add(stretch->use);
+    until_ = stretch->until;
+    stretches_.pop();
+  }
+}
+
+void LifePublisher::publish()
+{
+  if (record_.turns() == 0.0)
+  {
+    return;
+  }
+  try
+  {
+    const LifeEstimate estimate = estimator_.estimate(record_);
+    harmonic_joint_twin::RemainingLife message;
+    message.header.stamp = toRosTime(until_);
+    message.header.frame_id = parameters_.joint.name;
+    message.hours = estimate.hours;
+    message.turns = estimate.turns;
+    message.remaining_hours_10 = estimate.remaining.quantile[1];
+    message.remaining_hours_50 = estimate.remaining.quantile[2];
+    message.remaining_hours_90 = estimate.remaining.quantile[3];
+    message.nearest_limit = nameOf(estimate.nearest());
+    message.flank_wear_used = estimate.usedOf(EndOfLife::FLANK_WEAR);
+    message.interface_wear_used = estimate.usedOf(EndOfLife::INTERFACE_WEAR);
+    message.root_crack_used = estimate.usedOf(EndOfLife::ROOT_CRACK);
+    message.bearing_used = estimate.usedOf(EndOfLife::BEARING);
+    message.grease_used = estimate.grease_used;
+    publisher_.publish(message);
+  }
+  catch (const ParameterError& error)
+  {
+    ROS_WARN_STREAM_ONCE("No forecast of the remaining life: " << error.what());
+  }
+}
+
+void LifePublisher::write()
+{
+  if (path_.empty() || record_.turns() == 0.0)
+  {
+    return;
+  }
+  try
+  {
+    writeTextFile(path_, record_.text());
+  }
+  catch (const InputError& error)
+  {
+    ROS_WARN_STREAM_THROTTLE(60.0, "The record of the drive's use is not kept: " << error.what());
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The record of use and ~remaining_life: what is counted, published and kept from one start of the node to the next."""
+import os
+import signal
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from std_msgs.msg import Float64
+
+from harmonic_joint_twin.msg import RemainingLife
+from ros_support import PACKAGE, Listener, Node, configuration_files, load_parameters, wait_until
+
+NODE = "/twin_under_test"
+JOINT = "elbow_joint"
+PERIOD = 0.5  # life.forecast_period [s]
+
+
+class Life(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.record = os.path.join(directory.name, "elbow.csv")
+        self.torque = rospy.Publisher(f"{NODE}/motor_torque_command", Float64, queue_size=10)
+        self.addCleanup(self.torque.unregister)
+        self.driving = True
+        thread = threading.Thread(target=self.drive)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(lambda: setattr(self, "driving", False))
+
+    def drive(self):
+        while self.driving:
+            self.torque.publish(0.5)
+            time.sleep(0.02)
+
+    def start(self):
+        load_parameters(NODE, configuration_files(),
+                        {"life/use_record": self.record, "life/forecast_period": PERIOD})
+        node = Node(NODE.lstrip("/"))
+        self.addCleanup(node.kill)
+        return node
+
+    def forecast(self):
+        """The latest; a late subscriber gets one at once."""
+        listener = Listener(f"{NODE}/remaining_life", RemainingLife)
+        message = listener.wait_for(1)[-1]
+        listener.close()
+        return message
+
+    def rows(self):
+        with open(self.record) as file:
+            return file.read().splitlines()
+
+    def test_use_is_counted_over_restarts_and_tells_what_is_left(self):
+        node = self.start()
+        first = self.forecast()
+        self.assertEqual(first.header.frame_id, JOINT)
+        self.assertGreater(first.turns, 0.0)
+        self.assertGreater(first.hours, 0.0)
+        self.assertTrue(0.0 < first.remaining_hours_10 < first.remaining_hours_50 < first.remaining_hours_90)
+        self.assertIn(first.nearest_limit, ("flank wear", "interface wear", "root crack", "bearing"))
+        for name in ("flank_wear", "interface_wear", "bearing", "grease"):
+            self.assertTrue(0.0 < getattr(first, f"{name}_used") < 1e-3, name)
+        wait_until(lambda: self.forecast().hours > first.hours, "another forecast")
+        self.assertEqual(node.stop(signal.SIGINT)[0], 0)
+        kept = self.rows()
+        self.assertEqual(kept[0], "duration,motor_speed,load_torque,temperature")
+        seconds = sum(float(row.split(",")[0]) for row in kept[1:])
+        self.assertGreaterEqual(seconds, 3600.0 * first.hours)
+        # A new start goes on from there; so does one after a loss of power.
+        node = self.start()
+        second = self.forecast()
+        self.assertGreater(second.hours, seconds / 3600.0)
+        node.kill()
+        self.start()
+        self.assertGreaterEqual(self.forecast().hours, second.hours)
+
+    def test_a_record_that_cannot_be_read_is_set_aside(self):
+        with open(self.record, "w") as file:
+            file.write("duration,motor_speed,load_torque,temperature\n3600.0,100.0,5")
+        node = self.start()
+        self.assertLess(self.forecast().hours, 0.5)
+        self.assertTrue(f"{self.record}:2: too few columns" in node.output(), "the log")
+        with open(self.record + ".unreadable") as file:
+            self.assertIn("3600.0,100.0,5", file.read())
+        self.assertEqual(node.stop(signal.SIGINT)[0], 0)
+        self.assertGreater(len(self.rows()), 1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("life_test")
+    rostest.rosrun(PACKAGE, "life", Life, sys.argv)
