@@ -278,7 +278,7 @@ def main():
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
     if options.fit:
-        source = options.docs.parent / "src" / "health" / "fault_signatures.inc"
+        source = options.docs.parent / "include" / "harmonic_joint_twin" / "health" / "fitted_signatures.hpp"
         health_signatures.write(bench, source, options.docs / "indicators.md")
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return

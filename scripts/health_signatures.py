@@ -55,10 +55,11 @@ def write(bench, source, page):
     order = [kind["kind"] for kind in bench.kinds] + ["circular_spline_tooth"]
     rows = sorted(signatures.items(), key=lambda item: (order.index(item[0][0]), item[0][1]))
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`: cause, direction by Feature.",
-             "// clang-format off"]
+             "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
+             "// clang-format off", "inline const std::vector<Signature> FITTED_SIGNATURES{"]
     lines += [f"{{ {cause_name(cause)}, {{ {', '.join(f'{value:.3f}' for value in direction)} }} }},  // {motion}"
               for (cause, motion), direction in rows]
-    source.write_text("\n".join(lines) + "\n// clang-format on\n")
+    source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
     shown = ["<details>", f"<summary>{len(rows)} signatures</summary>", "",
              "| cause | motion | " + " | ".join(name.replace("_", " ") for name in names) + " |",
              "|---|---|" + "---|" * len(names)]

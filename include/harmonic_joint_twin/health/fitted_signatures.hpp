@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Written by `scripts/evaluate_health --fit`: cause, direction by Feature.
+#pragma once
+
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
+
+namespace hjt
+{
 // clang-format off
+inline const std::vector<Signature> FITTED_SIGNATURES{
 { causeOf(FaultKind::INTERFACE_WEAR), { -0.098, -0.140, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, -0.168, 0.095, 0.073, 0.630, 0.240, 0.320, 0.146, 0.414, 0.253, 0.256, 0.220, 0.000 } },  // steady
 { causeOf(FaultKind::INTERFACE_WEAR), { -0.066, 0.145, -0.460, 0.350, 0.181, -0.009, -0.159, 0.169, 0.000, 0.233, 0.161, 0.276, 0.226, 0.241, 0.270, 0.282, 0.204, 0.225, 0.210, 0.000 } },  // swinging
 { causeOf(FaultKind::REAR_SECTION_CRACK), { 0.102, 0.246, 0.000, 0.000, 0.000, 0.247, 0.000, 0.000, -0.221, 0.069, 0.122, 0.608, 0.274, 0.248, 0.065, 0.314, 0.330, 0.170, 0.231, 0.000 } },  // steady
@@ -32,4 +39,6 @@
 { causeOf(FaultKind::BEARING_CAGE), { 0.055, 0.247, 0.000, 0.000, 0.000, 0.193, 0.000, 0.000, -0.105, -0.022, 0.062, 0.178, 0.173, 0.223, 0.119, 0.793, 0.225, 0.158, 0.235, 0.000 } },  // steady
 { causeOf(FaultKind::BEARING_CAGE), { -0.172, 0.277, -0.104, -0.342, 0.159, 0.167, 0.039, 0.223, 0.000, 0.130, 0.044, 0.257, 0.213, 0.120, 0.151, 0.628, 0.073, 0.132, 0.278, 0.000 } },  // swinging
 { Cause::CIRCULAR_SPLINE_TOOTH, { 0.000, 0.447, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.000, 0.894, 0.000, 0.000, 0.000, 0.000, 0.000 } },  // kinematics
+};
 // clang-format on
+}  // namespace hjt
