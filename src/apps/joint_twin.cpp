@@ -28,6 +28,7 @@ int main(int argc, char** argv)
   hjt::addSimulateCommand(app, exit_code);
   hjt::addTrialCommand(app, exit_code);
   hjt::addFollowCommand(app, exit_code);
+  hjt::addCompareCommand(app, exit_code);
   hjt::addIdentifyCommand(app, exit_code);
   hjt::addImportCommand(app, exit_code);
   hjt::addReplayCommand(app, exit_code);

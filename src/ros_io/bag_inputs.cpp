@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <rosbag/view.h>
 #include <std_msgs/Float64.h>
@@ -149,21 +148,5 @@ BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespa
     reader.read(message);
   }
   return reader.take();
-}
-
-std::string listTopics(const rosbag::Bag& bag)
-{
-  std::map<std::string, std::string> types;
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections())
-  {
-    types[connection->topic] = connection->datatype;
-  }
-  std::string text;
-  for (const auto& [topic, type] : types)
-  {
-    text += "\n  " + topic + " (" + type + ")";
-  }
-  return text;
 }
 }  // namespace hjt

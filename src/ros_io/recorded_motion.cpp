@@ -8,151 +8,175 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <sensor_msgs/JointState.h>
 
 #include "harmonic_joint_twin/params/number_table.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/bag_file.hpp"
+#include "harmonic_joint_twin/ros_io/checked_message.hpp"
 #include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
 
 namespace hjt
 {
 namespace
 {
-bool isCsv(const MotionSource& source)
+constexpr double FASTEST = 20.0;        // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;          // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;      // by which the delay of a message may differ from its neighbour's [s]
+constexpr double LARGEST_EFFORT = 1e4;  // current [A] or torque [N.m]
+
+bool isPlausible(double effort)
 {
-  const std::string end = ".csv";
-  return source.path.size() >= end.size() && source.path.compare(source.path.size() - end.size(), end.size(), end) == 0;
+  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
 }
 
-/// Turns messages into rows. A row waits for the next one, so that a load with its own stamp can still reach it.
+/// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
+/// tells whether it can be true.
 class BagRows
 {
 public:
   BagRows(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit)
-    : source_(source), visit_(visit)
+    : source_(source), visit_(visit), names_(source.joint)
   {
   }
 
   /// False: the visitor has had enough.
   bool read(const rosbag::MessageInstance& instance)
   {
-    boost::shared_ptr<sensor_msgs::JointState> message;
-    try
-    {
-      message = instance.instantiate<sensor_msgs::JointState>();
-    }
-    catch (const std::exception&)
+    if (!message_.read(instance))
     {
       ++count_.corrupt;
       return true;
     }
-    if (!message)
+    const sensor_msgs::JointState& state = message_.state();
+    const ros::Time stamp = state.header.stamp.isZero() ? instance.getTime() : state.header.stamp;
+    if (instance.getTopic() == source_.topic)
     {
-      throw InputError(instance.getTopic() + " has type " + instance.getDataType() +
-                       ", expected sensor_msgs/JointState");
+      return takeTelemetry(state, stamp, instance.getTime());
     }
-    const ros::Time stamp = message->header.stamp.isZero() ? instance.getTime() : message->header.stamp;
-    return instance.getTopic() == source_.topic ? takeTelemetry(*message, stamp, instance.getTime()) :
-                                                  readLoad(*message, stamp);
+    readLoad(state, stamp);
+    return true;
   }
 
+  /// Hands on the row that waits, if it can be true.
   bool flush()
   {
-    bool more = true;
-    if (waiting_)
+    if (!waiting_)
     {
-      more = visit_(*waiting_);
-      ++count_.rows;
-      waiting_.reset();
+      return true;
     }
-    return more;
+    const Held held = *waiting_;
+    waiting_.reset();
+    if (!held.agrees && seen_ > 1)
+    {
+      ++count_.corrupt;
+      return true;
+    }
+    if (!start_)
+    {
+      start_ = held.stamp;
+      count_.start = held.stamp.toSec();
+      count_.least_delay = count_.most_delay = held.delay();
+    }
+    MotionRow row = held.row;
+    row.time = (held.stamp - *start_).toSec();
+    row.received = (held.recorded - *start_).toSec();
+    count_.duration = std::max(count_.duration, row.time);
+    count_.least_delay = std::min(count_.least_delay, held.delay());
+    count_.most_delay = std::max(count_.most_delay, held.delay());
+    ++count_.rows;
+    return visit_(row);
   }
 
   MotionCount count() const { return count_; }
-  const std::set<std::string>& names() const { return names_; }
+  const std::set<std::string>& others() const { return others_; }
 
 private:
-  /// Place of the joint in the message; its size if it is not there.
-  std::size_t find(const sensor_msgs::JointState& message) const
+  struct Held
   {
-    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), source_.joint) -
-                                    message.name.begin());
+    MotionRow row;
+    ros::Time stamp;
+    ros::Time recorded;
+    bool agrees{};  // with a neighbour
+
+    double delay() const { return (recorded - stamp).toSec(); }
+  };
+
+  static bool agree(const Held& a, const Held& b)
+  {
+    const double time = std::abs((b.recorded - a.recorded).toSec()) + SLACK;
+    return std::abs(b.delay() - a.delay()) < CLOCK_STEP && std::abs(b.row.position - a.row.position) < FASTEST * time;
   }
 
-  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& received)
+  static std::size_t find(const sensor_msgs::JointState& message, const std::string& name)
   {
-    const std::size_t i = find(message);
-    if (i == message.name.size())
+    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
+  }
+
+  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
+  {
+    Held held;
+    const TelemetryStatus status = readTelemetry(message, names_, held.row);
+    if (status == TelemetryStatus::UNKNOWN_JOINT)
     {
-      names_.insert(message.name.begin(), message.name.end());
+      others_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    MotionRow row;
-    if (readTelemetry(message, JointNames(source_.joint), row) != TelemetryStatus::FOUND)
+    const std::size_t motor = find(message, names_.motor);
+    if (source_.current_per_motor_torque > 0.0 && motor < message.name.size() && motor < message.effort.size())
+    {
+      held.row.current = source_.current_per_motor_torque * message.effort[motor];
+    }
+    if (status != TelemetryStatus::FOUND || !isPlausible(held.row.current))
     {
       ++count_.corrupt;
       return true;
     }
-    const bool more = flush();
-    if (!start_)
+    held.row.load = load_;
+    held.stamp = stamp;
+    held.recorded = recorded;
+    held.agrees = last_ && agree(*last_, held);
+    if (waiting_ && held.agrees)
     {
-      start_ = stamp;
+      waiting_->agrees = true;
     }
-    row.time = (stamp - *start_).toSec();
-    row.received = (received - *start_).toSec();
-    row.load = load_;
-    count_.duration = std::max(count_.duration, row.time);
-    waiting_ = row;
-    waiting_stamp_ = stamp;
+    last_ = held;
+    ++seen_;
+    const bool more = flush();
+    waiting_ = held;
     return more;
   }
 
-  bool readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
   {
-    const std::size_t i = find(message);
-    if (i < message.name.size() && i < message.effort.size() && std::isfinite(message.effort[i]))
+    const std::size_t i = find(message, names_.joint);
+    if (i < message.name.size() && i < message.effort.size() && isPlausible(message.effort[i]))
     {
       load_ = message.effort[i];
-      if (waiting_ && stamp <= waiting_stamp_)
+      if (waiting_ && stamp <= waiting_->stamp)
       {
-        waiting_->load = load_;
+        waiting_->row.load = load_;
       }
     }
-    return true;
   }
 
   const MotionSource& source_;
   const std::function<bool(const MotionRow&)>& visit_;
+  CheckedMessage message_;
   MotionCount count_;
-  std::set<std::string> names_;
-  std::optional<MotionRow> waiting_;
-  ros::Time waiting_stamp_;
+  JointNames names_;
+  std::set<std::string> others_;  // joints in messages that do not name this one
+  std::optional<Held> waiting_;
+  std::optional<Held> last_;  // as it came, true or not
+  std::uint64_t seen_{};      // the only row has no neighbour to disagree with
   std::optional<ros::Time> start_;
   double load_{};
 };
-
-void open(rosbag::Bag& bag, const std::string& path)
-{
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const rosbag::BagUnindexedException&)
-  {
-    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
-}
 
 MotionCount readBag(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                     const std::function<void(double)>& progress)
 {
   rosbag::Bag bag;
-  open(bag, source.path);
+  openForReading(bag, source.path);
   rosbag::View telemetry(bag, rosbag::TopicQuery(source.topic));
   if (telemetry.size() == 0)
   {
@@ -172,7 +196,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   if (rows.count().rows == 0)
   {
     std::string found;
-    for (const std::string& name : rows.names())
+    for (const std::string& name : rows.others())
     {
       found += (found.empty() ? "" : ", ") + name;
     }
@@ -198,10 +222,14 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
   std::array<double, 4> row{};
   while (table.read(row))
   {
-    ++count.rows;
-    count.duration = std::max(count.duration, row[0]);
-    MotionRow motion{ row[0], row[1], row[2], row[3] };
-    motion.received = row[0];
+    if (count.rows++ == 0)
+    {
+      count.start = row[0];
+    }
+    const double time = row[0] - count.start;
+    count.duration = std::max(count.duration, time);
+    MotionRow motion{ time, row[1], row[2], row[3] };
+    motion.received = time;
     if (!visit(motion))
     {
       break;
@@ -216,6 +244,12 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 }
 }  // namespace
 
+bool isCsv(const MotionSource& source)
+{
+  const std::string end = ".csv";
+  return source.path.size() >= end.size() && source.path.compare(source.path.size() - end.size(), end.size(), end) == 0;
+}
+
 bool recordsLoad(const MotionSource& source)
 {
   if (isCsv(source))
@@ -223,7 +257,7 @@ bool recordsLoad(const MotionSource& source)
     return openCsv(source).hasColumn(3);
   }
   rosbag::Bag bag;
-  open(bag, source.path);
+  openForReading(bag, source.path);
   return rosbag::View(bag, rosbag::TopicQuery(source.load_topic)).size() > 0;
 }
 

@@ -7,20 +7,10 @@
 
 namespace hjt
 {
-double Presliding::move(double motor_step, double duration) noexcept
-{
-  share_ *= std::exp(-duration / RELAXATION);
-  if (motor_step != 0.0)
-  {
-    const double end = motor_step > 0.0 ? 1.0 : -1.0;
-    share_ = end + (share_ - end) * std::exp(-std::abs(motor_step) / angle_);
-  }
-  return share_;
-}
-
 MotionDriven::MotionDriven(const Parameters& parameters)
   : friction_(parameters)
-  , presliding_(parameters.telemetry.presliding_angle)
+  , presliding_(parameters.telemetry)
+  , ripple_(parameters.telemetry, nominalRatio(parameters.gear))
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , inertia_(Motor(parameters.motor).inertia() - parameters.telemetry.inertia_in_load)
@@ -37,15 +27,18 @@ MotionPrediction MotionDriven::step(const MotionSample& sample) noexcept
     last_ = sample;
     started_ = true;
   }
-  const double share = presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
+  presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
+  const double share = presliding_.share();
   last_ = sample;
 
   const double friction = friction_.at(ratio_ * sample.velocity, sample.load, temperature_).sum();
   MotionPrediction prediction;
-  prediction.friction_torque = ratio_ * share * friction;
-  prediction.motor_torque = sample.load / ratio_ + inertia_ * ratio_ * sample.acceleration + share * friction;
+  prediction.friction_limit = ratio_ * friction;
+  prediction.friction_torque = share * prediction.friction_limit;
+  prediction.motor_torque = sample.load / ratio_ + inertia_ * ratio_ * sample.acceleration + share * friction +
+                            ripple_.at(sample.position, sample.velocity) / ratio_;
   prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
-  prediction.band = ratio_ * (1.0 - std::abs(share)) * friction / telemetry_.torque_per_current;
+  prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
   return prediction;
 }
 }  // namespace hjt

@@ -155,7 +155,7 @@ TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
   const std::vector<MotionSample> samples = smoothed(rows, MotionDriven(knownParameters()));
   const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
   const Identification found =
-      identify(knownParameters(), { samples.begin(), middle }, { middle, samples.end() }, false);
+      identify(knownParameters(), { samples.begin(), middle }, { { middle, samples.end() } }, false);
 
   const auto expect_within = [&](const char* key, double truth)
   {
@@ -170,8 +170,8 @@ TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
   expect_within("motor.rotor_inertia", robot.motor.rotor_inertia);
   EXPECT_NE(valueOf(found, "bearing.viscosity_slope").refusal, "");
   EXPECT_NE(valueOf(found, "cup.torsion_stiffness").refusal, "");
-  EXPECT_LT(found.after.moving, 0.3 * found.before.moving);
-  EXPECT_LT(found.after.moving, found.gain_coulomb_viscous.moving);
+  EXPECT_LT(found.judged.identified.moving, 0.3 * found.judged.configured.moving);
+  EXPECT_LT(found.judged.identified.moving, found.judged.gain_coulomb_viscous.moving);
 }
 
 TEST(Identification, RefusesTheGainWhereNoLoadTellsIt)
@@ -191,7 +191,7 @@ TEST(Identification, RefusesTheGainWhereNoLoadTellsIt)
     sample.current = twin.step(sample).current + 0.01 * unit(engine);
     samples.push_back(sample);
   }
-  const Identification found = identify(parameters, samples, samples, false);
+  const Identification found = identify(parameters, samples, { samples }, false);
   EXPECT_NE(valueOf(found, "telemetry.torque_per_current").refusal, "");
   EXPECT_NE(valueOf(found, "motor.rotor_inertia").refusal, "");
   EXPECT_EQ(found.parameters.telemetry.torque_per_current, parameters.telemetry.torque_per_current);
@@ -204,7 +204,7 @@ TEST(Identification, SaysThatAJointAtRestTellsNothing)
   {
     samples[i].time = 0.008 * static_cast<double>(i);
   }
-  EXPECT_THROW(identify(shippedParameters(), samples, samples, false), InputError);
+  EXPECT_THROW(identify(shippedParameters(), samples, { samples }, false), InputError);
 }
 
 TEST(MotionSmoother, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
@@ -247,18 +247,92 @@ TEST(MotionSmoother, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
 
 TEST(Presliding, BuildsUpAfterAReversalAndFadesAtRest)
 {
-  Presliding presliding(1e-3);
+  TelemetryParameters parameters;
+  parameters.presliding_angle = 1e-3;
+  Presliding presliding(parameters);
   EXPECT_EQ(presliding.share(), 0.0);
   for (int i = 0; i < 100; ++i)
   {
     presliding.move(1e-4, 0.0);
   }
   EXPECT_NEAR(presliding.share(), 1.0, 1e-4);
-  EXPECT_EQ(presliding.move(0.0, 0.0), presliding.share());
+  const double built_up = presliding.share();
+  presliding.move(0.0, 0.0);
+  EXPECT_EQ(presliding.share(), built_up);
   presliding.move(-1e-3, 0.0);
   const double share = 2.0 * std::exp(-1.0) - 1.0;
   EXPECT_NEAR(presliding.share(), share, 1e-4);
-  EXPECT_NEAR(presliding.move(0.0, Presliding::RELAXATION), share * std::exp(-1.0), 1e-4);
+  presliding.move(0.0, Presliding::RELAXATION);
+  EXPECT_NEAR(presliding.share(), share * std::exp(-1.0), 1e-4);
+}
+
+TEST(Presliding, ItsLastingShareStaysAtRestAndThroughSmallMotion)
+{
+  TelemetryParameters parameters;
+  parameters.presliding_angle = 1e-3;
+  parameters.lasting_share = 0.4;
+  Presliding presliding(parameters);
+  presliding.move(10.0 * Presliding::LASTING_ANGLE, 0.0);
+  EXPECT_NEAR(presliding.share(), 1.0, 1e-4);
+  presliding.move(-5e-3, 0.0);
+  presliding.move(0.0, 20.0 * Presliding::RELAXATION);
+  EXPECT_NEAR(presliding.share(), 0.4, 0.02);
+}
+
+TEST(TorqueRipple, IsTheErrorTimesStiffnessFarAboveTheResonanceAndNothingAtRest)
+{
+  TelemetryParameters parameters;
+  parameters.ripple_circular_spline_2 = { 1.2, -0.5 };
+  parameters.ripple_resonance = 1.0;
+  parameters.ripple_damping = 0.1;
+  constexpr double RATIO = 101.0;
+  const TorqueRipple ripple(parameters, RATIO);
+  EXPECT_EQ(ripple.at(0.3, 0.0), 0.0);
+  for (const double angle : { 0.0, 0.004, 0.3 })
+  {
+    const double wave = 2.0 * (RATIO - 1.0) * angle;
+    EXPECT_NEAR(ripple.at(angle, 100.0), 1.2 * std::cos(wave) - 0.5 * std::sin(wave), 1e-3);
+  }
+  // At the resonance the quality of the resonator times that, a quarter of a wave later.
+  parameters.ripple_circular_spline_2 = { 1.0, 0.0 };
+  parameters.ripple_resonance = 2.0 * (RATIO - 1.0) * 0.5 / TWO_PI;
+  EXPECT_NEAR(TorqueRipple(parameters, RATIO).at(0.0, 0.5), 0.0, 1e-9);
+  EXPECT_NEAR(TorqueRipple(parameters, RATIO).at(0.25 * TWO_PI / 200.0, 0.5), -5.0, 1e-9);
+}
+
+TEST(Identification, FindsTheRippleOfACircularSplineAndNoneOfTheFlexspline)
+{
+  Parameters robot = shippedParameters();
+  robot.telemetry.ripple_circular_spline_2 = { 0.9, -0.7 };
+  robot.telemetry.ripple_resonance = 22.0;
+  robot.telemetry.ripple_damping = 0.2;
+  robot.telemetry.ripple_lag = 0.004;
+  MotionDriven twin(robot);
+  std::mt19937 engine(5);
+  std::normal_distribution<double> unit;
+  std::vector<MotionSample> samples;
+  for (int i = 0; i < 5000; ++i)
+  {
+    MotionSample sample;
+    const double phase = 0.6 * 0.008 * i;
+    sample.time = 0.008 * i;
+    sample.position = 1.2 * std::sin(phase);
+    sample.velocity = 1.2 * 0.6 * std::cos(phase);
+    sample.acceleration = -1.2 * 0.36 * std::sin(phase);
+    sample.load = 30.0 * std::sin(sample.position) + 2.0 * sample.acceleration;
+    sample.current = twin.step(sample).current + 0.02 * unit(engine);
+    samples.push_back(sample);
+  }
+  const auto middle = samples.begin() + 3000;
+  const Identification found =
+      identify(shippedParameters(), { samples.begin(), middle }, { { middle, samples.end() } }, true);
+  const RippleLine& line = found.lines[0];
+  ASSERT_EQ(line.refusal, "");
+  EXPECT_NEAR(line.amplitude, std::hypot(0.9, 0.7), 2.0 * line.half_width);
+  EXPECT_NEAR(found.parameters.telemetry.ripple_resonance, 22.0, 2.0);
+  EXPECT_NE(found.lines[1].refusal, "");
+  EXPECT_EQ(found.parameters.telemetry.ripple_flexspline_2[0], 0.0);
+  EXPECT_LT(found.judged.identified.moving, 0.5 * found.judged.without_ripple.moving);
 }
 }  // namespace
 }  // namespace hjt

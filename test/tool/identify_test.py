@@ -1,75 +1,60 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin follow` and `joint_twin identify`: a robot's telemetry with the faults of real recordings."""
 import io
-import math
-import os
 import random
-import subprocess
-import time
 
-import genpy
 import rosbag
+import yaml
 from sensor_msgs.msg import JointState
 
+import robot
 import tool
 
-RATIO, GAIN = 101.0, 9.5  # [-], [N.m/A]
-COULOMB, VISCOUS = 12.0, 4.0  # [N.m], [N.m.s/rad] at the joint
-NOISE = 0.02  # [A]
 OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
 
 
-def telemetry(seconds, generator):
-    """Elbow under a weight, swinging: angle, current and load as a robot would tell them."""
-    angle = 0.7 * math.sin(0.9 * seconds) + 0.2 * math.sin(2.3 * seconds)
-    speed = 0.63 * math.cos(0.9 * seconds) + 0.46 * math.cos(2.3 * seconds)
-    load = 20.0 * math.sin(angle + 0.4)
-    torque = load + math.copysign(COULOMB, speed) + VISCOUS * speed
-    return angle, torque / GAIN + generator.gauss(0.0, NOISE), load
-
-
-def message(names, positions, efforts, stamp):
-    state = JointState(name=names, position=positions, effort=efforts)
-    state.header.stamp = stamp
-    return state
-
-
-def write_telemetry(path, duration, faults=True, joint="elbow_joint"):
-    generator = random.Random(4)
+def write_telemetry(path, duration, faults=True):
+    """With what real recordings have: messages dropped, cut short, without a number, repeated."""
+    generator = random.Random(6)
     with rosbag.Bag(path, "w") as bag:
-        for row in range(int(duration * 125)):
-            seconds = row * 0.008
-            stamp = genpy.Time(tool.START) + genpy.Duration.from_sec(seconds + 0.001 * generator.random())
+        for row, (stamp, state, load) in enumerate(robot.rows(duration)):
             if faults and generator.random() < 0.01:
                 continue  # dropped
-            angle, current, load = telemetry(seconds, generator)
-            state = message(["wrist_1_joint", joint], [0.0, angle], [0.0, current], stamp)
-            bag.write("/joint_twin/load", message([joint], [], [load], stamp), stamp)
+            bag.write(robot.LOAD_TOPIC, load, stamp)
             if faults and row % 1000 == 500:
                 data = io.BytesIO()
                 state.serialize(data)
                 half = data.getvalue()[:len(data.getvalue()) // 2]
-                bag.write("/joint_states", (state._type, half, state._md5sum, JointState), stamp, raw=True)
+                bag.write(robot.STATES_TOPIC, (state._type, half, state._md5sum, JointState), stamp, raw=True)
             elif faults and row % 1000 == 700:
                 state.effort[1] = float("nan")
-                bag.write("/joint_states", state, stamp)
+                bag.write(robot.STATES_TOPIC, state, stamp)
             else:
-                bag.write("/joint_states", state, stamp)
+                bag.write(robot.STATES_TOPIC, state, stamp)
                 if faults and row % 50 == 0:
-                    bag.write("/joint_states", state, stamp)  # its stamp repeated
+                    bag.write(robot.STATES_TOPIC, state, stamp)  # its stamp repeated
 
 
 class Identify(tool.ToolTest):
     def test_a_bag_with_faults_gives_gain_and_friction_and_an_overlay_that_loads(self):
         write_telemetry(self.path("a.bag"), 60.0)
-        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml")
+        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml", "--folds", "4")
         values = {value["key"]: value for value in found["values"]}
         gain = values["telemetry.torque_per_current"]
         self.assertEqual(gain["refusal"], "")
-        self.assertLess(abs(gain["value"] - GAIN), gain["half_width"] + 0.01 * GAIN)
+        self.assertLess(abs(gain["value"] - robot.GAIN), gain["half_width"] + 0.01 * robot.GAIN)
         self.assertIn("temperature", values["bearing.viscosity_slope"]["refusal"])
         judged = found["judged"]
         self.assertLess(judged["identified"]["all"], 0.5 * judged["configured"]["all"])
+        self.assertEqual(found["train"][1], found["judge"][0])
+        left_out = found["left_out"]["identified"]
+        self.assertLess(left_out["all"], 0.5 * judged["configured"]["all"])
+        self.assertLess(abs(left_out["rows"] - 0.5 * judged["identified"]["rows"]), 50)
+        with open(self.path("found.yaml")) as file:
+            overlay = yaml.safe_load(file)  # as rosparam reads it
+        for key in ("ripple_circular_spline_2", "ripple_flexspline_4"):
+            self.assertEqual([type(value) for value in overlay["telemetry"][key]], [float, float])
+        self.assertTrue(all(isinstance(value, float) for value in overlay["bearing"].values()))
         loaded = self.succeed_json("parameters", "--config", "joints/elbow.yaml", "--config", self.path("found.yaml"))
         self.assertIn(str(gain["value"])[:8], str(loaded))
         before = self.succeed_json("follow", "a.bag", *OPTIONS)
@@ -79,9 +64,20 @@ class Identify(tool.ToolTest):
         with open(self.path("a.csv")) as file:
             self.assertIn("current_predicted", file.readline())
 
+        # The torque-driven twin has the identified friction too.
+        speed = 0.6  # [rad/s]
+        def friction(*options):
+            rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions", "4",
+                                     "--config", "joints/elbow.yaml", *options)["rows"]
+            return robot.RATIO * rows[0]["gear_loss"]
+        expected = robot.COULOMB + robot.VISCOUS * speed
+        self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
+        self.assertGreater(abs(friction() - expected), 0.12 * expected)
+
     def test_what_is_missing_is_named(self):
-        write_telemetry(self.path("a.bag"), 2.0, faults=False, joint="other_joint")
-        self.fail_with(1, ["elbow_joint", "joints found: other_joint, wrist_1_joint"], "follow", "a.bag", *OPTIONS)
+        write_telemetry(self.path("a.bag"), 2.0, faults=False)
+        self.fail_with(1, ["shoulder_pan_joint", "joints found: elbow_joint, wrist_1_joint"], "follow", "a.bag", "--joint",
+                       "base")
         self.fail_with(1, ["no messages on /arm/joint_states", "/joint_states (sensor_msgs/JointState)"],
                        "follow", "a.bag", *OPTIONS, "--topic", "/arm/joint_states")
         self.write("broken.bag", "not a bag")
@@ -98,16 +94,12 @@ class Identify(tool.ToolTest):
         peaks = []
         for duration in (30.0, 240.0):
             write_telemetry(self.path("long.bag"), duration, faults=False)
-            started = time.monotonic()
-            process = subprocess.Popen([self.executable, "follow", self.path("long.bag"), *OPTIONS],
-                                       stdout=subprocess.DEVNULL)
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.WEXITSTATUS(status)
-            self.assertEqual(process.returncode, 0)
-            self.assertLess(time.monotonic() - started, 5.0 + duration / 20.0)
-            peaks.append(usage.ru_maxrss)
-        # The bag's own index grows, by some hundred bytes a message.
-        self.assertLess(peaks[1] - peaks[0], 20 * 1024, peaks)
+            code, took, peak = self.measure("follow", "long.bag", *OPTIONS)
+            self.assertEqual(code, 0)
+            self.assertLess(took, 5.0 + duration / 20.0)
+            peaks.append(peak)
+        # The bag's own index grows, by some hundred bytes a message; two topics.
+        self.assertLess(peaks[1] - peaks[0], 200 * 2 * 125 * 210 + 2 * 1024 ** 2, peaks)
 
 
 if __name__ == "__main__":

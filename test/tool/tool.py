@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import genpy
@@ -56,10 +57,32 @@ class ToolTest(unittest.TestCase):
             self.assertIn(part, done.stderr)
         return done
 
+    def measure(self, *arguments, environment=None):
+        """Exit code, seconds, and peak memory of the tool itself [byte]."""
+        started = time.monotonic()
+        process = subprocess.Popen([self.executable, *map(str, arguments)], cwd=self.directory,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   env=dict(os.environ, **(environment or {})))
+        # Not the usage told at the end: it counts what this process had when it started the other.
+        peak = 0
+        while process.poll() is None:
+            peak = max(peak, peak_memory(process.pid))
+            time.sleep(0.01)
+        return process.returncode, time.monotonic() - started, peak
+
     def write(self, name, text):
         with open(self.path(name), "w") as file:
             file.write(text)
         return self.path(name)
+
+
+def peak_memory(process):
+    """Of its own since it was started [byte]; 0: it is gone."""
+    try:
+        with open(f"/proc/{process}/status", encoding="ascii") as status:
+            return next((1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM")), 0)
+    except OSError:
+        return 0
 
 
 def read_bytes(path):

@@ -277,8 +277,25 @@ void visitFields(P& p, Visitor&& visit)
         "current measured where there is none");
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
         "motor angle over which friction builds up after a reversal");
+  visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
+        "share of the friction that a small motion does not turn round, and that stays at rest");
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         "of the motor's inertia, what a recorded load torque holds already");
+  visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
+        "kinematic error times stiffness, cos and sin of two waves a turn of the motor against the circular spline");
+  visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
+        "the same against the flexspline");
+  visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
+        "four waves against the circular spline");
+  visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
+        "four waves against the flexspline");
+  visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
+        "of what the joint carries on the joint's stiffness: far below it the load follows the kinematic error, "
+        "far above it stands");
+  visit("telemetry.ripple_damping", "-", p.telemetry.ripple_damping, Range{ 0.001, 10.0 },
+        "damping ratio of that resonance");
+  visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
+        "of the current's ripple behind the angle");
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
         "by so much a healthy joint's current departs from the predicted one, rms");
   visit("telemetry.load", p.telemetry.load,
@@ -296,6 +313,13 @@ void visitFields(P& p, Visitor&& visit)
         "of the load torque, white, likewise");
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
         "rms of what the unmodelled torque at the motor changes in a second");
+
+  visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
+        "share by which a sound joint's friction may differ from the twin's");
+  visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
+        "share by which a sound joint's torsion may differ from the twin's");
+  visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
+        "share by which friction and torsion of a sound joint may differ from its own earlier");
 
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
   visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");

@@ -285,7 +285,15 @@ struct TelemetryParameters
   double torque_per_current{};
   double current_offset{};
   double presliding_angle{};
+  double lasting_share{};
   double inertia_in_load{};
+  std::array<double, 2> ripple_circular_spline_2{};
+  std::array<double, 2> ripple_flexspline_2{};
+  std::array<double, 2> ripple_circular_spline_4{};
+  std::array<double, 2> ripple_flexspline_4{};
+  double ripple_resonance{};
+  double ripple_damping{};
+  double ripple_lag{};
   double current_deviation{};
   LoadSource load{};
 };
@@ -298,6 +306,14 @@ struct ObserverParameters
   double torque_noise{};
   double load_noise{};
   double disturbance_growth{};
+};
+
+/// How far a sound joint may lie from the twin of its kind, and from itself.
+struct ComparisonParameters
+{
+  double friction_tolerance{};
+  double compliance_tolerance{};
+  double repeat_tolerance{};
 };
 
 struct PublishParameters
@@ -375,6 +391,7 @@ struct Parameters
   InputParameters input;
   TelemetryParameters telemetry;
   ObserverParameters observer;
+  ComparisonParameters comparison;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
   std::vector<Fault> faults;  ///< that it starts with, or gets on its way

@@ -27,9 +27,6 @@ struct BagInputs
 /// @throws InputError if a topic has another type, or a stamp is far from the time of recording.
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters);
 
-/// All topics of a bag and their types, one a line.
-std::string listTopics(const rosbag::Bag& bag);
-
 /// The names under which the twin's inputs and outputs go below `joint_namespace`.
 std::vector<std::string> inputTopics(const std::string& joint_namespace);
 std::vector<std::string> outputTopics(const std::string& joint_namespace);

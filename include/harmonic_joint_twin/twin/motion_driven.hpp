@@ -5,45 +5,27 @@
 #include "harmonic_joint_twin/elements/motor.hpp"
 #include "harmonic_joint_twin/twin/friction_map.hpp"
 #include "harmonic_joint_twin/twin/motion_smoother.hpp"
+#include "harmonic_joint_twin/twin/presliding.hpp"
+#include "harmonic_joint_twin/twin/torque_ripple.hpp"
 
 namespace hjt
 {
-/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over the presliding angle.
-///
-///   ds/dx = (1 - s sgn(dx)) / x_p     (Dahl), x the motor's angle, x_p the presliding angle [rad]
-/// While the joint stands the motion does not tell s. It forgets the last one within RELAXATION, as the current of standing
-/// joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s); what holds the joint lies within the whole of the friction.
-class Presliding
-{
-public:
-  static constexpr double RELAXATION = 5.0;  ///< [s]
-
-  explicit Presliding(double angle) : angle_(angle) {}
-
-  double move(double motor_step,
-              double duration) noexcept;  ///< the share after the motor turned by this much [rad], [s]
-  double share() const noexcept { return share_; }
-  void reset() noexcept { share_ = 0.0; }
-
-private:
-  double angle_;
-  double share_{};
-};
-
 /// What a healthy joint takes to make a motion.
 struct MotionPrediction
 {
   double motor_torque{};     ///< at the shaft [N.m]
   double current{};          ///< [A]
   double friction_torque{};  ///< of the whole, at the joint, with its sign [N.m]
+  double friction_limit{};   ///< the most that it could be at this speed and load [N.m]
   double band{};             ///< half width of the current's band that the motion leaves open [A]
 };
 
 /// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table of it.
 ///
-///   current = (load + J_m n^2 a + n s T_f(n |v|, load)) / gain + offset
+///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
+///       T_r what the kinematic error makes of it (TorqueRipple)
 /// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred nanoseconds;
 /// nothing allocates.
 class MotionDriven
@@ -63,6 +45,7 @@ public:
 private:
   FrictionMap friction_;
   Presliding presliding_;
+  TorqueRipple ripple_;
   Load load_;
   TelemetryParameters telemetry_;
   double inertia_;  // of motor and wave generator, less what the load holds [kg.m^2]

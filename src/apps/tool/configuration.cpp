@@ -20,14 +20,6 @@ constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml",
                                               "solver.yaml", "sensors.yaml",     "health.yaml",   "life.yaml",
                                               "faults.yaml", "node.yaml" };
 
-fs::path installedConfigDirectory()
-{
-  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin/config.
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  return executable.parent_path() / "../../share/harmonic_joint_twin/config";
-}
-
 fs::path findConfigDirectory(const CommonOptions& options)
 {
   if (!options.config_dir.empty())
@@ -38,8 +30,7 @@ fs::path findConfigDirectory(const CommonOptions& options)
   {
     return from_environment;
   }
-  const fs::path installed = installedConfigDirectory();
-  return fs::exists(installed / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_CONFIG_DIR);
+  return packageDirectory() / "config";
 }
 
 /// As given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from anywhere.
@@ -55,6 +46,15 @@ fs::path findOverlay(const std::string& name, const fs::path& config_directory)
   return name;
 }
 }  // namespace
+
+fs::path packageDirectory()
+{
+  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin.
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
+  return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
+}
 
 void addFaultOption(CLI::App& command, CommonOptions& options)
 {

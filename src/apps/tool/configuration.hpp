@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct CommonOptions
   bool json{};
   bool force{};
 };
+
+/// Where config/ and scripts/ lie: of the installation, else of the checkout.
+std::filesystem::path packageDirectory();
 
 /// `--fault`, for the commands that march the joint.
 void addFaultOption(CLI::App& command, CommonOptions& options);

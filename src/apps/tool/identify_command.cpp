@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -25,24 +26,78 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
+constexpr double PAST_THE_END = 1.0;  // [s]
+
+/// A stretch of the recording [s].
+struct Span
+{
+  double from{};
+  double to{};
+
+  bool contains(double time) const { return time >= from && time < to; }
+};
+
 struct IdentifyOptions : MotionOptions
 {
   std::string out;
   std::vector<double> train;
   std::vector<double> judge;
+  int folds{};
 };
 
-std::vector<MotionSample> part(const std::vector<MotionSample>& all, double from, double to)
+/// Samples within `span` and not within `hole`; the first one after the hole follows a gap.
+std::vector<MotionSample> part(const std::vector<MotionSample>& all, const Span& span, const Span& hole = {})
 {
   std::vector<MotionSample> samples;
+  bool gap = true;
   for (const MotionSample& sample : all)
   {
-    if (sample.time >= from && sample.time < to)
+    if (!span.contains(sample.time) || hole.contains(sample.time))
     {
-      samples.push_back(sample);
+      gap = true;
+      continue;
     }
+    samples.push_back(sample);
+    samples.back().after_gap |= gap;
+    gap = false;
   }
   return samples;
+}
+
+/// Errors of several judged parts as one.
+void addError(const CurrentError& part, CurrentError& sum)
+{
+  const auto rms = [](double a, std::size_t n, double b, std::size_t m)
+  {
+    return n + m > 0 ? std::sqrt((a * a * static_cast<double>(n) + b * b * static_cast<double>(m)) /
+                                 static_cast<double>(n + m)) :
+                       0.0;
+  };
+  sum.moving = rms(sum.moving, sum.moving_rows, part.moving, part.moving_rows);
+  sum.resting = rms(sum.resting, sum.rows - sum.moving_rows, part.resting, part.rows - part.moving_rows);
+  sum.all = rms(sum.all, sum.rows, part.all, part.rows);
+  sum.signal = rms(sum.signal, sum.rows, part.signal, part.rows);
+  sum.rows += part.rows;
+  sum.moving_rows += part.moving_rows;
+}
+
+/// The part to identify on, cut into pieces: each is judged by what the others give.
+JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
+                         int folds, bool load_recorded)
+{
+  JudgedErrors sum;
+  for (int fold = 0; fold < folds; ++fold)
+  {
+    const double piece = (train.to - train.from) / folds;
+    const Span hole{ train.from + fold * piece, train.from + (fold + 1) * piece };
+    const JudgedPart left_out{ part(all, { train.from, hole.to }), hole.from };
+    const JudgedErrors judged = identify(parameters, part(all, train, hole), left_out, load_recorded).judged;
+    addError(judged.configured, sum.configured);
+    addError(judged.without_ripple, sum.without_ripple);
+    addError(judged.identified, sum.identified);
+    addError(judged.gain_coulomb_viscous, sum.gain_coulomb_viscous);
+  }
+  return sum;
 }
 
 /// The identified parameters as an overlay: section by section, each with its interval.
@@ -54,10 +109,10 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
     std::string text;
   };
   std::map<std::string, std::vector<Entry>> sections;
-  const auto add = [&](const std::string& key, double value, const std::string& comment)
+  const auto add = [&](const std::string& key, const std::string& value, const std::string& comment)
   {
     const std::size_t dot = key.find('.');
-    sections[key.substr(0, dot)].push_back({ comment, key.substr(dot + 1) + ": " + numberText(value) });
+    sections[key.substr(0, dot)].push_back({ comment, key.substr(dot + 1) + ": " + value });
   };
   for (const IdentifiedValue& value : found.values)
   {
@@ -65,13 +120,24 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
     {
       continue;
     }
-    add(value.key, value.value,
+    add(value.key, numberText(value.value),
         value.name + " [" + value.unit + "]; 95 %: +-" + shortNumber(value.half_width) + ". Identified.");
     if (value.key == "mesh.friction_kinetic")
     {
-      add("mesh.friction_static", found.parameters.mesh.friction_static, "In proportion.");
+      add("mesh.friction_static", numberText(found.parameters.mesh.friction_static), "In proportion.");
     }
   }
+  const TelemetryParameters& telemetry = found.parameters.telemetry;
+  for (const RippleLine& line : found.lines)
+  {
+    add(line.key, "[" + numberText(line.torque[0]) + ", " + numberText(line.torque[1]) + "]",
+        line.refusal.empty() ? "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]; 95 %: +-" +
+                                   shortNumber(line.half_width) + ". Identified." :
+                               "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
+  }
+  add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Of what the joint carries [Hz].");
+  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
+  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
   std::FILE* file = std::fopen(options.out.c_str(), "w");
   if (file == nullptr)
   {
@@ -102,8 +168,26 @@ Json errorJson(const CurrentError& error)
            { "signal", error.signal } };
 }
 
-void printJson(const Identification& found)
+Json errorsJson(const JudgedErrors& judged)
 {
+  return { { "configured", errorJson(judged.configured) },
+           { "without_ripple", errorJson(judged.without_ripple) },
+           { "identified", errorJson(judged.identified) },
+           { "gain_coulomb_viscous", errorJson(judged.gain_coulomb_viscous) } };
+}
+
+/// What was identified on, judged on, and what came out.
+struct Report
+{
+  Span train;
+  Span judge;
+  Identification found;
+  JudgedErrors left_out;  // empty without folds
+};
+
+void printJson(const Report& report)
+{
+  const Identification& found = report.found;
   Json values = Json::array();
   for (const IdentifiedValue& value : found.values)
   {
@@ -118,29 +202,29 @@ void printJson(const Identification& found)
   Json lines = Json::array();
   for (const RippleLine& line : found.lines)
   {
-    lines.push_back({ { "order", line.order },
+    lines.push_back({ { "key", line.key },
+                      { "order", line.order },
                       { "amplitude", line.amplitude },
                       { "half_width", line.half_width },
                       { "phase", line.phase },
                       { "refusal", line.refusal } });
   }
   std::cout << Json{
+    { "train", { report.train.from, report.train.to } },
+    { "judge", { report.judge.from, report.judge.to } },
     { "values", values },
     { "lines", lines },
-    { "loop_frequency", found.loop_frequency },
-    { "loop_damping", found.loop_damping },
-    { "lag", found.lag },
-    { "correlation_rows", found.correlation_rows },
-    { "judged",
-      { { "configured", errorJson(found.before) },
-        { "identified", errorJson(found.after) },
-        { "identified_with_lines", errorJson(found.with_lines) },
-        { "gain_coulomb_viscous", errorJson(found.gain_coulomb_viscous) } } }
+    { "ripple_resonance", found.parameters.telemetry.ripple_resonance },
+    { "ripple_damping", found.parameters.telemetry.ripple_damping },
+    { "ripple_lag", found.parameters.telemetry.ripple_lag },
+    { "judged", errorsJson(found.judged) },
+    { "left_out", errorsJson(report.left_out) }
   }.dump(2) << '\n';
 }
 
-void printText(const Identification& found)
+void printText(const Report& report)
 {
+  const Identification& found = report.found;
   std::vector<NamedValue> values;
   const auto tell =
       [&](const std::string& name, double value, double half_width, const std::string& unit, const std::string& refusal)
@@ -162,18 +246,33 @@ void printText(const Identification& found)
   {
     tell("ripple, " + shortNumber(line.order) + " a turn", line.amplitude, line.half_width, "N.m", line.refusal);
   }
-  const auto judged = [&](const std::string& name, const CurrentError& error)
+  const auto span = [&](const std::string& name, const Span& part) {
+    values.push_back({ name, shortNumber(part.from) + " to " + shortNumber(part.to), "s" });
+  };
+  span("identified on", report.train);
+  span("judged on", report.judge);
+  const auto error = [&](const std::string& name, const CurrentError& error)
   {
     values.push_back({ name,
                        shortNumber(error.all) + " (moving " + shortNumber(error.moving) + ", resting " +
                            shortNumber(error.resting) + ")",
                        "A" });
   };
-  judged("error of the current, as configured, rms", found.before);
-  judged("identified", found.after);
-  judged("identified, with ripple", found.with_lines);
-  judged("gain, Coulomb and viscous fitted alike", found.gain_coulomb_viscous);
-  values.push_back({ "the current itself, rms", shortNumber(found.after.signal), "A" });
+  const auto errors = [&](const JudgedErrors& judged)
+  {
+    error("as configured", judged.configured);
+    error("identified, without ripple", judged.without_ripple);
+    error("identified", judged.identified);
+    error("gain, Coulomb and viscous fitted alike", judged.gain_coulomb_viscous);
+  };
+  values.push_back({ "the current itself, rms", shortNumber(found.judged.identified.signal), "A" });
+  values.push_back({ "error of the current on the judged part, rms", "", "" });
+  errors(found.judged);
+  if (report.left_out.identified.rows > 0)
+  {
+    values.push_back({ "on pieces of the part to identify on, each left out in turn", "", "" });
+    errors(report.left_out);
+  }
   printValues(values);
 }
 
@@ -192,17 +291,21 @@ int identifyJoint(const IdentifyOptions& options)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const auto range = [&](const std::vector<double>& given, double from, double to)
-  { return given.empty() ? part(samples, from, to) : part(samples, given[0], given[1]); };
-  const double end = count.duration + 1.0;
   const double third = count.duration / 3.0;
-  const Identification found =
-      identify(parameters, range(options.train, 0.0, third), range(options.judge, third, end), load_recorded);
+  const auto span = [](const std::vector<double>& given, double from, double to) {
+    return given.empty() ? Span{ from, to } : Span{ given[0], given[1] };
+  };
+  Report report;
+  report.train = span(options.train, 0.0, third);
+  report.judge = span(options.judge, third, count.duration + PAST_THE_END);
+  const JudgedPart judge{ part(samples, { -HUGE_VAL, report.judge.to }), report.judge.from };
+  report.found = identify(parameters, part(samples, report.train), judge, load_recorded);
+  report.left_out = leaveOneOut(parameters, samples, report.train, options.folds, load_recorded);
   if (!options.out.empty())
   {
-    writeOverlay(options, found);
+    writeOverlay(options, report.found);
   }
-  options.json ? printJson(found) : printText(found);
+  options.json ? printJson(report) : printText(report);
   return EXIT_DONE;
 }
 }  // namespace
@@ -222,6 +325,10 @@ void addIdentifyCommand(CLI::App& app, int& exit_code)
       ->delimiter(',')
       ->expected(2)
       ->check(FINITE);
+  command
+      ->add_option("--folds", options->folds,
+                   "cuts the part to identify on into so many pieces and tells how each is predicted by the others")
+      ->check(CLI::Range(2, 100));
   command->callback([options, &exit_code] { exit_code = identifyJoint(*options); });
 }
 }  // namespace hjt

@@ -60,25 +60,25 @@ void addMotionOptions(CLI::App& command, MotionOptions& options)
   addCommonOptions(command, options);
 }
 
-MotionCount visitMotion(const MotionOptions& options, const MotionDriven& twin,
-                        const std::function<void(const MotionSample&)>& visit)
+MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit)
 {
-  const MotionSource source = motionSource(options);
+  MotionFindings findings;
+  findings.has_load = recordsLoad(source);
   MotionSmoother smoother;
   Progress progress("reading");
-  const bool has_load = recordsLoad(source);
   const auto forward = [&](bool at_end)
   {
     while (std::optional<MotionSample> sample = smoother.pop(at_end))
     {
-      if (!has_load)
+      if (!findings.has_load)
       {
         sample->load = twin.modelledLoad(*sample);
       }
       visit(*sample);
     }
   };
-  const MotionCount count = readMotion(
+  static_cast<MotionCount&>(findings) = readMotion(
       source,
       [&](const MotionRow& row)
       {
@@ -88,12 +88,20 @@ MotionCount visitMotion(const MotionOptions& options, const MotionDriven& twin,
       },
       [&](double done) { progress.update(done); });
   forward(true);
-  if (count.corrupt > 0 || smoother.refused() > 0 || smoother.gaps() > 0)
+  findings.refused = smoother.refused();
+  findings.gaps = smoother.gaps();
+  if (findings.corrupt > 0 || findings.refused > 0 || findings.gaps > 0)
   {
-    std::cerr << "joint_twin: " << options.recording << ": " << count.corrupt << " messages unreadable, "
-              << smoother.refused() << " rows repeated or out of order, " << smoother.gaps() << " gaps over "
+    std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "
+              << findings.refused << " rows repeated or out of order, " << findings.gaps << " gaps over "
               << MotionSmoother::LONGEST_GAP << " s\n";
   }
-  return count;
+  return findings;
+}
+
+MotionFindings visitMotion(const MotionOptions& options, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit)
+{
+  return visitMotion(motionSource(options), twin, visit);
 }
 }  // namespace hjt

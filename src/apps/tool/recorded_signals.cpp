@@ -9,11 +9,11 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <sensor_msgs/JointState.h>
 
 #include "harmonic_joint_twin/params/number_table.hpp"
 #include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "harmonic_joint_twin/ros_io/bag_file.hpp"
+#include "harmonic_joint_twin/ros_io/checked_message.hpp"
 #include "harmonic_joint_twin/ros_io/conversions.hpp"
 #include "harmonic_joint_twin/ros_io/time.hpp"
 
@@ -93,32 +93,26 @@ SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& na
 void readBag(const std::string& path, const SignalSource& source, const Take& take)
 {
   rosbag::Bag bag;
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
+  openForReading(bag, path);
   const JointNames names(source.joint);
   rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.states_topic, source.load_topic }));
+  CheckedMessage checked;
   double load = NOT_MEASURED;
   std::uint64_t samples = 0;
   for (const rosbag::MessageInstance& message : view)
   {
-    const auto state = message.instantiate<sensor_msgs::JointState>();
-    if (!state)
+    if (!checked.read(message))
     {
-      throw InputError(message.getTopic() + " has type " + message.getDataType() + ", expected sensor_msgs/JointState");
+      continue;
     }
+    const sensor_msgs::JointState& state = checked.state();
     if (message.getTopic() == source.load_topic)
     {
-      readLoadTorque(*state, names, load);
+      readLoadTorque(state, names, load);
     }
-    else if (placeOf(*state, names.joint) || placeOf(*state, names.motor))
+    else if (placeOf(state, names.joint) || placeOf(state, names.motor))
     {
-      SignalSample sample = sampleOf(*state, names, source.torque_scale);
+      SignalSample sample = sampleOf(state, names, source.torque_scale);
       sample.load_torque = load;
       ++samples;
       if (!take(sample))

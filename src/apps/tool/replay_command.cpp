@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <rosbag/exceptions.h>
 #include <rosbag/view.h>
 
 #include "commands.hpp"
@@ -18,6 +17,7 @@
 #include "validators.hpp"
 
 #include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/bag_file.hpp"
 #include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
 #include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
 
@@ -40,22 +40,6 @@ std::string joined(const std::vector<std::string>& texts)
     all += (all.empty() ? "" : ", ") + text;
   }
   return all;
-}
-
-void openForReading(rosbag::Bag& bag, const std::string& path)
-{
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const rosbag::BagUnindexedException&)
-  {
-    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
 }
 
 /// An original message under an output's name could not be told from a simulated one.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <rosbag/message_instance.h>
+#include <sensor_msgs/JointState.h>
+
+namespace hjt
+{
+/// Reads JointState messages out of bags whose bytes may be damaged.
+///
+/// A length that damage has made huge would let the message's own reading ask for as much memory, so the lengths are held
+/// against the bytes that are there before.
+class CheckedMessage
+{
+public:
+  /// False: the bytes are no JointState, or cannot be read. @throws InputError if the topic has another type.
+  bool read(const rosbag::MessageInstance& instance);
+
+  const sensor_msgs::JointState& state() const noexcept { return state_; }
+
+private:
+  std::vector<std::uint8_t> bytes_;
+  sensor_msgs::JointState state_;
+};
+}  // namespace hjt

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle.
+///
+///   ds/dx = (1 - s sgn(dx)) / x_p     (Dahl), x the motor's angle, x_p the presliding angle [rad]
+/// Two of them add up. The contacts' builds up over telemetry.presliding_angle. While the joint stands the motion does not
+/// tell it, and it forgets the last one within RELAXATION, as the current of standing joints does (UR5 CB series, K.
+/// Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over LASTING_ANGLE, so
+/// that what the encoder sees of a standing joint hardly moves it, and stays.
+class Presliding
+{
+public:
+  static constexpr double RELAXATION = 5.0;     ///< [s]
+  static constexpr double LASTING_ANGLE = 0.4;  ///< of the motor [rad]
+
+  explicit Presliding(const TelemetryParameters& parameters);
+
+  void move(double motor_step, double duration) noexcept;  ///< the motor turned by this much [rad] within [s]
+  void reset() noexcept { contacts_ = lasting_ = 0.0; }
+
+  double share() const noexcept { return (1.0 - lasting_share_) * contacts_ + lasting_share_ * lasting_; }
+  double contacts() const noexcept { return contacts_; }  ///< of the contacts alone
+  double lasting() const noexcept { return lasting_; }    ///< of the lasting part alone
+
+private:
+  double angle_;
+  double lasting_share_;
+  double contacts_{};
+  double lasting_{};
+};
+}  // namespace hjt

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a directory.
+
+Each figure is drawn twice, for wide and for narrow screens; both lie beside the page and inside it."""
+import argparse
+import base64
+import json
+import os
+import sys
+
+try:
+    import jinja2
+    import matplotlib
+    import numpy as np
+except ImportError as missing:
+    sys.exit(f"comparison_page: {missing.name} is not installed; apt-get install python3-{missing.name.split('.')[0]}")
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
+
+GREY, BLUE, RED, GREEN, ORANGE = "#7a7a7a", "#0072B2", "#D55E00", "#009E73", "#E69F00"
+STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "0.9",
+         "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.titlesize": 9.5, "axes.titlelocation": "left",
+         "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 0.9, "axes.edgecolor": "0.5"}
+WIDTHS = {"wide": 8.6, "narrow": 4.1}  # [inch]
+DPI = 130
+SHOWN_INDICATORS = 12
+LOWEST_ORDER = 0.3   # below it lies what the load's error makes, not ripple
+RING_STRETCH = 10.0  # of the flexspline's deformation
+
+
+def read_table(directory, name):
+    """Columns by name; None if the comparison has no such table or no row in it."""
+    path = os.path.join(directory, name + ".csv")
+    if not os.path.exists(path):
+        return None
+    with open(path, encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    return dict(zip(names, rows.T)) if rows.size else None
+
+
+def new_figure(width, height, rows=1, columns=1, **settings):
+    return plt.subplots(rows, columns, figsize=(width, height), constrained_layout=True, squeeze=False, **settings)
+
+
+def with_gaps(time, *columns):
+    """The same with a NaN where rows are missing, so that no line is drawn over the hole."""
+    step = np.diff(time)
+    holes = np.flatnonzero(step > 20.0 * np.median(step)) + 1 if len(step) else []
+    return [np.insert(column, holes, np.nan) for column in (time, *columns)]
+
+
+def shift_to(course, twin, name):
+    """What the twin's angle differs by at the first instant of both: where a twin starts is not where the robot stood."""
+    start = max(course["time"][0], twin["time"][0])
+    return (np.interp(start, course["time"], course[name]) - np.interp(start, twin["time"], twin[name]))
+
+
+def draw_course(width, data):
+    course, twin = data["course"], data["twin_states"]
+    figure, axes = new_figure(width, 7.4, 4, sharex=True, gridspec_kw={"height_ratios": [1, 1, 1.5, 1]})
+    position, speed, current, residual = axes[:, 0]
+    time, angle, velocity, measured, predicted, band = with_gaps(
+        course["time"], course["position"], course["velocity"], course["current_measured"], course["current_predicted"],
+        course["current_band"])
+    position.set_title("Angle of the joint [rad]")
+    position.plot(time, angle, color=GREY, label="measured")
+    speed.set_title("Speed [rad/s]")
+    speed.plot(time, velocity, color=GREY, label="measured")
+    if twin is not None:
+        position.plot(twin["time"], twin["position"] + shift_to(course, twin, "position"), color=BLUE,
+                      label="twin that ran beside it")
+        speed.plot(twin["time"], twin["velocity"], color=BLUE)
+        position.legend(loc="best", ncol=2)
+    current.set_title("Motor current [A]")
+    current.plot(time, measured, color=GREY, lw=0.8, label="measured")
+    current.fill_between(time, predicted - band, predicted + band, color=BLUE, alpha=0.2, lw=0,
+                         label="open: stiction")
+    current.plot(time, predicted, color=BLUE, lw=0.8, label="healthy twin")
+    span = np.nanpercentile(measured, [0.1, 99.9])
+    reach = max(0.5, span[1] - span[0])
+    current.set_ylim(span[0] - 0.25 * reach, span[1] + 0.35 * reach)
+    current.legend(loc="upper right", ncol=3, columnspacing=1.0, handlelength=1.3)
+    residual.set_title("Measured less twin [A]")
+    residual.plot(time, measured - predicted, color=RED, lw=0.7)
+    limit = 1.3 * max(0.05, np.nanpercentile(np.abs(measured - predicted), 99.5))
+    residual.set_ylim(-limit, limit)
+    residual.set_xlabel("time [s]")
+    residual.set_xlim(course["time"][0], course["time"][-1])
+    return figure
+
+
+def draw_friction(width, data):
+    points, curve = data["friction"], data["friction_twin"]
+    if points is None:
+        return None
+    figure, axes = new_figure(width, 3.6 if width > 6 else 3.9)
+    axes = axes[0][0]
+    axes.set_title("Friction at the joint against the motion [N·m]")
+    for way in (-1.0, 1.0):
+        if not (np.sign(points["speed"]) == way).any():
+            continue
+        label = way == np.sign(points["speed"])[0]
+        axes.fill_between(way * curve["speed"], curve["at_typical_load"], curve["at_largest_load"], color=BLUE, alpha=0.18,
+                          lw=0, label="twin, typical to largest load" if label else None)
+        axes.plot(way * curve["speed"], curve["at_typical_load"], color=BLUE, label=None)
+    axes.plot(points["speed"], points["twin"], ls="", marker="o", ms=5, mfc="none", color=BLUE,
+              label="twin, same rows")
+    axes.errorbar(points["speed"], points["measured"], yerr=points["deviation"], ls="", marker="o", ms=4, color=RED,
+                  elinewidth=0.7, label="measured, and its scatter")
+    axes.set_ylim(bottom=min(0.0, np.min(points["measured"] - points["deviation"])))
+    axes.set_xlabel("speed [rad/s]")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17 if width > 6 else -0.15), ncol=3 if width > 6 else 1)
+    return figure
+
+
+def draw_torsion(width, data):
+    means, twin = data["torsion"], data["torsion_twin"]
+    if means is None:
+        return None
+    figure, axes = new_figure(width, 3.8)
+    axes = axes[0][0]
+    axes.set_title("Torsion: motor angle over ratio less joint angle [mrad]")
+    axes.plot(twin["torque"], 1e3 * twin["torsion"], color=BLUE, label="twin's loop")
+    axes.plot(means["torque"], 1e3 * means["forward"], ls="", marker=">", ms=4, color=RED, label="measured, forward")
+    axes.plot(means["torque"], 1e3 * means["backward"], ls="", marker="<", ms=4, color=ORANGE, label="backward")
+    axes.set_xlabel("joint torque [N·m]")
+    axes.legend(loc="upper left")
+    return figure
+
+
+def draw_spectrum(width, data):
+    spectrum = data["spectrum"]
+    if spectrum is None:
+        return None
+    figure, axes = new_figure(width, 3.4 if width > 6 else 3.8)
+    axes = axes[0][0]
+    axes.set_title("Amplitude in the current's residual [A]")
+    for name, colour, label in (("forward", BLUE, "forward"), ("backward", ORANGE, "backward")):
+        if spectrum[name].any():
+            axes.plot(spectrum["order"], spectrum[name], color=colour, lw=0.8, label=label)
+    ripple = spectrum["order"] > LOWEST_ORDER
+    top = 1.3 * max(spectrum["forward"][ripple].max(), spectrum["backward"][ripple].max())
+    for name, text in (("wave_generator_1", "1"), ("wave_generator_2", "2"), ("wave_generator_4", "4"), ("cage", "cage"),
+                       ("ball", "ball"), ("ball_double", "ball ×2"), ("outer", "outer race"), ("inner", "inner race")):
+        order = data["record"]["line_orders"][name]
+        axes.axvline(order, color="0.75", lw=0.7, zorder=0)
+        axes.text(order, top, " " + text, rotation=90, va="top", ha="right", fontsize=7, color="0.35")
+    resolved = data["record"]["highest_order"]
+    if resolved < spectrum["order"][-1]:
+        axes.axvspan(resolved, spectrum["order"][-1], color="0.93", lw=0, zorder=-1)
+        if resolved < 0.75 * spectrum["order"][-1]:
+            axes.text(resolved, 0.7 * top, "  too few rows a turn\n  at the highest speed", fontsize=7, color="0.35")
+    axes.set_xlim(0.0, spectrum["order"][-1])
+    axes.set_ylim(0.0, top)
+    axes.set_xlabel("order: cycles per turn of the motor")
+    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 1.14), ncol=2)
+    return figure
+
+
+def draw_teeth(width, data):
+    teeth, motion = data["teeth"], data["record"]["motion"]
+    side_by_side = width > 6
+    figure, axes = new_figure(width, 4.0 if side_by_side else 7.4, *((1, 2) if side_by_side else (2, 1)),
+                              subplot_kw={"projection": "polar"})
+    angle = np.arctan2(teeth["y"], teeth["x"])
+    radius = np.hypot(teeth["x"], teeth["y"])
+    loop = np.append(np.arange(len(angle)), 0)
+    scale = max(np.abs(teeth["mesh_largest"]).max(), teeth["wave_generator_largest"].max(), 1e-9)
+    ring = 1.5 * scale * (1.0 + RING_STRETCH * (radius / radius.mean() - 1.0))
+    for one, case in zip(axes.flat, ("typical", "largest")):
+        mesh, contact = np.abs(teeth["mesh_" + case]), teeth["wave_generator_" + case]
+        one.fill_between(angle[loop], (ring - contact)[loop], ring[loop], color=BLUE, alpha=0.4, lw=0,
+                         label=f"wave generator, up to {contact.max():.0f} N")
+        one.bar(angle, mesh, width=2.0 * np.pi / len(angle), bottom=ring, color=RED, lw=0,
+                label=f"mesh, up to {mesh.max():.0f} N on {np.count_nonzero(mesh > 1.0)} teeth")
+        one.plot(angle[loop], ring[loop], color="black", lw=0.9)
+        one.set_ylim(0.0, ring.max() + 0.85 * scale)
+        one.set_axis_off()
+        one.set_title(f"{case} load, {motion[case + '_load']:.0f} N·m", loc="center", y=0.93)
+        one.legend(loc="upper center", bbox_to_anchor=(0.5, 0.06))
+    return figure
+
+
+def draw_windows(width, data):
+    windows = data["windows"]
+    if windows is None or not data["record"]["windows_assessed"]:
+        return None
+    figure, axes = new_figure(width, 2.6)
+    axes = axes[0][0]
+    axes.set_title("Largest deviation of a window over its threshold")
+    axes.axhline(1.0, color=ORANGE, lw=0.8)
+    for level, colour, name in ((0, GREY, "OK"), (1, ORANGE, "WARN"), (2, RED, "ERROR")):
+        part = windows["level"] == level
+        if part.any():
+            axes.plot(windows["time"][part], windows["largest_score"][part], ls="", marker="o", ms=3.5, color=colour,
+                      label=name)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("end of the window [s]")
+    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 1.22 if width > 6 else 1.35), ncol=3)
+    return figure
+
+
+FIGURES = {"course": draw_course, "friction": draw_friction, "torsion": draw_torsion, "spectrum": draw_spectrum,
+           "teeth": draw_teeth, "windows": draw_windows}
+
+
+def draw_all(directory, data):
+    """Writes every figure there is data for, in each width; their pictures as data URIs by name and width."""
+    plt.rcParams.update(STYLE)
+    pictures = {}
+    for name, draw in FIGURES.items():
+        for kind, width in WIDTHS.items():
+            figure = draw(width, data)
+            if figure is None:
+                continue
+            path = os.path.join(directory, f"{name}.png" if kind == "wide" else f"{name}_{kind}.png")
+            figure.savefig(path, dpi=DPI)
+            plt.close(figure)
+            with open(path, "rb") as file:
+                text = base64.b64encode(file.read()).decode("ascii")
+            pictures.setdefault(name, {})[kind] = "data:image/png;base64," + text
+    return pictures
+
+
+def reason(verdict):
+    """What the head of the page says: what is out of the ordinary with the faults that would do it, or what is not."""
+    if verdict["level"] == "NOT JUDGED":
+        return "This recording does not tell whether the joint is sound."
+    if verdict["level"] != "OK":
+        found = [f"{finding['title'].lower()} ({' or '.join(finding['causes']) or 'no fault in the list does this'})"
+                 for finding in verdict["findings"] if finding["level"] in ("WARN", "ERROR")]
+        return f"Not as in a sound joint: {'; '.join(found)}."
+    judged = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] == "OK"]
+    others = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] != "OK"]
+    return (f"As a sound joint has it: {', '.join(judged)}."
+            + (f" This recording does not tell: {', '.join(others)}." if others else ""))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("directory", help="that `joint_twin compare --report` has written to")
+    directory = parser.parse_args().directory
+    with open(os.path.join(directory, "comparison.json"), encoding="utf-8") as file:
+        record = json.load(file)
+    data = {name: read_table(directory, name) for name in ("course", "friction", "friction_twin", "spectrum", "torsion",
+                                                           "torsion_twin", "teeth", "twin_states", "windows")}
+    data["record"] = record
+    pictures = draw_all(directory, data)
+    health = sorted(record["health"], key=lambda row: -abs(row["score"]))
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(os.path.dirname(os.path.abspath(__file__))),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["short"] = lambda value: "" if value is None else f"{value:.3g}"
+    page = environment.get_template("comparison_page.html").render(
+        record=record, pictures=pictures, reason=reason(record["verdict"]), health=health, shown=SHOWN_INDICATORS,
+        twin_beside=data["twin_states"] is not None)
+    with open(os.path.join(directory, "report.html"), "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the sections of docs/real_robot.md share: runs of the tool, tables, figures, spectra."""
+import json
+import os
+import subprocess
+
+import numpy as np
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
+
+GREY, BLUE, RED, GREEN = "0.6", "#0072B2", "#D55E00", "#009E73"
+
+
+class Runner:
+    """Runs `joint_twin` in one directory and keeps the commands."""
+
+    def __init__(self, tool, directory):
+        self.tool, self.directory, self.commands = tool, directory, []
+
+    def path(self, name):
+        return os.path.join(self.directory, name)
+
+    def run(self, *arguments):
+        done = subprocess.run([self.tool, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
+                              universal_newlines=True, check=True)
+        self.commands.append(" ".join(["joint_twin", *map(str, arguments)]))
+        return json.loads(done.stdout) if "--json" in arguments else None
+
+
+def read(path):
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return lines + ["| " + " | ".join(row) + " |" for row in rows] + [""]
+
+
+def spectrum(angle, values, orders):
+    """Amplitude of each order of an angle in values that follow each other."""
+    weight = np.hanning(len(values))
+    weight /= weight.sum()
+    values = values - np.sum(weight * values)
+    return np.array([2.0 * abs(np.sum(weight * values * np.exp(-1j * order * angle))) for order in orders])
+
+
+def regress(columns, values):
+    """Least squares: coefficients, half widths of their 95 % intervals (widened by the residual's correlation), residual."""
+    coefficients = np.linalg.lstsq(columns, values, rcond=None)[0]
+    residual = values - columns @ coefficients
+    correlation = 1.0
+    for lag in range(1, len(residual) // 4):
+        share = residual[lag:] @ residual[:-lag] / (residual @ residual)
+        if share <= 0.0:
+            break
+        correlation += 2.0 * share
+    variance = residual @ residual / (len(values) - len(coefficients)) * correlation
+    return coefficients, 1.96 * np.sqrt(variance * np.diag(np.linalg.inv(columns.T @ columns))), residual
+
+
+def figure(rows, columns, size, **options):
+    return plt.subplots(rows, columns, figsize=size, constrained_layout=True, **options)
+
+
+def save(drawing, path):
+    drawing.savefig(path, dpi=110)
+    plt.close(drawing)

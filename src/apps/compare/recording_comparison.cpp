@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "harmonic_joint_twin/gear/ratio.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double CURRENT_MARGIN = 3.0;    // peaks over the motor's continuous torque [-]
+constexpr double MOST_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
+
+/// The load of a sample holds weight and inertia, which must not be counted twice.
+Parameters withoutWeight(Parameters parameters)
+{
+  parameters.output.gravity_torque = 0.0;
+  return parameters;
+}
+}  // namespace
+
+RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
+                                         std::function<void(const JudgedWindow&)> watch)
+  : parameters_(parameters)
+  , ratio_(nominalRatio(parameters.gear))
+  , twin_(parameters)
+  , spectrum_(ratio_)
+  , torsion_(parameters)
+  , loads_(static_cast<std::size_t>(std::ceil(parameters.output.load_torque_limit / LOAD_STEP)) + 1)
+  , monitor_(withoutWeight(parameters))
+  , assessor_(parameters)
+  , baseline_given_(!baseline.empty())
+  , watch_(std::move(watch))
+{
+  if (baseline_given_)
+  {
+    assessor_.give(std::move(baseline));
+  }
+}
+
+bool RecordingComparison::canBe(const MotionSample& sample) const
+{
+  const double most_current =
+      CURRENT_MARGIN * parameters_.motor.torque_limit * ratio_ / parameters_.telemetry.torque_per_current;
+  return std::abs(sample.load) <= parameters_.output.load_torque_limit && std::abs(sample.current) <= most_current;
+}
+
+void RecordingComparison::take(const MotionSample& sample)
+{
+  if (!canBe(sample))
+  {
+    ++reach_.impossible;
+    return;
+  }
+  const ComparedRow row{ sample, twin_.step(sample) };
+  course_.add(row);
+  current_squares_ += sample.current * sample.current;
+  residual_squares_ += row.residual() * row.residual();
+  ++loads_[static_cast<std::size_t>(std::abs(sample.load) / LOAD_STEP)];
+  if (reach_.rows++ == 0)
+  {
+    reach_.least_load = reach_.most_load = sample.load;
+    reach_.least_angle = reach_.most_angle = sample.position;
+  }
+  reach_.least_load = std::min(reach_.least_load, sample.load);
+  reach_.most_load = std::max(reach_.most_load, sample.load);
+  reach_.least_angle = std::min(reach_.least_angle, sample.position);
+  reach_.most_angle = std::max(reach_.most_angle, sample.position);
+
+  if (std::abs(sample.velocity) > MOVING)
+  {
+    const double gain = parameters_.telemetry.torque_per_current;
+    if (gain * row.predicted.band < MOST_PRESLIDING * std::abs(row.predicted.friction_torque))
+    {
+      const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
+      const double friction = row.predicted.friction_torque;
+      friction_.add(sample.velocity, way * (friction + gain * row.residual()), way * friction);
+      spectrum_.add(sample.position, sample.velocity, row.residual());
+    }
+    if (std::isfinite(sample.motor_angle))
+    {
+      torsion_.add(sample.load, sample.motor_angle / ratio_ - sample.position, sample.velocity);
+    }
+  }
+  reach_.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
+  watchSignals(sample);
+}
+
+void RecordingComparison::watchSignals(const MotionSample& sample)
+{
+  const TelemetryParameters& telemetry = parameters_.telemetry;
+  SignalSample signal;
+  signal.stamp = static_cast<std::int64_t>(std::llround(1e9 * sample.time));
+  signal.motor_angle = sample.motor_angle;
+  signal.output_angle = sample.position;
+  signal.motor_velocity = ratio_ * sample.velocity;
+  signal.motor_torque = (sample.current - telemetry.current_offset) * telemetry.torque_per_current / ratio_;
+  signal.load_torque = sample.load;
+  if (!monitor_.update(signal))
+  {
+    return;
+  }
+  JudgedWindow window;
+  window.indicators = monitor_.indicators();
+  window.assessment = assessor_.take(window.indicators);
+  window.deviations = assessor_.deviations();
+  watch_(window);
+  const bool compared = std::any_of(window.deviations.begin(), window.deviations.end(),
+                                    [](const Deviation& deviation) { return std::isfinite(deviation.score); });
+  if (window.assessment.state != AssessmentState::ASSESSED || !compared)
+  {
+    return;
+  }
+  ++assessed_;
+  const HealthLevel before = worst_ ? worst_->assessment.level : HealthLevel::OK;
+  if (window.assessment.level != HealthLevel::OK)
+  {
+    ++votes_[static_cast<std::size_t>(window.assessment.cause)];
+    if (before == HealthLevel::OK)
+    {
+      alarm_time_ = sample.time;
+    }
+  }
+  if (window.assessment.level >= before)
+  {
+    worst_ = window;
+  }
+}
+
+Cause RecordingComparison::cause() const
+{
+  return static_cast<Cause>(std::max_element(votes_.begin(), votes_.end()) - votes_.begin());
+}
+
+double RecordingComparison::currentRms() const
+{
+  return reach_.rows == 0 ? 0.0 : std::sqrt(current_squares_ / static_cast<double>(reach_.rows));
+}
+
+double RecordingComparison::residualRms() const
+{
+  return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
+}
+
+double RecordingComparison::loadQuantile(double share) const
+{
+  const auto enough = static_cast<std::uint64_t>(share * static_cast<double>(reach_.rows));
+  std::uint64_t rows = 0;
+  std::size_t step = 0;
+  while (step + 1 < loads_.size() && (rows += loads_[step]) <= enough)
+  {
+    ++step;
+  }
+  return LOAD_STEP * (static_cast<double>(step) + 0.5);
+}
+
+double RecordingComparison::typicalLoad() const
+{
+  return loadQuantile(0.5);
+}
+
+double RecordingComparison::largestLoad() const
+{
+  return loadQuantile(0.999);
+}
+}  // namespace hjt

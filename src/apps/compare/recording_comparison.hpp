@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "friction_points.hpp"
+#include "residual_spectrum.hpp"
+#include "thinned.hpp"
+#include "torsion_points.hpp"
+
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/health/signal_monitor.hpp"
+#include "harmonic_joint_twin/twin/motion_driven.hpp"
+
+namespace hjt
+{
+/// One row, measured beside predicted.
+struct ComparedRow
+{
+  MotionSample measured;
+  MotionPrediction predicted;
+
+  double residual() const { return measured.current - predicted.current; }  ///< [A]
+};
+
+/// One window of the signals and what was made of it.
+struct JudgedWindow
+{
+  SignalIndicators indicators;
+  Deviations deviations{};
+  Assessment assessment;
+};
+
+/// What the recorded motion covers.
+struct MotionReach
+{
+  std::uint64_t rows{};
+  std::uint64_t impossible{};  ///< rows with a current or load beyond what the joint has
+  std::uint64_t motor_rows{};  ///< rows with a motor angle
+  double least_load{};         ///< [N.m]
+  double most_load{};          ///< [N.m]
+  double least_angle{};        ///< [rad]
+  double most_angle{};         ///< [rad]
+};
+
+/// A recorded joint beside the twin that makes the same motion, row by row; memory does not grow with the rows.
+class RecordingComparison
+{
+public:
+  static constexpr double MOVING = 0.01;  ///< [rad/s]
+
+  /// `baseline`: of the sound joint; empty: learned from the first windows. `watch`: is given every window.
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
+                      std::function<void(const JudgedWindow&)> watch);
+
+  void take(const MotionSample& sample);
+
+  double ratio() const { return ratio_; }
+  const MotionDriven& twin() const { return twin_; }
+  const MotionReach& reach() const { return reach_; }
+  const Thinned<ComparedRow>& course() const { return course_; }
+  const FrictionPoints& friction() const { return friction_; }
+  const ResidualSpectrum& spectrum() const { return spectrum_; }
+  const TorsionPoints& torsion() const { return torsion_; }
+  const Assessor& assessor() const { return assessor_; }
+
+  double currentRms() const;   ///< of the measured current [A]
+  double residualRms() const;  ///< [A]
+  double typicalLoad() const;  ///< median of its magnitude [N.m]
+  double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
+
+  bool baselineGiven() const { return baseline_given_; }
+  std::uint64_t assessedWindows() const { return assessed_; }
+  /// The last window of those at the worst level; none: no window was held against a reference.
+  const std::optional<JudgedWindow>& worst() const { return worst_; }
+  double alarmTime() const { return alarm_time_; }  ///< when the level first left OK [s]
+  Cause cause() const;                              ///< that most windows in alarm name
+
+private:
+  bool canBe(const MotionSample& sample) const;
+  void watchSignals(const MotionSample& sample);
+  double loadQuantile(double share) const;
+
+  static constexpr double LOAD_STEP = 0.5;  // of the histogram [N.m]
+
+  const Parameters parameters_;
+  const double ratio_;
+  MotionDriven twin_;
+  MotionReach reach_;
+  Thinned<ComparedRow> course_;
+  FrictionPoints friction_;
+  ResidualSpectrum spectrum_;
+  TorsionPoints torsion_;
+  std::vector<std::uint64_t> loads_;  // histogram of magnitudes
+  double current_squares_{};
+  double residual_squares_{};
+
+  SignalMonitor monitor_;
+  Assessor assessor_;
+  const bool baseline_given_;
+  const std::function<void(const JudgedWindow&)> watch_;
+  std::uint64_t assessed_{};
+  std::optional<JudgedWindow> worst_;
+  double alarm_time_{};
+  std::array<std::uint64_t, CAUSE_COUNT> votes_{};
+};
+}  // namespace hjt

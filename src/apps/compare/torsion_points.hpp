@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "harmonic_joint_twin/health/running_regression.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Torsion at one joint torque, both ways of turning apart: mean of the rows.
+struct TorsionMean
+{
+  double torque{};    ///< [N.m]
+  double forward{};   ///< NaN: never passed that way [rad]
+  double backward{};  ///< [rad]
+};
+
+/// Torsion of a joint with two encoders, held against the twin's curve. Memory is bound by the torques a joint has.
+class TorsionPoints
+{
+public:
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit TorsionPoints(const Parameters& parameters);
+
+  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `speed` [rad/s].
+  void add(double torque, double torsion, double speed);
+
+  std::uint64_t rows() const { return rows_; }
+
+  /// By torque, ascending, steps of STEP; zero is where the twin's curve has it.
+  std::vector<TorsionMean> means() const;
+
+  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning; NaN
+  /// if the torque hardly varied.
+  double compliance() const;
+  double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
+
+private:
+  static constexpr double STEP = 2.0;            // [N.m]
+  static constexpr double LARGEST = 300.0;       // torque of the curve; the slope goes on beyond it [N.m]
+  static constexpr double LEAST_VARIED = 20e-6;  // standard deviation of the twin's torsion that tells anything [rad]
+  struct Bin
+  {
+    double sum{};
+    double rows{};
+  };
+  struct CurvePoint
+  {
+    double torque;
+    double torsion;
+  };
+
+  double twinTorsion(double torque) const;
+  RunningRegression fitted() const;
+
+  std::vector<CurvePoint> curve_;  // for torques >= 0, ascending
+  RunningRegression regression_;   // of the torsion over: one, way of turning, the twin's torsion
+  std::map<int, Bin> bins_[2];
+  std::uint64_t rows_{};
+  double twin_sum_{};
+  double twin_squares_{};
+};
+}  // namespace hjt

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "harmonic_joint_twin/gear/angle.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::string rounded(double value, int digits)
+{
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.*f", digits, value);
+  return text;
+}
+
+/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
+HealthLevel levelOf(double deviation, double tolerance, double error_factor)
+{
+  const double size = std::abs(deviation) / tolerance;
+  return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
+}
+
+std::vector<Cause> causesOf(Feature feature, Move move)
+{
+  std::vector<Cause> causes;
+  for (std::size_t i = 1; i < CAUSE_COUNT; ++i)
+  {
+    if (expectedMove(static_cast<Cause>(i), feature) == move)
+    {
+      causes.push_back(static_cast<Cause>(i));
+    }
+  }
+  return causes;
+}
+
+std::string namesOf(const std::vector<Cause>& causes)
+{
+  std::string text;
+  for (const Cause cause : causes)
+  {
+    text += (text.empty() ? "" : ", ") + std::string(causeName(cause));
+  }
+  return text;
+}
+
+/// One quantity as a multiple of the twin's.
+struct Ratio
+{
+  const char* what;
+  double value;
+  double own;           ///< when the joint was sound; NaN: not known
+  double of_kind;       ///< share by which sound joints differ from the twin
+  Feature feature;      ///< that it moves
+  Move when_larger;     ///< of the feature
+  const char* besides;  ///< what else moves it
+};
+
+/// Against the joint's own when sound where that is known, else against the twin.
+void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& finding)
+{
+  const bool known = std::isfinite(ratio.own);
+  const double tolerance = known ? parameters.comparison.repeat_tolerance : ratio.of_kind;
+  const double value = known ? ratio.value / ratio.own : ratio.value;
+  finding.judged = true;
+  finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
+  const std::string sound =
+      rounded(std::max(0.0, 1.0 - tolerance), 2) + " to " + rounded(1.0 + tolerance, 2) + " counts as sound";
+  finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, 2) + " times the twin's" +
+                 (known ? " and " + rounded(value, 2) + " times this joint's own when it was sound (" + sound + ")." :
+                          " (" + sound + ").");
+  if (finding.level != HealthLevel::OK)
+  {
+    const bool up = (value > 1.0) == (ratio.when_larger == Move::UP);
+    finding.causes = causesOf(ratio.feature, up ? Move::UP : Move::DOWN);
+    finding.text += (finding.causes.empty() ? std::string(" No fault in the list does this.") :
+                                              " Faults that do this: " + namesOf(finding.causes) + ".") +
+                    " So do " + ratio.besides + ".";
+  }
+}
+
+bool movesBothWays(const std::vector<FrictionPoint>& points)
+{
+  return points.front().speed < 0.0 && points.back().speed > 0.0;
+}
+
+Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
+                      bool has_load)
+{
+  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
+  const std::vector<FrictionPoint> points = comparison.friction().points();
+  if (points.empty())
+  {
+    finding.text = "The joint never moves steadily for long enough to tell its friction.";
+    return finding;
+  }
+  if (!movesBothWays(points) && !has_load)
+  {
+    finding.text = "The joint moves one way only and no load was recorded: friction and load cannot be told apart.";
+    return finding;
+  }
+  judgeRatio({ "Friction", comparison.friction().ratio(), own.friction_ratio, parameters.comparison.friction_tolerance,
+               Feature::RUNNING_TORQUE, Move::UP, "grease at another temperature, another preload, a wrong gain" },
+             parameters, finding);
+  finding.text += " Told at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
+                  " to " + rounded(points.back().speed, 2) + " rad/s.";
+  return finding;
+}
+
+Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own)
+{
+  Finding finding{ HealthLevel::OK, false, "Torsion", "", {} };
+  if (comparison.torsion().rows() == 0)
+  {
+    finding.text = "One angle a joint: torsion needs encoders at the motor and at the output.";
+    return finding;
+  }
+  const double compliance = comparison.torsion().compliance();
+  if (!std::isfinite(compliance))
+  {
+    finding.text = "The load hardly varies, so that nothing tells how stiff the drive is.";
+    return finding;
+  }
+  // Once a turn an encoder off its axis looks like torsion under a weight.
+  const double eccentricity =
+      (parameters.sensors.output_eccentricity + parameters.sensors.motor_eccentricity / comparison.ratio()) /
+      std::sqrt(2.0) / comparison.torsion().twinAmplitude();
+  judgeRatio({ "Torsion", compliance, own.compliance_ratio, parameters.comparison.compliance_tolerance + eccentricity,
+               Feature::STIFFNESS, Move::DOWN, "a load other than told, encoders off their axes" },
+             parameters, finding);
+  if (!std::isfinite(own.compliance_ratio) && eccentricity > 0.01)
+  {
+    finding.text += " Of the tolerance " + rounded(eccentricity, 2) +
+                    " is for the encoders' eccentricity: a recording of "
+                    "the sound joint (--reference) would narrow it.";
+  }
+  return finding;
+}
+
+Finding judgeSignals(const RecordingComparison& comparison)
+{
+  Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
+  const std::string reference = comparison.baselineGiven() ? "the reference given" :
+                                                             "the reference learned from the first windows of this "
+                                                             "recording";
+  if (!comparison.worst())
+  {
+    finding.text = comparison.baselineGiven() ?
+                       "No window of the recording is at an operating point that the reference knows." :
+                       "No reference was given, and the recording is too short to learn one (" +
+                           std::to_string(comparison.assessor().baseline().windowsNeeded()) +
+                           " windows at one operating point).";
+    return finding;
+  }
+  finding.judged = true;
+  const Assessment& assessment = comparison.worst()->assessment;
+  finding.level = assessment.level;
+  const std::string windows = std::to_string(comparison.assessedWindows()) + " windows held against " + reference;
+  if (assessment.level == HealthLevel::OK)
+  {
+    finding.text = windows + ": nothing out of the ordinary.";
+    return finding;
+  }
+  finding.causes = { comparison.cause() };
+  finding.text = "From " + rounded(comparison.alarmTime(), 1) + " s on the signals depart from " + reference +
+                 ". Most likely cause: " + causeName(comparison.cause()) + ". Strongest: ";
+  for (std::size_t i = 0; i < assessment.evidence_count; ++i)
+  {
+    const Evidence& evidence = assessment.evidence[i];
+    char text[200];
+    std::snprintf(text, sizeof(text), "%s%s %.3g %s where %.3g is sound", i == 0 ? "" : "; ",
+                  indicatorName(evidence.indicator), evidence.value, indicatorUnit(evidence.indicator),
+                  evidence.expected);
+    finding.text += text;
+  }
+  finding.text += ".";
+  return finding;
+}
+
+/// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
+double highestOrder(const RecordingComparison& comparison, double duration)
+{
+  constexpr double RESOLVED = 0.4;  // of the rows' rate; half of it is the limit
+  double fastest = 0.0;
+  for (const FrictionPoint& point : comparison.friction().points())
+  {
+    fastest = std::max(fastest, std::abs(point.speed));
+  }
+  const double turns = fastest * comparison.ratio() * duration / TWO_PI;
+  return turns > 0.0 ? RESOLVED * static_cast<double>(comparison.reach().rows) / turns : 0.0;
+}
+
+std::vector<std::string> cannotShow(const RecordingComparison& comparison, bool has_load, double duration)
+{
+  const MotionReach& reach = comparison.reach();
+  std::vector<std::string> missing;
+  if (reach.motor_rows == 0)
+  {
+    missing.emplace_back(
+        "Torsion, stiffness, lost motion, kinematic error, ratcheting: the recording has one angle a "
+        "joint; the motor's is needed too.");
+  }
+  if (!has_load)
+  {
+    missing.emplace_back(
+        "Whether the load is as configured: no load was recorded, so weight and inertia of the "
+        "configuration are taken; a payload left out looks like current.");
+  }
+  missing.emplace_back(
+      "Temperature: none is recorded; grease at another one changes the friction by some per cent a "
+      "kelvin.");
+  if (!comparison.baselineGiven())
+  {
+    missing.emplace_back(
+        "A fault that was there from the first window, unless it is larger than what joints of one kind "
+        "differ by: no reference of this joint was given.");
+  }
+  const std::vector<FrictionPoint> points = comparison.friction().points();
+  if (!points.empty() && !movesBothWays(points))
+  {
+    missing.emplace_back("Friction apart from a load that is wrong: the joint moves one way only.");
+  }
+  if (points.size() < 3)
+  {
+    missing.emplace_back("How friction depends on the speed: fewer than three speeds.");
+  }
+  if (reach.most_load - reach.least_load < 10.0)
+  {
+    missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
+                         rounded(reach.most_load - reach.least_load, 1) + " N.m.");
+  }
+  const double order = highestOrder(comparison, duration);
+  if (order > 0.0)
+  {
+    missing.emplace_back(
+        "Lines above order " + rounded(order, 1) +
+        " of the motor's turn at the highest speed: the recording has too few rows a turn to show them; "
+        "slower motion shows more.");
+  }
+  return missing;
+}
+}  // namespace
+
+Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
+              bool has_load, double duration)
+{
+  Verdict verdict;
+  verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),
+                       judgeSignals(comparison) };
+  for (const Finding& finding : verdict.findings)
+  {
+    verdict.level = std::max(verdict.level, finding.level);
+    verdict.judged = verdict.judged || finding.judged;
+  }
+  verdict.highest_order = highestOrder(comparison, duration);
+  verdict.cannot_show = cannotShow(comparison, has_load, duration);
+  return verdict;
+}
+}  // namespace hjt

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "../compare/comparison_files.hpp"
+#include "../compare/recording_comparison.hpp"
+#include "../compare/verdict.hpp"
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "motion_options.hpp"
+#include "output_file.hpp"
+#include "text_table.hpp"
+
+#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "harmonic_joint_twin/ros_io/topics.hpp"
+
+extern char** environ;
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr const char* PYTHON = "/usr/bin/python3";
+constexpr const char* PAGE = "report.html";
+
+struct CompareOptions : MotionOptions
+{
+  std::string report;
+  std::string reference;
+};
+
+void prepareDirectory(const CompareOptions& options)
+{
+  std::error_code error;
+  if (fs::equivalent(options.report, options.reference, error))
+  {
+    throw InputError("--report and --reference are the same directory: the reference would be lost");
+  }
+  fs::create_directories(options.report, error);
+  if (error)
+  {
+    throw InputError(options.report + " cannot be made a directory: " + error.message());
+  }
+  for (const char* name : { COMPARISON_FILE, PAGE })
+  {
+    requireWritable((fs::path(options.report) / name).string(), options.force, options.recording);
+  }
+}
+
+/// Runs the script that makes page and pictures of the data. @throws InputError if it does not end well.
+void makePage(const std::string& directory)
+{
+  std::string script = (packageDirectory() / "scripts/comparison_page.py").string();
+  std::string python = PYTHON;
+  std::string argument = directory;
+  std::array<char*, 4> arguments{ python.data(), script.data(), argument.data(), nullptr };
+  pid_t child{};
+  const int refused = posix_spawn(&child, PYTHON, nullptr, nullptr, arguments.data(), environ);
+  int status = 0;
+  if (refused == 0)
+  {
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+    {
+    }
+  }
+  if (refused != 0 || status != 0)
+  {
+    throw InputError("the page was not made" +
+                     (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
+                     "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
+                     "` makes the page of them");
+  }
+}
+
+void print(const ComparisonRecord& record, const RecordingComparison& comparison)
+{
+  const Verdict& verdict = record.verdict;
+  for (const ContentLine& line : record.contents.lines)
+  {
+    std::cout << (line.found ? "found   " : "missing ") << line.name << " (" << line.gives << ")\n";
+  }
+  std::cout << '\n' << (verdict.judged ? levelName(verdict.level) : "NOT JUDGED") << '\n';
+  for (const Finding& finding : verdict.findings)
+  {
+    std::cout << finding.title << ": " << (finding.judged ? levelName(finding.level) : "not judged") << ". "
+              << finding.text << '\n';
+  }
+  std::cout << '\n';
+  printValues({ { "rows", std::to_string(comparison.reach().rows), "" },
+                { "duration", shortNumber(record.count.duration), "s" },
+                { "current, rms", shortNumber(comparison.currentRms()), "A" },
+                { "measured less predicted current, rms", shortNumber(comparison.residualRms()), "A" } });
+}
+
+int compare(const CompareOptions& options)
+{
+  const Parameters parameters = loadParameters(options);
+  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference);
+  prepareDirectory(options);
+  MotionSource source = motionSource(options);
+  source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
+  const std::string twin_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
+
+  CsvWriter windows((fs::path(options.report) / "windows.csv").string(),
+                    { "time", "speed", "load", "level", "cause", "confidence", "largest_score" });
+  RecordingComparison comparison(
+      parameters, sound.baseline,
+      [&](const JudgedWindow& window)
+      {
+        const Assessment& a = window.assessment;
+        windows.writeRow({ 1e-9 * static_cast<double>(window.indicators.stamp), window.indicators.point.speed,
+                           window.indicators.point.load, static_cast<double>(a.level), static_cast<double>(a.cause),
+                           a.confidence, a.largest_score });
+      });
+  const MotionFindings found =
+      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.take(sample); });
+  windows.close();
+  if (interruptSignal() != 0)
+  {
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  ComparisonRecord record;
+  record.recording = options.recording;
+  record.joint = source.joint;
+  record.made_with = "joint_twin " HJT_VERSION;
+  record.count = found;
+  record.refused = found.refused;
+  record.gaps = found.gaps;
+  record.contents = readContents(source, twin_topic, found, comparison.reach().motor_rows, found.has_load);
+  record.twin_states = readTwinStates(source, twin_topic, found.start);
+  record.verdict = judge(comparison, parameters, sound.own, found.has_load, found.duration);
+  writeComparison(options.report, comparison, parameters, record);
+  makePage(options.report);
+  const std::string page = (fs::path(options.report) / PAGE).string();
+  if (options.json)
+  {
+    std::ifstream data(fs::path(options.report) / COMPARISON_FILE);
+    std::cout << data.rdbuf();
+  }
+  else
+  {
+    print(record, comparison);
+    std::cout << "written: " << page << '\n';
+  }
+  return EXIT_DONE;
+}
+}  // namespace
+
+void addCompareCommand(CLI::App& app, int& exit_code)
+{
+  const auto options = std::make_shared<CompareOptions>();
+  auto* command =
+      app.add_subcommand("compare", "a recorded joint beside the twin: verdict, figures and data as a page");
+  addMotionOptions(*command, *options);
+  command->add_option("--report", options->report, "directory of the page, its figures and data")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--reference", options->reference,
+                   "the report of this joint when it was sound: what it is held against, beside the twin")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
+  command->callback([options, &exit_code] { exit_code = compare(*options); });
+}
+}  // namespace hjt

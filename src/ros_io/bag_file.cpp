@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/ros_io/bag_file.hpp"
+
+#include <map>
+
+#include <rosbag/view.h>
+
+#include "harmonic_joint_twin/params/parameter_error.hpp"
+
+namespace hjt
+{
+void openForReading(rosbag::Bag& bag, const std::string& path)
+{
+  try
+  {
+    bag.open(path, rosbag::bagmode::Read);
+  }
+  catch (const rosbag::BagUnindexedException&)
+  {
+    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
+  }
+  catch (const std::exception& error)
+  {
+    throw InputError(path + " cannot be read as a bag: " + error.what());
+  }
+}
+
+std::string listTopics(const rosbag::Bag& bag)
+{
+  std::map<std::string, std::string> types;
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  {
+    types[connection->topic] = connection->datatype;
+  }
+  std::string text;
+  for (const auto& [topic, type] : types)
+  {
+    text += "\n  " + topic + " (" + type + ")";
+  }
+  return text;
+}
+}  // namespace hjt

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin compare`: recordings of strangers, and damaged ones."""
+import json
+import os
+import re
+import struct
+
+import robot
+import tool
+
+OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
+GAIN = ["--set", f"telemetry.torque_per_current={robot.GAIN}"]
+FIGURES = ["course", "friction", "spectrum", "teeth"]
+
+
+class Compare(tool.ToolTest):
+    def compare(self, recording, *arguments):
+        return self.succeed_json("compare", recording, *OPTIONS, *GAIN, "--report", "report", "--force", *arguments)
+
+    def finding(self, report, title):
+        return next(finding for finding in report["verdict"]["findings"] if title in finding["title"])
+
+    def damage(self, name, share, topic, places):
+        """Turns over a byte inside of messages, where the file has them, at these places in turn; how many were hit."""
+        data = bytearray(tool.read_bytes(self.path(name)))
+        at, hit = 0, 0
+        for number, (_, _, _, _, message) in enumerate(tool.raw_messages(self.path(name), [topic])):
+            at = data.index(message, at)
+            if number % round(1.0 / share) == 17:
+                data[at + places[hit % len(places)] % len(message)] ^= 0xFF
+                hit += 1
+        with open(self.path(name), "wb") as file:
+            file.write(data)
+        return hit
+
+    def test_a_bag_of_a_stranger_gets_a_page_that_needs_nothing_else(self):
+        robot.write_bag(self.path("a.bag"), 30.0)
+        report = self.compare("a.bag")
+        files = os.listdir(self.path("report"))
+        for name in FIGURES:
+            self.assertIn(f"{name}.png", files)
+            self.assertIn(f"{name}.csv", files)
+        with open(self.path("report/report.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertNotRegex(page, r"(?:src|href|srcset)=\"(?!data:)|url\(|@import")
+        self.assertEqual(page.count("data:image/png;base64,"), 2 * len(FIGURES))
+        for finding in report["verdict"]["findings"]:
+            self.assertIn(re.sub("'.*", "", finding["text"]), page)
+        with open(self.path("report/comparison.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), report)
+        found = {line["name"]: line["found"] for line in report["contents"]["topics"]}
+        self.assertEqual(found, {"/joint_states": True, "/joint_states: elbow_joint_motor": False,
+                                 "/joint_twin/load": True, "/joint_twin/joint_states": False})
+        self.assertEqual(report["contents"]["joints"], ["wrist_1_joint", "elbow_joint"])
+        self.assertIn("motor's is needed", " ".join(report["verdict"]["cannot_show"]))
+
+    def test_nothing_is_overwritten_unasked_and_bad_input_is_named(self):
+        robot.write_bag(self.path("a.bag"), 3.0)
+        self.succeed("compare", "a.bag", *OPTIONS, "--report", "report")
+        self.fail_with(1, ["comparison.json exists; --force"], "compare", "a.bag", *OPTIONS, "--report", "report")
+        self.fail_with(1, ["joints found: elbow_joint, wrist_1_joint"], "compare", "a.bag", "--joint", "shoulder",
+                       "--report", "r1")
+        self.fail_with(1, ["no messages on /arm", "/joint_states (sensor_msgs/JointState)"], "compare", "a.bag", *OPTIONS,
+                       "--topic", "/arm", "--report", "r2")
+        self.fail_with(1, ["nowhere.bag"], "compare", "nowhere.bag", *OPTIONS, "--report", "r3")
+        self.fail_with(2, ["--report is required"], "compare", "a.bag", *OPTIONS)
+
+    def test_data_are_written_where_no_page_can_be_made(self):
+        robot.write_bag(self.path("a.bag"), 3.0)
+        self.write("jinja2.py", "raise ImportError(name='jinja2')\n")
+        done = self.run_tool("compare", "a.bag", *OPTIONS, "--report", "report",
+                             environment={"PYTHONPATH": self.directory})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("apt-get install python3-jinja2", done.stderr)
+        self.assertIn("the data are in report", done.stderr)
+        self.assertIn("comparison.json", os.listdir(self.path("report")))
+
+    def test_a_table_of_a_controller_will_do(self):
+        lines = ["timestamp,actual_q_2,actual_current_2"]
+        for number, (_, state, _) in enumerate(robot.rows(20.0)):
+            lines.append(f"{number / robot.RATE:.3f},{state.position[1]:.9f},{state.effort[1]:.6f}")
+        self.write("a.csv", "\n".join(lines) + "\n")
+        report = self.compare("a.csv")
+        self.assertEqual([line["found"] for line in report["contents"]["topics"]], [True, False])
+        self.assertIn("no load was recorded", " ".join(report["verdict"]["cannot_show"]))
+
+    def test_the_twin_that_ran_beside_is_found(self):
+        self.write("a.csv", "\n".join(tool.telemetry_csv(rows=200)) + "\n")
+        self.succeed("import", "a.csv", "--joint", 2, "--out", "in.bag")
+        self.succeed("replay", "in.bag", "--out", "out.bag", "--config", "joints/elbow.yaml",
+                     "--config", "recorded_load.yaml", "--set", "publish.contact_forces_rate=1")
+        report = self.compare("out.bag")
+        self.assertTrue(report["contents"]["topics"][-1]["found"])
+        self.assertIn("/joint_twin/command", report["contents"]["not_used"])
+        with open(self.path("report/twin_states.csv")) as file:
+            self.assertGreater(len(file.readlines()), 1000)
+
+    def test_more_friction_than_the_twin_is_a_warning_with_its_causes(self):
+        levels = []
+        for friction in (1.0, 1.3):
+            robot.write_bag(self.path("a.bag"), 30.0, friction)
+            report = self.compare("a.bag")
+            levels.append(self.finding(report, "Friction")["level"])
+        self.assertEqual(levels, ["OK", "WARN"])
+        self.assertEqual(report["verdict"]["level"], "WARN")
+        self.assertIn("lubricant_degradation", self.finding(report, "Friction")["text"])
+
+    def test_dropped_and_damaged_messages_change_little(self):
+        robot.write_bag(self.path("sound.bag"), 120.0)
+        robot.write_bag(self.path("bad.bag"), 120.0, dropped=0.01)
+        # A stamp, a name's length, an array's length to its highest byte, an angle, a current; a load.
+        hit = self.damage("bad.bag", 0.001, robot.STATES_TOPIC, [4, 20, -44, -41, -25, -1])
+        self.damage("bad.bag", 0.001, robot.LOAD_TOPIC, [-1])
+        self.assertGreater(hit, 10)
+        sound, bad = self.compare("sound.bag"), self.compare("bad.bag")
+        self.assertEqual(sound["reading"]["unreadable_or_impossible"], 0)
+        self.assertGreater(bad["reading"]["unreadable_or_impossible"], hit // 2)
+        self.assertLess(bad["reading"]["unreadable_or_impossible"], 2 * hit)
+        self.assertGreater(bad["reading"]["rows"], 0.985 * sound["reading"]["rows"] - hit)
+        for name in ("friction_ratio", "current"):
+            one, other = sound[name], bad[name]
+            if isinstance(one, dict):
+                one, other = one["residual_rms"], other["residual_rms"]
+            self.assertAlmostEqual(one, other, delta=0.02 * abs(one))
+
+    def test_a_bag_that_was_cut_off_is_told_from_one_that_is_none(self):
+        robot.write_bag(self.path("a.bag"), 60.0)
+        data = tool.read_bytes(self.path("a.bag"))
+        for name, content, said in (("cut.bag", data[:len(data) * 2 // 3], "cut.bag"),
+                                    ("open.bag", self.without_index(data), "`rosbag reindex` may mend it"),
+                                    ("none.bag", b"not a bag", "cannot be read as a bag")):
+            with open(self.path(name), "wb") as file:
+                file.write(content)
+            self.fail_with(1, [said], "compare", name, *OPTIONS, "--report", "r_" + name)
+
+    @staticmethod
+    def without_index(data):
+        """As a recorder that was killed leaves it: the place of the index in the bag's header still 0."""
+        at = data.index(b"index_pos=") + len(b"index_pos=")
+        return data[:at] + struct.pack("<Q", 0) + data[at + 8:len(data) * 2 // 3]
+
+
+if __name__ == "__main__":
+    tool.main()
