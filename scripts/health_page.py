@@ -14,7 +14,7 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, SHORT_POINTS, WARM
+from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, STEADY_POINTS, TURNING, WARM
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -32,7 +32,7 @@ def collect(bench, sound_hours):
     sound, faulty = [], []
     for condition in (WARM, NOISY):
         reference = bench.reference(condition)
-        for point in POINTS if condition is WARM else SHORT_POINTS:
+        for point in health_runs.points_of(condition):
             window = health_runs.window_time(point)
             repeats = max(round(3600.0 * sound_hours / (health_runs.SOUND_WINDOWS * window)), 1)
             bags = bench.sound("sound", condition, point, health_runs.SOUND_WINDOWS, repeats, 4)
@@ -113,7 +113,6 @@ def share(flags):
 
 def fault_table(kinds, faulty, limit):
     severities = JUDGED.severities
-    steady = [point for point in POINTS if point.tag.startswith("steady")]
     lines = ["| kind | " + " | ".join(f"alarms at {severity:g}" for severity in severities)
              + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or of its set |",
              "|---|" + "---|" * (len(severities) + 4)]
@@ -123,7 +122,7 @@ def fault_table(kinds, faulty, limit):
         told = [run for run in own if alarm(run)]
         totals += told
         cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
-        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, steady)
+        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
                      + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
                      f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
@@ -190,7 +189,7 @@ def loop_table(sound, faulty):
 
 
 def delay_table(kinds, delayed):
-    lines = ["| kind | from the onset to the alarm [motor turns] |", "|---|---|"]
+    lines = ["| kind | from the onset to the end of the window with the alarm [motor turns] |", "|---|---|"]
     for kind in kinds:
         for run in delayed:
             if run.kind == kind["kind"]:
@@ -247,8 +246,8 @@ def draw_confusion(kinds, faulty, path):
 
 def draw_roc(sound, faulty, path):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, constrained_layout=True)
-    for axis, name, points in ((axes[0], "steady speed and load", [p for p in POINTS if p.tag.startswith("steady")]),
-                               (axes[1], "swinging load", [p for p in POINTS if not p.tag.startswith("steady")])):
+    for axis, name, points in ((axes[0], "steady speed and load", STEADY_POINTS),
+                               (axes[1], "swinging load", [TURNING, CHECK_UP])):
         healthy = numpy.array([window.largest for run in sound if run.point in points for window in run.windows])
         thresholds = numpy.unique(numpy.concatenate([healthy, numpy.linspace(0.0, 5.0, 400)]))
         share_sound = [(healthy > threshold).mean() for threshold in thresholds]
@@ -279,7 +278,7 @@ def main():
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
     if options.fit:
-        source = options.docs.parent / "src" / "health" / "fault_signatures.inc"
+        source = options.docs.parent / "include" / "harmonic_joint_twin" / "health" / "fitted_signatures.hpp"
         health_signatures.write(bench, source, options.docs / "indicators.md")
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
@@ -290,7 +289,9 @@ def main():
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_roc(sound, faulty, images / "roc.png")
     page_section.write(options.docs / "health.md", "health", [
-        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs.", "",
+        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs; " + ", ".join(
+            f"`{condition.name}`: {condition.temperatures[0]:g} to {condition.temperatures[1]:g} °C, noise of the encoders × {condition.noise:g}"
+            for condition in sorted({run.condition for run in faulty}, key=lambda condition: condition.noise)) + ".", "",
         "### Sound drives", "", *sound_table(sound), "",
         "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
         "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",

@@ -13,7 +13,7 @@ import sys
 RATIO = 101.0
 WINDOW_TURNS = 101.0      # of the motor: one of the joint
 START = 0.5               # of a run, before it is steady [s]
-COMMISSIONING = (20, 2)   # sound runs that make the reference at each point, windows of each
+COMMISSIONING = (20, 40.0)  # sound runs that make the reference at each point; of each two windows, or as many as fit [s]
 WINDOWS = 2               # of a faulty run: as many as an alarm takes
 SOUND_WINDOWS = 20        # of a sound run
 SET_IN = 1.5              # windows after which a fault sets in on the way
@@ -46,8 +46,8 @@ TURNING = Point("turning under its weight: 30°/s, ±130 N·m once a turn", "tur
 # A window is one period, so that what stands fast in the joint is the same in all of them.
 CHECK_UP = Point("check-up: to and fro at up to 70°/s, ±130 N·m once a second", "check_up", 360.0 / PERIOD,
                  sinus(math.radians(SWING), 1.0 / PERIOD), sinus(130.0, 8.0 / PERIOD), (1000.0, PERIOD))
-POINTS = [steady(5.0, 140.0), steady(15.0, 60.0), steady(45.0, 110.0), steady(90.0, 0.0), steady(170.0, 30.0), TURNING,
-          CHECK_UP]
+STEADY_POINTS = [steady(5.0, 140.0), steady(15.0, 60.0), steady(45.0, 110.0), steady(90.0, 0.0), steady(170.0, 30.0)]
+POINTS = [*STEADY_POINTS, TURNING, CHECK_UP]
 TRAINING_POINTS = POINTS[1:]
 SHORT_POINTS = [POINTS[1], POINTS[3], POINTS[4], CHECK_UP]  # for what takes long: see `takes_long`
 
@@ -70,6 +70,10 @@ Run = collections.namedtuple("Run", "point condition kind severity windows")
 
 def window_time(point):
     return WINDOW_TURNS * 360.0 / (point.degrees * RATIO)
+
+
+def points_of(condition):
+    return SHORT_POINTS if condition is NOISY else POINTS
 
 
 def takes_long(kind):
@@ -146,8 +150,9 @@ class Bench:
 
     def reference(self, condition):
         """File of what is healthy there, made of runs of its own."""
-        bags = [bag for point in POINTS
-                for bag, _ in self.sound("commissioning", condition, point, COMMISSIONING[1], COMMISSIONING[0], 1)]
+        bags = [bag for point in points_of(condition)
+                for bag, _ in self.sound("commissioning", condition, point,
+                                         max(round(COMMISSIONING[1] / window_time(point)), 2), COMMISSIONING[0], 1)]
         path = self.work / f"reference_{condition.name}.yaml"
         self._indicators(bags, ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])
         return path
@@ -158,7 +163,7 @@ class Bench:
         windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict, own = window["assessment"], windows[window["recording"]]
-            own.append(Window(len(own) + 1, window["indicators"], window["scores"], window.get("features"),
+            own.append(Window(len(own) + 1, window["indicators"], window["scores"], window["features"],
                               verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
         return [Run(point, condition, row["fault_kind"] or "healthy", _severity(row), windows[str(bag)])
                 for bag, row in bags]

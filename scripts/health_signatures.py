@@ -6,9 +6,9 @@ import math
 import numpy
 
 import page_section
-from health_runs import COOL, TRAINING, TRAINING_POINTS
+from health_runs import COOL, STEADY_POINTS, TRAINING, TRAINING_POINTS
 
-LEAST = 1.0  # of a window's strongest score, over the threshold: what is weaker is no alarm and needs no cause
+LEAST = 1.0  # of a window's strongest score, over the threshold: what is weaker says little of its cause
 TABLE_LEAST = 0.1  # shown from this size on
 
 
@@ -27,17 +27,21 @@ def fit(runs):
     for run in runs:
         for window in run.windows:
             if window.largest >= LEAST:
-                directions[run.kind, run.point.tag].append(unit(compressed(window.features)))
-    return {key: unit(numpy.nan_to_num(numpy.nanmean(numpy.array(own), axis=0))) for key, own in directions.items()}
+                directions[run.kind, "steady" if run.point in STEADY_POINTS else "swinging"].append(unit(compressed(window.features)))
+    return {key: unit(numpy.ma.masked_invalid(own).mean(axis=0).filled(0.0)) for key, own in directions.items()}
 
 
-def circular_spline_tooth(names):
-    """Not among the faults: by the kinematics, the lobes over a place of the circular spline."""
-    direction = numpy.array([{"circular_spline": 1.0, "kinematic_error": 0.3}.get(name, 0.0) for name in names])
-    return {("circular_spline_tooth", "any"): unit(direction)}
+def by_kinematics(names):
+    """What stands at a line of its own, whatever else it moves; a tooth of the circular spline is not among the faults."""
+    lines = {"bearing_inner_race": "inner", "bearing_outer_race": "outer", "bearing_ball": "ball", "bearing_cage": "cage",
+             "circular_spline_tooth": "circular_spline"}
+    # A line also widens the kinematic error's peak to peak.
+    return {(cause, "kinematics"): unit(numpy.array([{line: 1.0, "kinematic_error": 0.5}.get(name, 0.0) for name in names]))
+            for cause, line in lines.items()}
 
 
-def in_source(cause):
+def cause_name(cause):
+    """As the source has it."""
     return "Cause::CIRCULAR_SPLINE_TOOTH" if cause == "circular_spline_tooth" else f"causeOf(FaultKind::{cause.upper()})"
 
 
@@ -47,14 +51,15 @@ def write(bench, source, page):
     for point in TRAINING_POINTS:
         runs += bench.judge(bench.faulty(TRAINING, COOL, point), COOL, point, reference)
     names = list(next(window for run in runs for window in run.windows).features)
-    signatures = fit(runs) | circular_spline_tooth(names)
+    signatures = fit(runs) | by_kinematics(names)
     order = [kind["kind"] for kind in bench.kinds] + ["circular_spline_tooth"]
     rows = sorted(signatures.items(), key=lambda item: (order.index(item[0][0]), item[0][1]))
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`: cause, direction by Feature.",
-             "// clang-format off"]
-    lines += [f"{{ {in_source(cause)}, {{ {', '.join(f'{value:.3f}' for value in direction)} }} }},  // {motion}"
+             "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
+             "// clang-format off", "inline const std::vector<Signature> FITTED_SIGNATURES{"]
+    lines += [f"{{ {cause_name(cause)}, {{ {', '.join(f'{value:.3f}' for value in direction)} }} }},  // {motion}"
               for (cause, motion), direction in rows]
-    source.write_text("\n".join(lines) + "\n// clang-format on\n")
+    source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
     shown = ["<details>", f"<summary>{len(rows)} signatures</summary>", "",
              "| cause | motion | " + " | ".join(name.replace("_", " ") for name in names) + " |",
              "|---|---|" + "---|" * len(names)]

@@ -5,21 +5,19 @@
 #include <cmath>
 #include <numeric>
 
+#include "harmonic_joint_twin/health/fitted_signatures.hpp"
+
 namespace hjt
 {
 namespace
 {
-constexpr double SHARPNESS = 12.0;
+constexpr double SHARPNESS = 20.0;
 
 constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
   "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",
   "coulomb", "viscous",         "efficiency",      "residual",    "impulses", "order_1",
   "order_2", "order_4",         "circular_spline", "cage",        "ball",     "outer",
   "inner",   "tooth_pass"
-};
-
-const std::vector<Signature> SIGNATURES{
-#include "fault_signatures.inc"
 };
 
 /// Cosine of the angle between the scores and a signature, over the features compared; 0 if they say nothing.
@@ -113,7 +111,7 @@ const char* featureName(Feature feature) noexcept
 
 const std::vector<Signature>& faultSignatures() noexcept
 {
-  return SIGNATURES;
+  return FITTED_SIGNATURES;
 }
 
 FeatureScores featureScores(const Deviations& deviations) noexcept
@@ -154,7 +152,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
 std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept
 {
   std::array<double, CAUSE_COUNT> probabilities{};
-  for (const Signature& signature : SIGNATURES)
+  for (const Signature& signature : FITTED_SIGNATURES)
   {
     double& probability = probabilities[static_cast<std::size_t>(signature.cause)];
     probability = std::max(probability, std::exp(SHARPNESS * likeness(scores, signature)));
