@@ -25,14 +25,19 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
   return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
 }
 
-std::vector<Cause> causesOf(Feature feature, Move move)
+/// Part of a fault's signature, a unit vector, from which on the fault is said to move a feature.
+constexpr double LEAST_PART = 0.2;
+
+/// @param sign +1: up, -1: down.
+std::vector<Cause> causesOf(Feature feature, double sign)
 {
   std::vector<Cause> causes;
-  for (std::size_t i = 1; i < CAUSE_COUNT; ++i)
+  for (const Signature& signature : faultSignatures())
   {
-    if (expectedMove(static_cast<Cause>(i), feature) == move)
+    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= LEAST_PART;
+    if (moves && std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {
-      causes.push_back(static_cast<Cause>(i));
+      causes.push_back(signature.cause);
     }
   }
   return causes;
@@ -56,7 +61,7 @@ struct Ratio
   double own;           ///< when the joint was sound; NaN: not known
   double of_kind;       ///< share by which sound joints differ from the twin
   Feature feature;      ///< that it moves
-  Move when_larger;     ///< of the feature
+  double when_larger;   ///< the feature moves up: +1, down: -1
   const char* besides;  ///< what else moves it
 };
 
@@ -75,8 +80,7 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
                           " (" + sound + ").");
   if (finding.level != HealthLevel::OK)
   {
-    const bool up = (value > 1.0) == (ratio.when_larger == Move::UP);
-    finding.causes = causesOf(ratio.feature, up ? Move::UP : Move::DOWN);
+    finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
     finding.text += (finding.causes.empty() ? std::string(" No fault in the list does this.") :
                                               " Faults that do this: " + namesOf(finding.causes) + ".") +
                     " So do " + ratio.besides + ".";
@@ -104,7 +108,7 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
     return finding;
   }
   judgeRatio({ "Friction", comparison.friction().ratio(), own.friction_ratio, parameters.comparison.friction_tolerance,
-               Feature::RUNNING_TORQUE, Move::UP, "grease at another temperature, another preload, a wrong gain" },
+               Feature::RUNNING_TORQUE, +1.0, "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
   finding.text += " Told at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
                   " to " + rounded(points.back().speed, 2) + " rad/s.";
@@ -130,7 +134,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
       (parameters.sensors.output_eccentricity + parameters.sensors.motor_eccentricity / comparison.ratio()) /
       std::sqrt(2.0) / comparison.torsion().twinAmplitude();
   judgeRatio({ "Torsion", compliance, own.compliance_ratio, parameters.comparison.compliance_tolerance + eccentricity,
-               Feature::STIFFNESS, Move::DOWN, "a load other than told, encoders off their axes" },
+               Feature::STIFFNESS, -1.0, "a load other than told, encoders off their axes" },
              parameters, finding);
   if (!std::isfinite(own.compliance_ratio) && eccentricity > 0.01)
   {
