@@ -34,12 +34,16 @@ namespace fs = std::filesystem;
 constexpr const char* FORMAT = "harmonic_joint_twin response surface 3\n";
 /// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
 /// the friction is added when the surface is read.
-constexpr std::array<const char*, 26> OTHER_KEYS{ "joint.",
+constexpr std::array<const char*, 30> OTHER_KEYS{ "joint.",
                                                   "fault",
                                                   "brake.",
                                                   "solver.",
                                                   "sensors.",
                                                   "health.",
+                                                  "indicators.",
+                                                  "telemetry.",
+                                                  "observer.",
+                                                  "comparison.",
                                                   "life.",
                                                   "input.",
                                                   "publish.",
@@ -98,7 +102,7 @@ Parameters withEqualTeeth(Parameters parameters)
   for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
   {
     pitch->deviation = 0.0;
-    pitch->table = "none";
+    pitch->table = NO_FILE;
   }
   errors.circular_spline_eccentricity = {};
   errors.circular_spline_ellipticity = {};

@@ -81,7 +81,7 @@ TEST(PitchErrors, HaveTheirTotalDeviationAndAmplitudesThatFallWithTheOrder)
   {
     for (const int seed : { 0, 1, 99999 })
     {
-      const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, seed, NO_TABLE }, teeth, "");
+      const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, seed, NO_FILE }, teeth, "");
       EXPECT_NEAR(pitch.maxCoeff() - pitch.minCoeff(), 8e-6, 1e-18);
       EXPECT_NEAR(pitch.sum(), 0.0, 1e-17);
       const double first = std::abs(harmonic(pitch, 1));
@@ -96,11 +96,11 @@ TEST(PitchErrors, HaveTheirTotalDeviationAndAmplitudesThatFallWithTheOrder)
 TEST(PitchErrors, AreTheSameOnEveryPlatform)
 {
   // The first two numbers of mt19937 with seed 1, as published with the generator (mt19937ar).
-  const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, 1, NO_TABLE }, 200, "");
+  const Eigen::VectorXd pitch = pitchDeviations({ 8e-6, 1, NO_FILE }, 200, "");
   EXPECT_NEAR(std::remainder(std::arg(harmonic(pitch, 1)) - TWO_PI * 1791095845.0 / 4294967296.0, TWO_PI), 0.0, 1e-12);
   EXPECT_NEAR(std::remainder(std::arg(harmonic(pitch, 2)) - TWO_PI * 4282876139.0 / 4294967296.0, TWO_PI), 0.0, 1e-12);
-  EXPECT_EQ(pitch, pitchDeviations({ 8e-6, 1, NO_TABLE }, 200, ""));
-  EXPECT_GT((pitch - pitchDeviations({ 8e-6, 2, NO_TABLE }, 200, "")).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_EQ(pitch, pitchDeviations({ 8e-6, 1, NO_FILE }, 200, ""));
+  EXPECT_GT((pitch - pitchDeviations({ 8e-6, 2, NO_FILE }, 200, "")).lpNorm<Eigen::Infinity>(), 1e-6);
 }
 
 TEST(PitchTable, IsTakenAsItIs)
