@@ -95,9 +95,10 @@ recording it takes the origin, which the zeros of the encoders leave open. The r
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
 *What came out otherwise than hoped:* fitted to the halves of the sweep by themselves, the factor is {self.halves[0]:.2f} at
-negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval says. Left are slow waves of the
-transmission error, which load and mounting change; one sweep cannot tell them from torsion. The catalogue's curve lies
-between the two.
+negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval says, which
+is therefore too narrow; identified on one half and judged on the other, it does worse there than the catalogue. Left are slow
+waves of the transmission error, which load and mounting change; one sweep cannot tell them from torsion. The catalogue's curve
+lies between the two.
 """]
 
 

@@ -282,7 +282,7 @@ controller's position error and target current are no inputs: they would tell wh
 All rows, and in brackets those that move faster than 0.01 rad/s and those that rest.
 """, *errors, f"""
 The right column is what no model of this motion can go below: one repeat differs from the next by so much. The second and third
-repeat had been seen in earlier work on this model; they are judged once with the model below, but they are not unseen. The
+repeat are not unseen: they were looked at again and again while this model was worked on. What is in the
 model was chosen on the first repeat alone, cut into {FOLDS} pieces of which each is predicted by the others:
 """, *left_out_table(results), """
 ### Where the error is
