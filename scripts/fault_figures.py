@@ -9,7 +9,7 @@ import h5py
 import matplotlib
 import numpy
 
-from health_runs import JUDGED, RATIO, TOP_SEVERITY, place_of
+from health_runs import JUDGED, RATIO, place_of
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -27,10 +27,6 @@ DUTIES = {
 }
 
 
-def severity(kind):
-    return TOP_SEVERITY.get(kind, 1.0)
-
-
 def plan(duty, classes):
     _, duration, speed, load = DUTIES[duty]
     return "\n".join([
@@ -43,7 +39,7 @@ def plan(duty, classes):
 
 def record(tool, work, duty, kinds):
     """Signals of the healthy run and of each faulty one, by kind."""
-    classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: {severity(kind['kind'])}, "
+    classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: 1.0, "
                f"place: {place_of(kind, JUDGED.tooth)}, onset: 0.0}}"
                for kind in kinds]
     path, out = work / f"figure_{duty}.yaml", work / f"figure_{duty}"
@@ -114,7 +110,7 @@ def draw_all(tool, work, kinds, images):
             name = kind["kind"]
             figure, axis = plt.subplots(figsize=(5.0, 2.9), constrained_layout=True)
             if name in runs:
-                view(axis, runs[name], color="C3", linewidth=1.1, label=f"{name}, severity {severity(name):g}")
+                view(axis, runs[name], color="C3", linewidth=1.1, label=f"{name}, severity 1")
             view(axis, runs["healthy"], color="C0", linewidth=1.1, label="healthy")
             axis.set_xlabel(VIEWS[view][1])
             axis.set_ylabel(VIEWS[view][2])

@@ -17,7 +17,6 @@ COMMISSIONING = (20, 40.0)  # sound runs that make the reference at each point; 
 WINDOWS = 2               # of a faulty run: as many as an alarm takes
 SOUND_WINDOWS = 20        # of a sound run
 SET_IN = 1.5              # windows after which a fault sets in on the way
-TOP_SEVERITY = {"flexspline_crack": 0.9}  # in place of 1: a rim cut right through has no equilibrium to start from
 ONE_TOOTH = {"pitting"}   # at one tooth, though it may be at all
 
 # `degrees` a second at the joint, in the mean; `speed` and `load` as plans have them; `window`: turns and time at most.
@@ -133,9 +132,8 @@ class Bench:
         for group, severities in groups.items():
             classes = []
             for kind in self.kinds:
-                own = [min(severity, TOP_SEVERITY.get(kind["kind"], 1.0)) for severity in severities]
                 if takes_long(kind) == (group == "slow"):
-                    classes += [f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {own}}}, "
+                    classes += [f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {severities}}}, "
                                                       f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
             bags += self.sweep(f"{trial.name}_{group}_{condition.name}_{point.tag}", condition, point, WINDOWS, 1,
                                trial.seed, classes)
@@ -143,7 +141,7 @@ class Bench:
 
     def setting_in(self, condition):
         """Faults that set in on a sound drive, in the check-up: from then on every tooth is solved at every step."""
-        classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: {TOP_SEVERITY.get(kind['kind'], 1.0)}, "
+        classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: 1.0, "
                    f"place: {place_of(kind, JUDGED.tooth)}, onset: {START + SET_IN * window_time(CHECK_UP):.3f}}}"
                    for kind in self.kinds if not takes_long(kind)]
         return self.sweep("setting_in", condition, CHECK_UP, 4, 1, 5, classes)
@@ -165,7 +163,7 @@ class Bench:
             verdict, own = window["assessment"], windows[window["recording"]]
             own.append(Window(len(own) + 1, window["indicators"], window["scores"], window["features"],
                               verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
-        return [Run(point, condition, row["fault_kind"] or "healthy", _severity(row), windows[str(bag)])
+        return [Run(point, condition, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0), windows[str(bag)])
                 for bag, row in bags]
 
     def _indicators(self, bags, options):
@@ -173,7 +171,3 @@ class Bench:
                               capture_output=True, text=True)
         return json.loads(done.stdout)
 
-
-def _severity(row):
-    severity = float(row["fault_severity"] or 0.0)
-    return 1.0 if severity == TOP_SEVERITY.get(row["fault_kind"]) else severity
