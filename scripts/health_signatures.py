@@ -9,12 +9,14 @@ import page_section
 from health_runs import COOL, STEADY_POINTS, TRAINING, TRAINING_POINTS
 
 LEAST = 1.0  # of a window's strongest score, over the threshold: what is weaker says little of its cause
+NOISE = 2.0  # a score within it says nothing
 TABLE_LEAST = 0.1  # shown from this size on
 
 
 def compressed(features):
     """As the assessment takes them; what was not compared is NaN."""
-    return numpy.array([math.nan if score is None else math.asinh(score) for score in features.values()])
+    return numpy.array([math.nan if score is None else math.copysign(math.asinh(max(abs(score) - NOISE, 0.0)), score)
+                        for score in features.values()])
 
 
 def unit(direction):

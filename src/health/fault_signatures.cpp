@@ -12,6 +12,7 @@ namespace hjt
 namespace
 {
 constexpr double SHARPNESS = 20.0;
+constexpr double NOISE = 2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
 
 constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
   "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",
@@ -19,6 +20,12 @@ constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
   "order_2", "order_4",         "circular_spline", "cage",        "ball",     "outer",
   "inner",   "tooth_pass"
 };
+
+/// However large a fault has grown, its direction is nearly the same.
+double compressed(double score) noexcept
+{
+  return std::copysign(std::asinh(std::max(std::abs(score) - NOISE, 0.0)), score);
+}
 
 /// Cosine of the angle between the scores and a signature, over the features compared; 0 if they say nothing.
 double likeness(const FeatureScores& scores, const Signature& signature) noexcept
@@ -30,7 +37,7 @@ double likeness(const FeatureScores& scores, const Signature& signature) noexcep
   {
     if (scores[i].compared)
     {
-      const double score = std::asinh(scores[i].score);
+      const double score = compressed(scores[i].score);
       product += score * signature.direction[i];
       score_square += score * score;
       direction_square += signature.direction[i] * signature.direction[i];

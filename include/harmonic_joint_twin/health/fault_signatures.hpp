@@ -84,8 +84,7 @@ const std::vector<Signature>& faultSignatures() noexcept;
 /// Probabilities of the causes given the scores, NONE left out: 0. All alike if no feature says anything.
 ///
 /// Law:   P(c | s) ~ exp(k max cos(y, d)),  over the signatures d of the cause, of different motions
-/// where  y   asinh of the scores of the features compared, the others left out of both: however large a fault has grown,
-///            its direction is nearly the same
-///        k   sharpness, set on the runs that the signatures are fitted to
+/// where  y   asinh of what the scores of the features compared have beyond the noise, the others left out of both
+///        k   sharpness, assumed: P ranks the causes, it is no frequency
 std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept;
 }  // namespace hjt
