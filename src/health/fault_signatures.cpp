@@ -12,7 +12,8 @@ namespace hjt
 namespace
 {
 constexpr double SHARPNESS = 20.0;
-constexpr double NOISE = 2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
+constexpr double NOISE =
+    2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
 
 constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
   "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",

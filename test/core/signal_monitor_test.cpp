@@ -418,7 +418,7 @@ TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
 
 TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
 {
-  constexpr double SIZE = 8.0;
+  constexpr double SIZE = 40.0;  // far above the noise
   for (const Signature& signature : faultSignatures())
   {
     FeatureScores scores{};
@@ -432,6 +432,7 @@ TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
     EXPECT_STREQ(causeName(static_cast<Cause>(best)), causeName(signature.cause));
   }
 }
+
 /// The twin held at 150 rad/s under a load that swings; its indicators of the second window of 30 turns.
 SignalIndicators twinIndicators(std::vector<std::string> edits)
 {

@@ -32,6 +32,14 @@ struct MotionCount
   double most_delay{};      ///< [s]
 };
 
+/// What was found, and what stood in the way.
+struct MotionFindings : MotionCount
+{
+  std::uint64_t refused{};  ///< rows repeated or out of order
+  std::uint64_t gaps{};     ///< longer than MotionSmoother::LONGEST_GAP
+  bool has_load{};          ///< the recording gives the load
+};
+
 bool isCsv(const MotionSource& source);
 
 /// True if the recording gives the load; else it is zero in the rows. @throws InputError if the file cannot be read.

@@ -19,9 +19,7 @@ struct ComparisonRecord
   std::string recording;
   std::string joint;
   std::string made_with;  ///< name and version of the program
-  MotionCount count;
-  std::uint64_t refused{};
-  std::uint64_t gaps{};
+  MotionFindings found;
   RecordingContents contents;
   Thinned<TwinState> twin_states;
   Verdict verdict;

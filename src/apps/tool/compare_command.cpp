@@ -103,7 +103,7 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
   }
   std::cout << '\n';
   printValues({ { "rows", std::to_string(comparison.reach().rows), "" },
-                { "duration", shortNumber(record.count.duration), "s" },
+                { "duration", shortNumber(record.found.duration), "s" },
                 { "current, rms", shortNumber(comparison.currentRms()), "A" },
                 { "measured less predicted current, rms", shortNumber(comparison.residualRms()), "A" } });
 }
@@ -139,9 +139,7 @@ int compare(const CompareOptions& options)
   record.recording = options.recording;
   record.joint = source.joint;
   record.made_with = "joint_twin " HJT_VERSION;
-  record.count = found;
-  record.refused = found.refused;
-  record.gaps = found.gaps;
+  record.found = found;
   record.contents = readContents(source, twin_topic, found, comparison.reach().motor_rows, found.has_load);
   record.twin_states = readTwinStates(source, twin_topic, found.start);
   record.verdict = judge(comparison, parameters, sound.own, found.has_load, found.duration);

@@ -285,7 +285,7 @@ int identifyJoint(const IdentifyOptions& options)
   }
   std::vector<MotionSample> samples;
   const bool load_recorded = recordsLoad(motionSource(options));
-  const MotionCount count =
+  const MotionFindings count =
       visitMotion(options, MotionDriven(parameters), [&](const MotionSample& sample) { samples.push_back(sample); });
   if (interruptSignal() != 0)
   {

@@ -24,14 +24,6 @@ void addMotionOptions(CLI::App& command, MotionOptions& options);
 /// The recording and joint they name.
 MotionSource motionSource(const MotionOptions& options);
 
-/// What was found, and what stood in the way.
-struct MotionFindings : MotionCount
-{
-  std::uint64_t refused{};  ///< rows repeated or out of order
-  std::uint64_t gaps{};     ///< longer than MotionSmoother::LONGEST_GAP
-  bool has_load{};          ///< the recording gives the load
-};
-
 /// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.
 /// Where the recording gives no load, it is what the joint is configured to carry.
 /// @throws InputError as readMotion.
