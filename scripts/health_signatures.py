@@ -27,7 +27,7 @@ def fit(runs):
     """Mean direction of the runs that raise an alarm, by cause and motion."""
     directions = collections.defaultdict(list)
     for run in runs:
-        if all(window.largest >= LEAST for window in run.windows):
+        if run.windows and all(window.largest >= LEAST for window in run.windows):
             motion = "steady" if run.point in STEADY_POINTS else "swinging"
             directions[run.kind, motion] += [unit(compressed(window.features)) for window in run.windows]
     return {key: unit(numpy.ma.masked_invalid(own).mean(axis=0).filled(0.0)) for key, own in directions.items()}

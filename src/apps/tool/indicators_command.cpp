@@ -240,7 +240,7 @@ void printSummary(const std::vector<WindowResult>& windows)
   printValues(lines);
 }
 
-/// All windows of a recording, less those of the model if there is one. @throws InputError if there are none.
+/// All windows of a recording, less those of the model if there is one.
 std::vector<SignalIndicators> readRecording(const std::string& path, const IndicatorsOptions& options,
                                             const Parameters& parameters)
 {
@@ -265,12 +265,6 @@ std::vector<SignalIndicators> readRecording(const std::string& path, const Indic
   if (refused > 0)
   {
     std::cerr << "joint_twin: " << refused << " samples without an angle, a torque or progress in time passed over\n";
-  }
-  if (measured.empty())
-  {
-    throw InputError(path + " is too short for one window (indicators.window_turns = " +
-                     shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
-                     shortNumber(parameters.indicators.window_time) + " s)");
   }
   return measured;
 }
@@ -300,11 +294,22 @@ int run(IndicatorsOptions options)
     {
       assessor.reset();  // each is judged for itself
     }
-    for (const SignalIndicators& indicators : readRecording(recording, options, parameters))
+    const std::vector<SignalIndicators> measured = readRecording(recording, options, parameters);
+    if (measured.empty())
+    {
+      std::cerr << "joint_twin: " << recording << " holds no whole window of steady motion\n";
+    }
+    for (const SignalIndicators& indicators : measured)
     {
       const Assessment assessment = assessor.take(indicators);
       windows.push_back({ recording, indicators, assessor.deviations(), assessment });
     }
+  }
+  if (windows.empty())
+  {
+    throw InputError(options.recordings.front() + " is too short for one window (indicators.window_turns = " +
+                     shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
+                     shortNumber(parameters.indicators.window_time) + " s)");
   }
   if (!options.out.empty())
   {
