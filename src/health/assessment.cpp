@@ -6,6 +6,20 @@
 
 namespace hjt
 {
+const char* levelName(HealthLevel level) noexcept
+{
+  switch (level)
+  {
+    case HealthLevel::WARN:
+      return "WARN";
+    case HealthLevel::ERROR:
+      return "ERROR";
+    case HealthLevel::OK:
+      break;
+  }
+  return "OK";
+}
+
 Assessor::Assessor(const Parameters& parameters)
   : confirm_windows_(parameters.indicators.confirm_windows)
   , error_factor_(parameters.indicators.error_factor)

@@ -203,14 +203,8 @@ void FrictionFit::solve()
     cost->SetNumResiduals(1);
     problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 100;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-
-  const Regression found = regress(problem, asked);
+  constexpr int MOST_ITERATIONS = 100;
+  const Regression found = hjt::solve(problem, asked, MOST_ITERATIONS);
   for (std::size_t k = 0; k < asked.size(); ++k)
   {
     const std::ptrdiff_t i = asked[k] - values_.data();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <ceres/crs_matrix.h>
+#include <ceres/solver.h>
 #include <Eigen/Cholesky>
 
 namespace hjt
@@ -29,8 +30,15 @@ double correlationRows(const Eigen::VectorXd& residuals)
   return length;
 }
 
-Regression regress(ceres::Problem& problem, const std::vector<double*>& parameters)
+Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations)
 {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = most_iterations;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+
   ceres::Problem::EvaluateOptions evaluate;
   evaluate.apply_loss_function = false;
   evaluate.parameter_blocks = parameters;

@@ -155,13 +155,8 @@ void RippleFit::solve(const std::vector<RippleRow>& rows)
     cost->SetNumResiduals(1);
     problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 60;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  const Regression found = regress(problem, asked);
+  constexpr int MOST_ITERATIONS = 60;
+  const Regression found = hjt::solve(problem, asked, MOST_ITERATIONS);
   for (std::size_t k = 0; k < asked.size(); ++k)
   {
     half_width_[asked[k] - values_.data()] = found.half_width[static_cast<Eigen::Index>(k)];

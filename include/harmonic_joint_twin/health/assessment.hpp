@@ -17,6 +17,8 @@ enum class HealthLevel : std::uint8_t
   ERROR = 2
 };
 
+const char* levelName(HealthLevel level) noexcept;  ///< "WARN"
+
 enum class AssessmentState : std::uint8_t
 {
   WAITING = 0,      ///< no window has been completed

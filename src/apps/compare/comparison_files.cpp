@@ -212,20 +212,6 @@ SoundJoint readSoundJoint(const std::string& directory)
   return sound;
 }
 
-const char* levelName(HealthLevel level)
-{
-  switch (level)
-  {
-    case HealthLevel::WARN:
-      return "WARN";
-    case HealthLevel::ERROR:
-      return "ERROR";
-    case HealthLevel::OK:
-      break;
-  }
-  return "OK";
-}
-
 void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record)
 {

@@ -40,6 +40,4 @@ struct SoundJoint
 
 /// @throws InputError if the directory holds no comparison.
 SoundJoint readSoundJoint(const std::string& directory);
-
-const char* levelName(HealthLevel level);
 }  // namespace hjt

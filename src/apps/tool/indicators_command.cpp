@@ -55,20 +55,6 @@ struct WindowResult
   Assessment assessment;
 };
 
-const char* levelName(HealthLevel level)
-{
-  switch (level)
-  {
-    case HealthLevel::WARN:
-      return "WARN";
-    case HealthLevel::ERROR:
-      return "ERROR";
-    case HealthLevel::OK:
-      break;
-  }
-  return "OK";
-}
-
 const char* stateName(AssessmentState state)
 {
   switch (state)
