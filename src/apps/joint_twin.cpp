@@ -2,8 +2,9 @@
 #include <exception>
 #include <iostream>
 
-#include "tool/commands.hpp"
-#include "tool/interrupt.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/tool/commands.hpp"
 
 int main(int argc, char** argv)
 {

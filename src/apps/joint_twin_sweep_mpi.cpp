@@ -5,9 +5,10 @@
 #include <exception>
 #include <iostream>
 
-#include "tool/commands.hpp"
-#include "tool/interrupt.hpp"
-#include "tool/sweep_command.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/sweep/sweep_runner.hpp"
+#include "apps/tool/commands.hpp"
 
 namespace
 {

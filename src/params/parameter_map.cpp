@@ -8,11 +8,11 @@
 #include <optional>
 #include <set>
 
-#include "harmonic_joint_twin/params/choices.hpp"
-#include "harmonic_joint_twin/params/cross_checks.hpp"
-#include "harmonic_joint_twin/params/field_table.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/choices.hpp"
+#include "params/cross_checks.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
+#include "ros_io/bag_recorder.hpp"
 
 #include <limits>
 
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

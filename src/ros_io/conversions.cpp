@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "ros_io/conversions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/output_publishers.hpp"
+#include "ros_io/output_publishers.hpp"
 
 #include <chrono>
 #include <limits>
 #include <sstream>
 
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/joint_dynamics.hpp"
+#include "solver/joint_dynamics.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "solver/output_balance.hpp"
 
 namespace hjt
 {

@@ -7,13 +7,14 @@
 #include <optional>
 #include <utility>
 
-#include "harmonic_joint_twin/health/health_monitor.hpp"
-#include "harmonic_joint_twin/health/lobe_loads.hpp"
-#include "harmonic_joint_twin/health/signal_monitor.hpp"
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/solver/joint_stepper.hpp"
-#include "harmonic_joint_twin/twin/surface_worker.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "health/health_monitor.hpp"
+#include "health/signal_monitor.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "model/lobe_loads.hpp"
+#include "sensors/joint_sensors.hpp"
+#include "solver/joint_stepper.hpp"
+#include "surface/surface_worker.hpp"
 
 namespace hjt
 {

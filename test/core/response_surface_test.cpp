@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/response_surface.hpp"
+#include "solver/response_surface.hpp"
 
 #include <array>
 #include <atomic>
@@ -18,16 +18,16 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/model/joint_model.hpp"
-#include "harmonic_joint_twin/solver/joint_dynamics.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
-#include "harmonic_joint_twin/twin/static_solver.hpp"
-#include "harmonic_joint_twin/twin/surface_cache.hpp"
-#include "harmonic_joint_twin/twin/surface_ring.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "model/joint_model.hpp"
+#include "solver/joint_dynamics.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+#include "surface/surface_cache.hpp"
+#include "surface/surface_ring.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 

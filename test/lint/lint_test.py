@@ -20,6 +20,7 @@ import message_comments
 import project
 import readme_tables
 import spdx
+import type_names
 
 
 class Tree(unittest.TestCase):
@@ -52,27 +53,35 @@ class Layering(Tree):
     def source(self, folder, header):
         self.write(f"src/{folder}/one.cpp", f"#include <vector>\n#include {header}\n")
 
-    def test_left_is_allowed(self):
+    def test_what_a_folder_sees_is_allowed(self):
         for folder, header in [("gear", '"harmonic_joint_twin/params/parameters.hpp"'), ("gear", "<Eigen/Core>"),
-                               ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'), ("ros_io", "<ros/ros.h>"),
-                               ("ros_io", '"harmonic_joint_twin/Health.h"'), ("apps", "<ros/ros.h>")]:
+                               ("gear", '"base/number_text.hpp"'), ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'),
+                               ("ros_io", "<ros/ros.h>"), ("ros_io", '"harmonic_joint_twin/Health.h"'),
+                               ("identification", "<ceres/ceres.h>"), ("apps/tool", '"apps/common/progress.hpp"')]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_clean(layering.check)
 
-    def test_right_and_ros_are_not(self):
-        for folder, header in [("params", '"harmonic_joint_twin/gear/angle.hpp"'), ("twin", "<ros/time.h>"),
-                               ("sensors", '"harmonic_joint_twin/health/health.hpp"'),
-                               ("twin", '"harmonic_joint_twin/Health.h"'), ("model", "<sensor_msgs/JointState.h>"),
-                               ("solver", '"newton.hpp"'), ("solver", '"harmonic_joint_twin/stray/a.hpp"')]:
+    def test_all_else_is_not(self):
+        for folder, header in [("params", '"gear/angle.hpp"'), ("twin", "<ros/time.h>"),
+                               ("sensors", '"health/health_monitor.hpp"'), ("ros_io", '"studies/trial.hpp"'),
+                               ("apps/common", '"apps/tool/commands.hpp"'), ("twin", '"harmonic_joint_twin/Health.h"'),
+                               ("model", "<sensor_msgs/JointState.h>"), ("solver", '"newton.hpp"'),
+                               ("solver", '"stray/a.hpp"'), ("twin", "<ceres/ceres.h>")]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_fault(layering.check, f"src/{folder}/one.cpp:2", header)
                 os.remove(os.path.join(self.root, f"src/{folder}/one.cpp"))
 
-    def test_headers_are_read_too(self):
+    def test_tests_are_read_too(self):
+        self.write("test/ros/one.cpp", '#include "apps/tool/commands.hpp"\n')
+        self.assert_fault(layering.check, "test/ros/one.cpp:1")
+
+    def test_public_headers_stand_without_the_others(self):
         self.write("include/harmonic_joint_twin/gear/angle.hpp", "#include <ros/ros.h>\n")
         self.assert_fault(layering.check, "angle.hpp:1")
+        self.write("include/harmonic_joint_twin/gear/angle.hpp", '#include "gear/ellipse.hpp"\n')
+        self.assert_fault(layering.check, "angle.hpp:1", "public")
 
     def test_unknown_folder(self):
         self.write("src/misc/one.cpp", "")
@@ -80,6 +89,19 @@ class Layering(Tree):
 
     def test_nothing_to_check(self):
         self.assert_fault(layering.check, "no sources")
+
+
+class TypeNames(Tree):
+    def test_two_types_of_one_name(self):
+        self.write("include/harmonic_joint_twin/twin/one.hpp", "struct Forces\n{\n};\n")
+        self.write("src/studies/two.hpp", "class Forces\n{\n};\n")
+        self.assert_fault(type_names.check, "src/studies/two.hpp:1", "one.hpp:1")
+
+    def test_declarations_members_and_local_types_may_share_a_name(self):
+        self.write("src/one.hpp", "struct Forces\n{\n};\n")
+        self.write("src/two.cpp", "struct Forces;\nstruct Forces::Part\n{\n};\n"
+                                  "namespace\n{\nstruct Forces\n{\n};\n}  // namespace\n")
+        self.assert_clean(type_names.check)
 
 
 class Spdx(Tree):

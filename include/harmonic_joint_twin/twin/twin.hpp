@@ -10,10 +10,10 @@
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/model/faults/fault_list.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "harmonic_joint_twin/sensors/joint_sensors.hpp"
+#include "harmonic_joint_twin/sensors/encoder_readings.hpp"
+#include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "harmonic_joint_twin/twin/fault_schedule.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
-#include "harmonic_joint_twin/twin/surface_cache.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "comparison_files.hpp"
+#include "apps/compare/comparison_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../tool/output_file.hpp"
+#include "apps/common/output_file.hpp"
 
-#include "harmonic_joint_twin/health/baseline_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/friction_map.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
-#include "harmonic_joint_twin/twin/torsion_loop.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "harmonic_joint_twin/statics/torsion_loop.hpp"
+#include "health/baseline_file.hpp"
+#include "tracking/friction_map.hpp"
 
 namespace hjt
 {

@@ -5,15 +5,6 @@
 
 namespace hjt
 {
-/// The process' answer to the shell.
-enum ExitCode : int
-{
-  EXIT_DONE = 0,
-  EXIT_FAILED = 1,
-  EXIT_USAGE = 2,
-  EXIT_BY_SIGNAL = 128  ///< plus the signal's number
-};
-
 // Each adds one subcommand; when it is chosen, parsing runs it and leaves its answer in `exit_code`.
 void addInsertCommand(CLI::App& app, int& exit_code);
 void addStiffnessCommand(CLI::App& app, int& exit_code);

@@ -14,19 +14,20 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../compare/comparison_files.hpp"
-#include "../compare/recording_comparison.hpp"
-#include "../compare/verdict.hpp"
-#include "commands.hpp"
-#include "interrupt.hpp"
-#include "motion_options.hpp"
-#include "output_file.hpp"
-#include "text_table.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/motion_options.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/compare/comparison_files.hpp"
+#include "apps/compare/recording_comparison.hpp"
+#include "apps/compare/verdict.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/conversions.hpp"
+#include "ros_io/topics.hpp"
 
 extern char** environ;
 

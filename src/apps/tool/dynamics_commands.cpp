@@ -7,16 +7,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/quasi_static_check.hpp"
-#include "harmonic_joint_twin/twin/ring_transient.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "studies/quasi_static_check.hpp"
+#include "studies/ring_transient.hpp"
 
 namespace hjt
 {

@@ -4,8 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/tool/commands.hpp"
 
 namespace hjt
 {

@@ -11,15 +11,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "interrupt.hpp"
-#include "motion_options.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "surface_source.hpp"
-#include "text_table.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/motion_options.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/surface_source.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/twin/companion.hpp"
+#include "tracking/companion.hpp"
 
 namespace hjt
 {

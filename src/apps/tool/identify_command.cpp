@@ -9,16 +9,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "interrupt.hpp"
-#include "motion_options.hpp"
-#include "output_file.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/motion_options.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/identification.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "identification/identification.hpp"
 
 namespace hjt
 {

@@ -10,21 +10,22 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "interrupt.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "run_summary.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
 #include <sensor_msgs/JointState.h>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/params/number_table.hpp"
-#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "base/number_table.hpp"
+#include "gear/ratio.hpp"
+#include "ros_io/bag_writer.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

@@ -10,21 +10,22 @@
 #include <rosbag/view.h>
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "interrupt.hpp"
-#include "output_file.hpp"
-#include "recorded_signals.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
+#include "apps/tool/recorded_signals.hpp"
 
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/health/baseline_file.hpp"
-#include "harmonic_joint_twin/health/signal_monitor.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "health/baseline_file.hpp"
+#include "health/signal_monitor.hpp"
+#include "ros_io/conversions.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

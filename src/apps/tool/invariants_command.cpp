@@ -6,17 +6,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "not_converged.hpp"
-#include "progress.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/twin/energy_ledger.hpp"
-#include "harmonic_joint_twin/twin/small_wave.hpp"
-#include "harmonic_joint_twin/twin/state_invariants.hpp"
-#include "harmonic_joint_twin/twin/turned_machine.hpp"
+#include "studies/energy_ledger.hpp"
+#include "studies/small_wave.hpp"
+#include "studies/state_invariants.hpp"
+#include "studies/turned_machine.hpp"
 
 namespace hjt
 {

@@ -8,15 +8,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "text_table.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/drive_ageing.hpp"
-#include "harmonic_joint_twin/twin/life_trials.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "life/drive_ageing.hpp"
+#include "studies/life_trials.hpp"
 
 namespace hjt
 {

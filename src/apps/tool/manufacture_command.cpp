@@ -8,12 +8,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "output_file.hpp"
-#include "text_table.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/gear/manufacture_errors.hpp"
+#include "gear/manufacture_errors.hpp"
 
 namespace hjt
 {

@@ -4,11 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/params/choices.hpp"
-#include "harmonic_joint_twin/params/field_table.hpp"
+#include "params/choices.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {

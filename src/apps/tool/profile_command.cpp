@@ -6,12 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "text_table.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/gear/flank_shapes.hpp"
-#include "harmonic_joint_twin/gear/tooth_profile.hpp"
+#include "gear/flank_shapes.hpp"
+#include "gear/tooth_profile.hpp"
 
 namespace hjt
 {

@@ -5,13 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "progress.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/twin/ratchet_analysis.hpp"
+#include "studies/ratchet_analysis.hpp"
 
 namespace hjt
 {

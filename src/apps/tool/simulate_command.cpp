@@ -5,18 +5,18 @@
 #include <optional>
 #include <string>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "interrupt.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "run_summary.hpp"
-#include "surface_source.hpp"
-#include "torque_profile.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/common/surface_source.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
+#include "apps/tool/torque_profile.hpp"
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_recorder.hpp"
 
 namespace hjt
 {

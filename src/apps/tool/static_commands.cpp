@@ -6,15 +6,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "not_converged.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "text_table.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
+#include "apps/common/output_file.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
 
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
 
 namespace hjt
 {

@@ -6,18 +6,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "configuration.hpp"
-#include "interrupt.hpp"
-#include "progress.hpp"
-#include "run_summary.hpp"
-#include "surface_source.hpp"
-#include "text_table.hpp"
-#include "torque_profile.hpp"
-#include "validators.hpp"
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/common/surface_source.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/common/validators.hpp"
+#include "apps/tool/commands.hpp"
+#include "apps/tool/torque_profile.hpp"
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/twin/trial.hpp"
+#include "ros_io/time.hpp"
+#include "studies/trial.hpp"
 
 namespace hjt
 {
