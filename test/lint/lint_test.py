@@ -4,10 +4,12 @@ import contextlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import catkin_lint
 import clang_tidy
@@ -212,13 +214,27 @@ class Format(Tree):
 
 
 class ClangTidy(Tree):
-    def problems(self, content):
+    def setUp(self):
+        super().setUp()
+        self.root = os.path.realpath(self.root)
+        self.said = io.StringIO()
+        environment = unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME=os.path.join(self.root, "cache"))
+        environment.start()
+        self.addCleanup(environment.stop)
+        shutil.copy(os.path.join(project.ROOT, ".clang-tidy"), self.root)
+
+    def problems(self, content, options=()):
         path = self.write("src/one.cpp", content)
-        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", "-c", path]}
+        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", *options, "-c", path]}
         self.write("build/compile_commands.json", json.dumps([entry]))
-        os.symlink(os.path.join(project.ROOT, ".clang-tidy"), os.path.join(self.root, ".clang-tidy"))
-        with contextlib.redirect_stdout(io.StringIO()):
-            return clang_tidy.check(os.path.join(self.root, "build"), os.path.realpath(self.root))
+        self.said = io.StringIO()
+        with contextlib.redirect_stdout(self.said):
+            return clang_tidy.check(os.path.join(self.root, "build"), self.root)
+
+    def assert_checked(self, checked, *arguments):
+        """The file is clean; `checked`: the tool had to run to find that out."""
+        self.assertEqual(self.problems(*arguments), [])
+        self.assertEqual(self.said.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
 
     def test_house_names(self):
         self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
@@ -228,8 +244,35 @@ class ClangTidy(Tree):
         for content in ["class rim_tension\n{\n};\n", "class A\n{\n  int value = 0;\n};\n", "int Read();\n",
                         "constexpr int kTeeth = 200;\n"]:
             with self.subTest(content=content):
-                self.setUp()
                 self.assertIn("naming", "".join(self.problems(content)))
+
+    def test_clean_file_is_checked_once(self):
+        content = '#include "one.hpp"\nint readValue();\n'
+        self.write("src/one.hpp", "constexpr int TEETH = 200;\n")
+        self.assert_checked(True, content)
+        self.assert_checked(False, content)
+        changes = {
+            "header": lambda: self.write("src/one.hpp", "constexpr int TEETH = 160;  // NOLINT\n"),
+            "rules": lambda: self.write(".clang-tidy", project.text(self.root, ".clang-tidy") + "# another\n"),
+        }
+        for name, change in changes.items():
+            with self.subTest(changed=name):
+                change()
+                self.assert_checked(True, content)
+                self.assert_checked(False, content)
+        self.assert_checked(True, content + "// longer\n")
+        self.assert_checked(True, content, ["-DANOTHER=1"])
+
+    def test_finding_is_never_remembered(self):
+        for _ in range(2):
+            self.assertIn("naming", "".join(self.problems("int Read();\n")))
+        self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
+
+    def test_precompiled_header_hides_nothing(self):
+        prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
+        options = ["-Winvalid-pch", "-include", prefix]
+        self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
+        self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
 
 
 class CatkinLint(Tree):
