@@ -12,6 +12,7 @@
 #include "health/signal_monitor.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "model/lobe_loads.hpp"
+#include "sensors/joint_sensors.hpp"
 #include "solver/joint_stepper.hpp"
 #include "surface/surface_worker.hpp"
 

@@ -13,6 +13,7 @@
 #include "apps/common/text_table.hpp"
 #include "apps/sweep/run_file.hpp"
 #include "apps/sweep/sweep.hpp"
+#include "surface/surface_cache.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 
