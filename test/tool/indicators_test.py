@@ -19,7 +19,8 @@ def recording(line_after=None, seconds=30.0, rate=500.0):
             error += 4.0 * math.cos(10.3207 * motor)
         # A little of what is not in any model, so that healthy windows differ.
         error += 0.5 * math.sin(row * row * 0.37)
-        lines.append(f"{time:.6f},{motor:.9f},{motor / 101.0 - ARCSEC * error:.12f},{2.0 + 0.01 * math.cos(row * 1.3):.5f}")
+        torque = 2.0 + 0.01 * math.cos(row * 1.3)
+        lines.append(f"{time:.6f},{motor:.9f},{motor / 101.0 - ARCSEC * error:.12f},{torque:.5f}")
     return "\n".join(lines) + "\n"
 
 

@@ -78,8 +78,10 @@ class Replay(tool.ToolTest):
         self.assertEqual(tool.read_bytes(self.path("out.bag")), tool.read_bytes(self.path("again.bag")))
 
     def test_shipped_files_of_a_recorded_load_do_not_degrade_the_solver(self):
-        # recorded_load.yaml leaves little inertia at the output; the step must resolve its swing on the stiffest slope too.
-        for joint, name in [("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"), ("elbow", "elbow_joint")]:
+        # recorded_load.yaml leaves little inertia at the output; the step must resolve its swing on the stiffest slope
+        # too.
+        for joint, name in [("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"),
+                            ("elbow", "elbow_joint")]:
             for load in (5.0, 140.0):
                 with self.subTest(joint=joint, load=load):
                     tool.write_recording(self.path("in.bag"), joint=name, load=load)
