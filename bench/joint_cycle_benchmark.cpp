@@ -15,9 +15,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"

@@ -5,10 +5,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/health/health_monitor.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/health_monitor.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt
@@ -203,7 +203,7 @@ BENCHMARK(encoders);
 void healthReport(benchmark::State& state)
 {
   Twin twin = runningTwin();
-  if (!twin.health().kinematic_error_valid)
+  if (!twin.health().motion.kinematic_error.valid)
   {
     state.SkipWithError("the report is not complete");
   }

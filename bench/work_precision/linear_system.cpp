@@ -5,7 +5,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "harmonic_joint_twin/model/tangent_entries.hpp"
+#include "studies/tangent_entries.hpp"
 
 namespace hjt
 {

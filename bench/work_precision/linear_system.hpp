@@ -8,8 +8,8 @@
 #include <klu.h>
 #include <Eigen/Core>
 
-#include "harmonic_joint_twin/model/dynamic_ring.hpp"
-#include "harmonic_joint_twin/solver/bordered_ring_solver.hpp"
+#include "studies/bordered_ring_solver.hpp"
+#include "studies/dynamic_ring.hpp"
 
 namespace hjt
 {

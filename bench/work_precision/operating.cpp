@@ -17,7 +17,7 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
 #include "bench/work_precision/follow.hpp"
-#include "harmonic_joint_twin/solver/leapfrog.hpp"
+#include "solver/leapfrog.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/work_precision/solvers.hpp"
-#include "harmonic_joint_twin/model/joint_model.hpp"
+#include "model/joint_model.hpp"
 
 namespace hjt
 {

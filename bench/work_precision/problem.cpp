@@ -8,10 +8,10 @@
 
 #include <time.h>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/solver/output_balance.hpp"
-#include "harmonic_joint_twin/twin/static_solver.hpp"
-#include "harmonic_joint_twin/twin/travelling_ring.hpp"
+#include "gear/ratio.hpp"
+#include "solver/output_balance.hpp"
+#include "statics/static_solver.hpp"
+#include "studies/travelling_ring.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "harmonic_joint_twin/model/dynamic_ring.hpp"
-#include "harmonic_joint_twin/solver/ring_stepper.hpp"
+#include "studies/dynamic_ring.hpp"
+#include "studies/ring_stepper.hpp"
 
 namespace hjt
 {

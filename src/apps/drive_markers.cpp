@@ -6,10 +6,10 @@
 
 #include <ros/ros.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "harmonic_joint_twin/ros_io/drive_markers.hpp"
-#include "harmonic_joint_twin/ros_io/parameter_server.hpp"
+#include "ros_io/drive_markers.hpp"
+#include "ros_io/parameter_server.hpp"
 
 namespace
 {

@@ -3,11 +3,11 @@
 
 #include <ros/ros.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "harmonic_joint_twin/ros_io/companion_node.hpp"
-#include "harmonic_joint_twin/ros_io/parameter_server.hpp"
-#include "harmonic_joint_twin/ros_io/twin_node.hpp"
+#include "ros_io/companion_node.hpp"
+#include "ros_io/parameter_server.hpp"
+#include "ros_io/twin_node.hpp"
 
 namespace
 {

@@ -11,9 +11,9 @@
 #include <topic_tools/shape_shifter.h>
 #include <CLI/CLI.hpp>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
-#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_inputs.hpp"
+#include "ros_io/bag_writer.hpp"
 
 namespace
 {

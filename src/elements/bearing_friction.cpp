@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/bearing_friction.hpp"
+#include "elements/bearing_friction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

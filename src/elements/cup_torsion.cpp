@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/cup_torsion.hpp"
+#include "elements/cup_torsion.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "gear/angle.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/motor.hpp"
+#include "elements/motor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/ring_damping.hpp"
+#include "elements/ring_damping.hpp"
 
-#include "harmonic_joint_twin/elements/contact_ramp.hpp"
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "elements/contact_ramp.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

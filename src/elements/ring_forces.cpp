@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/ring_forces.hpp"
+#include "elements/ring_forces.hpp"
 
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

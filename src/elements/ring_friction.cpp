@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/ring_friction.hpp"
+#include "elements/ring_friction.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

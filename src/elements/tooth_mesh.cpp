@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/tooth_mesh.hpp"
+#include "elements/tooth_mesh.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/elements/contact_ramp.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "elements/contact_ramp.hpp"
+#include "gear/angle.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

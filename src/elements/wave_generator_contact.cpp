@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/wave_generator_contact.hpp"
+#include "elements/wave_generator_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/elements/contact_ramp.hpp"
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "elements/contact_ramp.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/gear/flank_shapes.hpp"
+#include "gear/flank_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

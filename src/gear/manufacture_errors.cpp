@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/gear/manufacture_errors.hpp"
+#include "gear/manufacture_errors.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <random>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/number_table.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/number_table.hpp"
+#include "base/number_text.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

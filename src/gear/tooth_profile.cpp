@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/gear/tooth_profile.hpp"
+#include "gear/tooth_profile.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "harmonic_joint_twin/gear/flank_shapes.hpp"
+#include "gear/flank_shapes.hpp"
 
 namespace hjt
 {

@@ -6,8 +6,8 @@
 
 #include <boost/math/distributions/normal.hpp>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

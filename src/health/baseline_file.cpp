@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/baseline_file.hpp"
+#include "health/baseline_file.hpp"
 
 #include <cmath>
 #include <fstream>
 
 #include <yaml-cpp/yaml.h>
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "harmonic_joint_twin/health/fitted_signatures.hpp"
+#include "health/fitted_signatures.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/friction_estimate.hpp"
+#include "health/friction_estimate.hpp"
 
 #include <cmath>
 

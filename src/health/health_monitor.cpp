@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/health_monitor.hpp"
+#include "health/health_monitor.hpp"
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/order_tracker.hpp"
+#include "health/order_tracker.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

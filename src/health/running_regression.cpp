@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/running_regression.hpp"
+#include "health/running_regression.hpp"
 
 #include <algorithm>
 #include <cmath>

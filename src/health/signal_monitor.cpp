@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/signal_monitor.hpp"
+#include "health/signal_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/stiffness_estimate.hpp"
+#include "health/stiffness_estimate.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/torsion_loop_estimate.hpp"
+#include "health/torsion_loop_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>

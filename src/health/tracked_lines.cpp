@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

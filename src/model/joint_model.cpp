@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/model/joint_model.hpp"
+#include "model/joint_model.hpp"
 
 namespace hjt
 {

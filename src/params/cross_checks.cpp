@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/params/cross_checks.hpp"
+#include "params/cross_checks.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/params/number_text.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {

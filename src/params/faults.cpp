@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt

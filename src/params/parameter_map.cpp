@@ -4,39 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 
-#include "harmonic_joint_twin/params/choices.hpp"
-#include "harmonic_joint_twin/params/cross_checks.hpp"
-#include "harmonic_joint_twin/params/field_table.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/edit_distance.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/choices.hpp"
+#include "params/cross_checks.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Single edits (insert, delete, replace) between two texts (Levenshtein).
-std::size_t editDistance(const std::string& from, const std::string& to)
-{
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{ 0 });
-  for (std::size_t i = 1; i <= from.size(); ++i)
-  {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j)
-    {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({ replaced, row[j] + 1, row[j - 1] + 1 });
-    }
-  }
-  return row.back();
-}
-
 std::string withoutSection(const std::string& key)
 {
   return key.substr(key.find('.') + 1);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <sstream>
 
-#include "harmonic_joint_twin/params/choices.hpp"
-#include "harmonic_joint_twin/params/field_table.hpp"
-#include "harmonic_joint_twin/params/number_text.hpp"
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "params/choices.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {

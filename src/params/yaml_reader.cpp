@@ -8,8 +8,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/bag_file.hpp"
+#include "ros_io/bag_file.hpp"
 
 #include <map>
 
 #include <rosbag/view.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/bag_inputs.hpp"
+#include "ros_io/bag_inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <rosbag/view.h>
 #include <std_msgs/Float64.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

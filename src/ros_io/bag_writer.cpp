@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/bag_writer.hpp"
+#include "ros_io/bag_writer.hpp"
 
 #include <filesystem>
 #include <utility>
 
 #include <rosbag/exceptions.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

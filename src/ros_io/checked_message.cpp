@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/checked_message.hpp"
+#include "ros_io/checked_message.hpp"
 
 #include <cstring>
 #include <exception>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/companion_node.hpp"
+#include "ros_io/companion_node.hpp"
 
 #include <cmath>
 
 #include <ros/console.h>
 #include <ros/transport_hints.h>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "gear/ratio.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {
@@ -202,7 +202,7 @@ void CompanionNode::look()
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts, now);
   recent_failures_.update(counters.solver_failures, now);
-  const std::array<Verdict, 3> verdicts{ judgeTelemetry(), judgeComparison(), judgeHealth() };
+  const std::array<DiagnosticVerdict, 3> verdicts{ judgeTelemetry(), judgeComparison(), judgeHealth() };
   bool changed = false;
   for (std::size_t task = 0; task < verdicts.size(); ++task)
   {
@@ -221,7 +221,7 @@ bool CompanionNode::hasStopped() const
   return (ros::Time::now() - last_received_).toSec() > STOPPED_AFTER;
 }
 
-Verdict CompanionNode::judgeTelemetry() const
+DiagnosticVerdict CompanionNode::judgeTelemetry() const
 {
   const StreamTimingReport timing = companion_.timing();
   const bool refused = recent_refusals_.areRecent();
@@ -261,7 +261,7 @@ Verdict CompanionNode::judgeTelemetry() const
   return { DiagnosticStatus::OK, "Telemetry arrives" };
 }
 
-Verdict CompanionNode::judgeComparison() const
+DiagnosticVerdict CompanionNode::judgeComparison() const
 {
   if (recent_failures_.areRecent())
   {
@@ -278,7 +278,7 @@ Verdict CompanionNode::judgeComparison() const
   return { DiagnosticStatus::OK, "Within the band of a healthy joint" };
 }
 
-Verdict CompanionNode::judgeHealth() const
+DiagnosticVerdict CompanionNode::judgeHealth() const
 {
   const Assessment& assessment = companion_.assessment();
   if (hasStopped())

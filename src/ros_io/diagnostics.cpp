@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/diagnostics.hpp"
+#include "ros_io/diagnostics.hpp"
 
 #include <cmath>
 #include <sstream>
 
 #include <ros/console.h>
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {
@@ -108,7 +108,7 @@ void Diagnostics::look()
 {
   readSnapshot();
   logClockJumps();
-  const std::array<Verdict, 4> verdicts{ judgeDrive(), judgeInput(), judgeTiming(), judgeHealth() };
+  const std::array<DiagnosticVerdict, 4> verdicts{ judgeDrive(), judgeInput(), judgeTiming(), judgeHealth() };
   bool changed = false;
   for (std::size_t task = 0; task < verdicts.size(); ++task)
   {
@@ -166,7 +166,7 @@ void Diagnostics::logClockJumps()
   }
 }
 
-Verdict Diagnostics::judgeDrive() const
+DiagnosticVerdict Diagnostics::judgeDrive() const
 {
   if (!snapshot_.loop.outputs.converged || solver_failures_.areRecent())
   {
@@ -191,7 +191,7 @@ Verdict Diagnostics::judgeDrive() const
   return { DiagnosticStatus::OK, stateText(snapshot_.loop.state) };
 }
 
-Verdict Diagnostics::judgeInput() const
+DiagnosticVerdict Diagnostics::judgeInput() const
 {
   if (refusals_.areRecent())
   {
@@ -226,7 +226,7 @@ Verdict Diagnostics::judgeInput() const
   return { DiagnosticStatus::OK, "Commands arrive" };
 }
 
-Verdict Diagnostics::judgeTiming() const
+DiagnosticVerdict Diagnostics::judgeTiming() const
 {
   if (snapshot_.loop.clock == 0)
   {
@@ -259,7 +259,7 @@ Verdict Diagnostics::judgeTiming() const
   return { DiagnosticStatus::OK, "In time" };
 }
 
-Verdict Diagnostics::judgeHealth() const
+DiagnosticVerdict Diagnostics::judgeHealth() const
 {
   const LoopStatus& loop = snapshot_.loop;
   const bool input = loop.command_seen && toSeconds(loop.clock - loop.last_command) <= command_timeout_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/drive_markers.hpp"
+#include "ros_io/drive_markers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

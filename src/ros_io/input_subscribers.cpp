@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/input_subscribers.hpp"
+#include "ros_io/input_subscribers.hpp"
 
 #include <ros/console.h>
 #include <ros/transport_hints.h>
 #include <boost/function.hpp>
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/life_publisher.hpp"
+#include "ros_io/life_publisher.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -8,10 +8,10 @@
 
 #include <ros/console.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
-#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

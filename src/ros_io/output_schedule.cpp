@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/output_schedule.hpp"
+#include "ros_io/output_schedule.hpp"
 
 #include <cmath>
 

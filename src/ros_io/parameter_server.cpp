@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/parameter_server.hpp"
+#include "ros_io/parameter_server.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -7,7 +7,7 @@
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

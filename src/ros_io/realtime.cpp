@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/realtime.hpp"
+#include "ros_io/realtime.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/recorded_motion.hpp"
+#include "ros_io/recorded_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "harmonic_joint_twin/params/number_table.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_file.hpp"
-#include "harmonic_joint_twin/ros_io/checked_message.hpp"
-#include "harmonic_joint_twin/ros_io/telemetry_messages.hpp"
+#include "base/number_table.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_file.hpp"
+#include "ros_io/checked_message.hpp"
+#include "ros_io/telemetry_messages.hpp"
 
 namespace hjt
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/timing_publisher.hpp"
+#include "ros_io/timing_publisher.hpp"
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/topics.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {

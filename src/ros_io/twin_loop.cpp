@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/twin_loop.hpp"
+#include "ros_io/twin_loop.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/twin_node.hpp"
+#include "ros_io/twin_node.hpp"
 
 #include <string>
 
 #include <ros/console.h>
 
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
+#include "sensors/absolute_encoder.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/sensors/counter_noise.hpp"
+#include "sensors/counter_noise.hpp"
 
 #include <cmath>
 
 #include <Random123/philox.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/sensors/joint_sensors.hpp"
+#include "sensors/joint_sensors.hpp"
 
 #include <algorithm>
 #include <cmath>

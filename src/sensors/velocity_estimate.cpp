@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
+#include "sensors/velocity_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/arc_elimination_kernels.hpp"
+#include "solver/arc_elimination_kernels.hpp"
 
 namespace hjt
 {

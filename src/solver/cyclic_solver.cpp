@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/cyclic_solver.hpp"
+#include "solver/cyclic_solver.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/joint_dynamics.hpp"
+#include "solver/joint_dynamics.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "solver/output_balance.hpp"
 
 namespace hjt
 {
@@ -86,9 +86,10 @@ SolveStatus JointDynamics::followModel() noexcept
   return result;
 }
 
+/// From where the full ring was left to the surface's present angles.
 SolveStatus JointDynamics::bringRing() noexcept
 {
-  return ring_.moveTo({ motor_angle_, output_angle_, model_.ring.gear.wave_amplitude });
+  return ring_.moveTo(position());
 }
 
 /// The full ring's equilibrium is the present one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/leapfrog.hpp"
+#include "solver/leapfrog.hpp"
 
 namespace hjt
 {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "solver/output_balance.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/response_surface.hpp"
+#include "solver/response_surface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/solver/ring_vectors.hpp"
+#include "gear/angle.hpp"
+#include "solver/ring_vectors.hpp"
 
 namespace hjt
 {

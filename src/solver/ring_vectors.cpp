@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/ring_vectors.hpp"
+#include "solver/ring_vectors.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "harmonic_joint_twin/gear/vector_clones.hpp"
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {

@@ -10,9 +10,9 @@
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/companion.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/companion.hpp"
 
 namespace hjt
 {

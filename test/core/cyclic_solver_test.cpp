@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/cyclic_solver.hpp"
+#include "solver/cyclic_solver.hpp"
 
 #include <limits>
 #include <random>
@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
 #include "random_ring.hpp"
 #include "ring_fixture.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/dry_friction.hpp"
+#include "solver/dry_friction.hpp"
 
 #include <cmath>
 #include <random>

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/model/ring_model.hpp"
+#include "model/ring_model.hpp"
 #include "ring_fixture.hpp"
 
 namespace hjt

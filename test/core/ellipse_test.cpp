@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/gear/ellipse.hpp"
+#include "gear/ellipse.hpp"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

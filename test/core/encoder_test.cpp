@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
-#include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
-#include "harmonic_joint_twin/sensors/joint_sensors.hpp"
-#include "harmonic_joint_twin/sensors/velocity_estimate.hpp"
+#include "gear/angle.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
+#include "sensors/joint_sensors.hpp"
+#include "sensors/velocity_estimate.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt

@@ -8,12 +8,12 @@
 #include <gmock/gmock.h>
 
 #include "element_under_test.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/solver/output_balance.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "model/faults/joint_faults.hpp"
 #include "random_ring.hpp"
+#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -264,7 +264,7 @@ double roughness(const Parameters& parameters)
   for (Stamp t = MILLISECOND; t < 100 * MILLISECOND; t += MILLISECOND)
   {
     advance(twin, t);
-    const double load = twin.health().wave_generator_load;
+    const double load = twin.health().lobes.wave_generator_force;
     low = std::min(low, load);
     high = std::max(high, load);
   }

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

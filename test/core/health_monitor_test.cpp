@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/health_monitor.hpp"
+#include "health/health_monitor.hpp"
 
 #include <cmath>
 #include <functional>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/health/lobe_loads.hpp"
+#include "gear/angle.hpp"
+#include "model/lobe_loads.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt

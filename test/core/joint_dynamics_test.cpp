@@ -8,10 +8,10 @@
 #include <boost/numeric/odeint/integrate/integrate_n_steps.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/solver/joint_stepper.hpp"
-#include "harmonic_joint_twin/twin/energy_ledger.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "solver/joint_stepper.hpp"
+#include "studies/energy_ledger.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

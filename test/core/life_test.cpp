@@ -10,12 +10,12 @@
 
 #include "test_parameters.hpp"
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/drive_ageing.hpp"
-#include "harmonic_joint_twin/twin/exposure_analysis.hpp"
-#include "harmonic_joint_twin/twin/life_estimate.hpp"
-#include "harmonic_joint_twin/twin/life_trials.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "life/drive_ageing.hpp"
+#include "life/exposure_analysis.hpp"
+#include "life/life_estimate.hpp"
+#include "studies/life_trials.hpp"
 
 namespace hjt
 {

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/elements/bearing_friction.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/solver/joint_stepper.hpp"
-#include "harmonic_joint_twin/twin/loss_analysis.hpp"
-#include "harmonic_joint_twin/twin/torsion_loop.hpp"
+#include "elements/bearing_friction.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "harmonic_joint_twin/statics/torsion_loop.hpp"
+#include "solver/joint_stepper.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

@@ -10,11 +10,11 @@
 #include <Eigen/Geometry>
 
 #include "element_under_test.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/manufacture_errors.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/solver/output_balance.hpp"
+#include "gear/angle.hpp"
+#include "gear/manufacture_errors.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "random_ring.hpp"
+#include "solver/output_balance.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

@@ -9,12 +9,12 @@
 
 #include "test_parameters.hpp"
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/identification.hpp"
-#include "harmonic_joint_twin/twin/motion_driven.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "identification/identification.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {

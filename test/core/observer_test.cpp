@@ -11,10 +11,10 @@
 
 #include "test_parameters.hpp"
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/twin/observer.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "tracking/observer.hpp"
 
 namespace hjt
 {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/ring_model.hpp"
+#include "gear/angle.hpp"
+#include "model/ring_model.hpp"
 #include "ring_fixture.hpp"
 
 namespace hjt

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/twin/ratchet_analysis.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "studies/ratchet_analysis.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/response_surface.hpp"
+#include "solver/response_surface.hpp"
 
 #include <array>
 #include <atomic>
@@ -18,16 +18,16 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
-#include "harmonic_joint_twin/model/joint_model.hpp"
-#include "harmonic_joint_twin/solver/joint_dynamics.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
-#include "harmonic_joint_twin/twin/static_solver.hpp"
-#include "harmonic_joint_twin/twin/surface_cache.hpp"
-#include "harmonic_joint_twin/twin/surface_ring.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "model/joint_model.hpp"
+#include "solver/joint_dynamics.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+#include "surface/surface_cache.hpp"
+#include "surface/surface_ring.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -279,8 +279,8 @@ TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
     load += forces.wave_generator_force[i];
     teeth += forces.mesh_force[i] != 0.0 ? 1 : 0;
   }
-  EXPECT_NEAR(load, health.wave_generator_load, 1e-3 * load);
-  EXPECT_NEAR(teeth, static_cast<int>(health.teeth_loaded), 2);
+  EXPECT_NEAR(load, health.lobes.wave_generator_force, 1e-3 * load);
+  EXPECT_NEAR(teeth, health.lobes.teeth_loaded, 2);
   EXPECT_TRUE(twin.onSurface());
 }
 

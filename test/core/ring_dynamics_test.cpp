@@ -13,14 +13,14 @@
 #include <Eigen/LU>
 
 #include "element_under_test.hpp"
-#include "harmonic_joint_twin/solver/bordered_ring_solver.hpp"
-#include "harmonic_joint_twin/solver/implicit_ring_stepper.hpp"
-#include "harmonic_joint_twin/solver/output_balance.hpp"
-#include "harmonic_joint_twin/solver/ring_method.hpp"
-#include "harmonic_joint_twin/twin/quasi_static_check.hpp"
-#include "harmonic_joint_twin/twin/ring_transient.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "random_ring.hpp"
+#include "solver/output_balance.hpp"
+#include "studies/bordered_ring_solver.hpp"
+#include "studies/implicit_ring_stepper.hpp"
+#include "studies/quasi_static_check.hpp"
+#include "studies/ring_method.hpp"
+#include "studies/ring_transient.hpp"
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
 

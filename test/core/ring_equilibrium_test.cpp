@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "ring_fixture.hpp"
 #include "test_parameters.hpp"
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "harmonic_joint_twin/elements/ring_forces.hpp"
-#include "harmonic_joint_twin/gear/ring_shape.hpp"
-#include "harmonic_joint_twin/gear/tooth_ring.hpp"
+#include "elements/ring_forces.hpp"
+#include "gear/ring_shape.hpp"
+#include "gear/tooth_ring.hpp"
 
 namespace hjt
 {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/solver/ring_equilibrium.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "ring_fixture.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/health/signal_monitor.hpp"
+#include "health/signal_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 
 #include <gmock/gmock.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/sensors/absolute_encoder.hpp"
-#include "harmonic_joint_twin/sensors/incremental_encoder.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "element_under_test.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 #include "random_ring.hpp"
 #include "test_parameters.hpp"
 

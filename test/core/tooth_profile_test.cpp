@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/flank_shapes.hpp"
-#include "harmonic_joint_twin/gear/tooth_profile.hpp"
+#include "gear/flank_shapes.hpp"
+#include "gear/tooth_profile.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

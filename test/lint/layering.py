@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data flows one way: a folder includes itself and the folders to its left, and ROS stays in ros_io.
+"""Data flows one way: a folder includes itself and the folders it may see, and ROS stays in ros_io and the applications.
 
 Debian keeps ROS' headers in /usr/include, where no include path can keep them from the core.
 """
@@ -7,50 +7,104 @@ import re
 
 import project
 
-FOLDERS = ["params", "gear", "elements", "model", "solver", "sensors", "health", "twin", "ros_io"]
-FIRST_WITH_ROS = FOLDERS.index("ros_io")
-# The core may use the standard library and these; everything else is taken for ROS or an application's library.
-CORE_LIBRARIES = re.compile(r"<([a-z_0-9]+|(Eigen|Random123|boost|ceres|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
+# Each folder of src/ and the folders that it sees directly; it sees theirs too. docs/architecture.md draws this table.
+SEES = {
+    "base": [],
+    "params": ["base"],
+    "gear": ["params"],
+    "elements": ["gear"],
+    "model": ["elements"],
+    "solver": ["model"],
+    "statics": ["solver"],
+    "surface": ["statics"],
+    "sensors": ["gear"],
+    "health": ["gear"],
+    "twin": ["surface", "sensors", "health"],
+    "tracking": ["twin"],
+    "identification": ["tracking"],
+    "life": ["twin"],
+    "studies": ["twin", "life"],
+    "ros_io": ["tracking", "life"],
+    "apps/common": ["ros_io"],
+    "apps/sweep": ["apps/common"],
+    "apps/compare": ["apps/common"],
+    "apps/tool": ["apps/common", "apps/compare", "apps/sweep", "identification", "studies"],
+    "apps": ["apps/sweep", "apps/tool"],
+    "bench": ["studies"],
+    "test/core": ["identification", "studies"],
+    "test/ros": ["ros_io"],
+    "test/support": [],
+}
+WITH_ROS = {"ros_io", "apps", "apps/common", "apps/sweep", "apps/compare", "apps/tool", "test/ros"}
+# The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
+LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|time|unistd)\.h|(Eigen|Random123|boost|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
+# Libraries that one folder alone may use.
+OWN_LIBRARIES = {
+    "identification": re.compile(r"<ceres/[\w/.-]+>$"),
+    "bench": re.compile(r"<(CLI|arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
+                        r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
+    "test/core": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
+    "test/support": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
+}
 INCLUDE = re.compile(r'\s*#\s*include\s*(<[^>]+>|"[^"]+")')
-OWN_HEADER = re.compile(r'"harmonic_joint_twin/(\w+)/[\w/]+\.hpp"$')
+PUBLIC_HEADER = re.compile(r'"harmonic_joint_twin/([\w/]+)/\w+\.hpp"$')
+OWN_HEADER = re.compile(r'"([\w/]+)/\w+\.hpp"$')
 MESSAGE_HEADER = re.compile(r'[<"]harmonic_joint_twin/[A-Z]\w*\.h[>"]$')
+TEST_HEADERS = ("test/", "bench/")  # helpers of the tests, which benchmarks use too
+
+
+def visible(folder):
+    seen = {folder}
+    for other in SEES[folder]:
+        seen |= visible(other)
+    return seen
 
 
 def folder_of(path):
-    parts = path.split("/")
-    return parts[1] if parts[0] == "src" else parts[2] if len(parts) > 3 else ""
+    """The longest known folder that `path`, relative to src/, to the public headers or to the root, lies in."""
+    parts = path.split("/")[:-1]
+    while parts and "/".join(parts) not in SEES:
+        parts.pop()
+    return "/".join(parts)
 
 
-def fault(folder, header):
-    """Why `folder` must not include `header`; None if it may."""
-    rank = FOLDERS.index(folder)
-    own = OWN_HEADER.match(header)
-    if own:
-        if own.group(1) not in FOLDERS:
+def fault(folder, header, public):
+    """Why `folder` must not include `header`; None if it may. `public`: the including file is a public header."""
+    published = PUBLIC_HEADER.match(header)
+    own = published or OWN_HEADER.match(header)
+    if own and not header.startswith(tuple(f'"{name}' for name in TEST_HEADERS)):
+        if public and not published:
+            return f"{header} is no public header: include/ must stand without src/"
+        target = folder_of(own.group(1) + "/")
+        if not target:
             return f"{header} lies in no known folder"
-        if FOLDERS.index(own.group(1)) > rank:
-            return f"{folder} must not include {header}: {own.group(1)} lies to its right"
+        if target not in visible(folder):
+            return f"{folder} must not include {header}: it does not see {target}"
         return None
     if header.startswith('"') and not MESSAGE_HEADER.match(header):
-        return f"{header}: own headers are included as \"harmonic_joint_twin/FOLDER/NAME.hpp\""
-    if rank < FIRST_WITH_ROS and not CORE_LIBRARIES.match(header):
-        return f"{folder} must not include {header}: the core knows no ROS, only {CORE_LIBRARIES.pattern}"
+        if folder.startswith(("test/", "bench")):
+            return None
+        return f"{header}: own headers are included as \"FOLDER/NAME.hpp\" or \"harmonic_joint_twin/FOLDER/NAME.hpp\""
+    allowed = OWN_LIBRARIES.get(folder)
+    if folder not in WITH_ROS and not LIBRARIES.match(header) and not (allowed and allowed.match(header)):
+        return f"{folder} must not include {header}: only {LIBRARIES.pattern}"
     return None
 
 
 def check(root):
     problems = []
-    sources = project.files(root, "include", [".hpp", ".h"]) + project.files(root, "src", [".hpp", ".h", ".cpp"])
-    for path in sources:
-        folder = folder_of(path)
-        if folder == "apps":  # executables: they stand to the right of everything
-            continue
-        if folder not in FOLDERS:
-            problems.append(f"{path}:1: not in one of the folders {', '.join(FOLDERS)}, apps")
+    suffixes = [".hpp", ".h", ".cpp"]
+    places = {"include": "include/harmonic_joint_twin/", "src": "src/", "test": "", "bench": ""}
+    sources = [(path, path[len(prefix):]) for top, prefix in places.items()
+               for path in project.files(root, top, suffixes)]
+    for path, relative in sources:
+        folder = folder_of(relative)
+        if not folder:
+            problems.append(f"{path}:1: not in one of the folders {', '.join(SEES)}")
             continue
         for number, line in project.lines(root, path):
             include = INCLUDE.match(line)
-            reason = fault(folder, include.group(1)) if include else None
+            reason = fault(folder, include.group(1), path.startswith("include/")) if include else None
             if reason:
                 problems.append(f"{path}:{number}: {reason}")
     return problems if sources else ["include, src: no sources found"]

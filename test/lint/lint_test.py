@@ -4,10 +4,12 @@ import contextlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import catkin_lint
 import clang_tidy
@@ -19,6 +21,7 @@ import links
 import message_comments
 import project
 import spdx
+import type_names
 
 
 class Tree(unittest.TestCase):
@@ -51,27 +54,35 @@ class Layering(Tree):
     def source(self, folder, header):
         self.write(f"src/{folder}/one.cpp", f"#include <vector>\n#include {header}\n")
 
-    def test_left_is_allowed(self):
+    def test_what_a_folder_sees_is_allowed(self):
         for folder, header in [("gear", '"harmonic_joint_twin/params/parameters.hpp"'), ("gear", "<Eigen/Core>"),
-                               ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'), ("ros_io", "<ros/ros.h>"),
-                               ("ros_io", '"harmonic_joint_twin/Health.h"'), ("apps", "<ros/ros.h>")]:
+                               ("gear", '"base/number_text.hpp"'), ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'),
+                               ("ros_io", "<ros/ros.h>"), ("ros_io", '"harmonic_joint_twin/Health.h"'),
+                               ("identification", "<ceres/ceres.h>"), ("apps/tool", '"apps/common/progress.hpp"')]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_clean(layering.check)
 
-    def test_right_and_ros_are_not(self):
-        for folder, header in [("params", '"harmonic_joint_twin/gear/angle.hpp"'), ("twin", "<ros/time.h>"),
-                               ("sensors", '"harmonic_joint_twin/health/health.hpp"'),
-                               ("twin", '"harmonic_joint_twin/Health.h"'), ("model", "<sensor_msgs/JointState.h>"),
-                               ("solver", '"newton.hpp"'), ("solver", '"harmonic_joint_twin/stray/a.hpp"')]:
+    def test_all_else_is_not(self):
+        for folder, header in [("params", '"gear/angle.hpp"'), ("twin", "<ros/time.h>"),
+                               ("sensors", '"health/health_monitor.hpp"'), ("ros_io", '"studies/trial.hpp"'),
+                               ("apps/common", '"apps/tool/commands.hpp"'), ("twin", '"harmonic_joint_twin/Health.h"'),
+                               ("model", "<sensor_msgs/JointState.h>"), ("solver", '"newton.hpp"'),
+                               ("solver", '"stray/a.hpp"'), ("twin", "<ceres/ceres.h>")]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_fault(layering.check, f"src/{folder}/one.cpp:2", header)
                 os.remove(os.path.join(self.root, f"src/{folder}/one.cpp"))
 
-    def test_headers_are_read_too(self):
+    def test_tests_are_read_too(self):
+        self.write("test/ros/one.cpp", '#include "apps/tool/commands.hpp"\n')
+        self.assert_fault(layering.check, "test/ros/one.cpp:1")
+
+    def test_public_headers_stand_without_the_others(self):
         self.write("include/harmonic_joint_twin/gear/angle.hpp", "#include <ros/ros.h>\n")
         self.assert_fault(layering.check, "angle.hpp:1")
+        self.write("include/harmonic_joint_twin/gear/angle.hpp", '#include "gear/ellipse.hpp"\n')
+        self.assert_fault(layering.check, "angle.hpp:1", "public")
 
     def test_unknown_folder(self):
         self.write("src/misc/one.cpp", "")
@@ -79,6 +90,19 @@ class Layering(Tree):
 
     def test_nothing_to_check(self):
         self.assert_fault(layering.check, "no sources")
+
+
+class TypeNames(Tree):
+    def test_two_types_of_one_name(self):
+        self.write("include/harmonic_joint_twin/twin/one.hpp", "struct Forces\n{\n};\n")
+        self.write("src/studies/two.hpp", "class Forces\n{\n};\n")
+        self.assert_fault(type_names.check, "src/studies/two.hpp:1", "one.hpp:1")
+
+    def test_declarations_members_and_local_types_may_share_a_name(self):
+        self.write("src/one.hpp", "struct Forces\n{\n};\n")
+        self.write("src/two.cpp", "struct Forces;\nstruct Forces::Part\n{\n};\n"
+                                  "namespace\n{\nstruct Forces\n{\n};\n}  // namespace\n")
+        self.assert_clean(type_names.check)
 
 
 class Spdx(Tree):
@@ -219,13 +243,27 @@ class Format(Tree):
 
 
 class ClangTidy(Tree):
-    def problems(self, content):
+    def setUp(self):
+        super().setUp()
+        self.root = os.path.realpath(self.root)
+        self.said = io.StringIO()
+        environment = unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME=os.path.join(self.root, "cache"))
+        environment.start()
+        self.addCleanup(environment.stop)
+        shutil.copy(os.path.join(project.ROOT, ".clang-tidy"), self.root)
+
+    def problems(self, content, options=()):
         path = self.write("src/one.cpp", content)
-        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", "-c", path]}
+        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", *options, "-c", path]}
         self.write("build/compile_commands.json", json.dumps([entry]))
-        os.symlink(os.path.join(project.ROOT, ".clang-tidy"), os.path.join(self.root, ".clang-tidy"))
-        with contextlib.redirect_stdout(io.StringIO()):
-            return clang_tidy.check(os.path.join(self.root, "build"), os.path.realpath(self.root))
+        self.said = io.StringIO()
+        with contextlib.redirect_stdout(self.said):
+            return clang_tidy.check(os.path.join(self.root, "build"), self.root)
+
+    def assert_checked(self, checked, *arguments):
+        """The file is clean; `checked`: the tool had to run to find that out."""
+        self.assertEqual(self.problems(*arguments), [])
+        self.assertEqual(self.said.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
 
     def test_house_names(self):
         self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
@@ -235,8 +273,35 @@ class ClangTidy(Tree):
         for content in ["class rim_tension\n{\n};\n", "class A\n{\n  int value = 0;\n};\n", "int Read();\n",
                         "constexpr int kTeeth = 200;\n"]:
             with self.subTest(content=content):
-                self.setUp()
                 self.assertIn("naming", "".join(self.problems(content)))
+
+    def test_clean_file_is_checked_once(self):
+        content = '#include "one.hpp"\nint readValue();\n'
+        self.write("src/one.hpp", "constexpr int TEETH = 200;\n")
+        self.assert_checked(True, content)
+        self.assert_checked(False, content)
+        changes = {
+            "header": lambda: self.write("src/one.hpp", "constexpr int TEETH = 160;  // NOLINT\n"),
+            "rules": lambda: self.write(".clang-tidy", project.text(self.root, ".clang-tidy") + "# another\n"),
+        }
+        for name, change in changes.items():
+            with self.subTest(changed=name):
+                change()
+                self.assert_checked(True, content)
+                self.assert_checked(False, content)
+        self.assert_checked(True, content + "// longer\n")
+        self.assert_checked(True, content, ["-DANOTHER=1"])
+
+    def test_finding_is_never_remembered(self):
+        for _ in range(2):
+            self.assertIn("naming", "".join(self.problems("int Read();\n")))
+        self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
+
+    def test_precompiled_header_hides_nothing(self):
+        prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
+        options = ["-Winvalid-pch", "-include", prefix]
+        self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
+        self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
 
 
 class CatkinLint(Tree):

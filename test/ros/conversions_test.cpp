@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "ros_io/conversions.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/output_schedule.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/output_schedule.hpp"
+#include "ros_io/time.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/drive_markers.hpp"
+#include "ros_io/drive_markers.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/tooth_ring.hpp"
+#include "gear/angle.hpp"
+#include "gear/tooth_ring.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/ros_io/twin_loop.hpp"
+#include "ros_io/twin_loop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
-#include "harmonic_joint_twin/ros_io/latency_histogram.hpp"
-#include "harmonic_joint_twin/ros_io/slot_ring.hpp"
+#include "ros_io/conversions.hpp"
+#include "ros_io/latency_histogram.hpp"
+#include "ros_io/slot_ring.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 

@@ -5,13 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "harmonic_joint_twin/base/stamp.hpp"
 #include "harmonic_joint_twin/params/faults.hpp"
 
 namespace hjt
 {
-/// Time of a message or of a simulated instant [ns since the epoch of the messages].
-using Stamp = std::int64_t;
-
 enum class InputKind : std::uint8_t
 {
   MOTOR_TORQUE,

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "recording_comparison.hpp"
-#include "recording_contents.hpp"
-#include "verdict.hpp"
+#include "apps/compare/recording_comparison.hpp"
+#include "apps/compare/recording_contents.hpp"
+#include "apps/compare/verdict.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "friction_points.hpp"
+#include "apps/compare/friction_points.hpp"
 
 #include <algorithm>
 #include <cmath>

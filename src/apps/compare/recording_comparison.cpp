@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording_comparison.hpp"
+#include "apps/compare/recording_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

@@ -7,14 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "friction_points.hpp"
-#include "residual_spectrum.hpp"
-#include "thinned.hpp"
-#include "torsion_points.hpp"
+#include "apps/compare/friction_points.hpp"
+#include "apps/compare/residual_spectrum.hpp"
+#include "apps/compare/thinned.hpp"
+#include "apps/compare/torsion_points.hpp"
 
 #include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/health/signal_monitor.hpp"
-#include "harmonic_joint_twin/twin/motion_driven.hpp"
+#include "health/signal_monitor.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording_contents.hpp"
+#include "apps/compare/recording_contents.hpp"
 
 #include <algorithm>
 #include <set>
@@ -7,9 +7,9 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "harmonic_joint_twin/ros_io/bag_file.hpp"
-#include "harmonic_joint_twin/ros_io/checked_message.hpp"
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
+#include "ros_io/bag_file.hpp"
+#include "ros_io/checked_message.hpp"
+#include "ros_io/conversions.hpp"
 
 namespace hjt
 {

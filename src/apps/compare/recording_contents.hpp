@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "thinned.hpp"
+#include "apps/compare/thinned.hpp"
 
-#include "harmonic_joint_twin/ros_io/recorded_motion.hpp"
+#include "ros_io/recorded_motion.hpp"
 
 namespace hjt
 {

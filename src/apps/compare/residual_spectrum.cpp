@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "residual_spectrum.hpp"
+#include "apps/compare/residual_spectrum.hpp"
 
 #include <cmath>
 #include <complex>
 #include <cstddef>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "torsion_points.hpp"
+#include "apps/compare/torsion_points.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/twin/static_analysis.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
 
 namespace hjt
 {

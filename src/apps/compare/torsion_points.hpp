@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "harmonic_joint_twin/health/running_regression.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "health/running_regression.hpp"
 
 namespace hjt
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verdict.hpp"
+#include "apps/compare/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recording_comparison.hpp"
+#include "apps/compare/recording_comparison.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bag_run_file.hpp"
+#include "apps/sweep/bag_run_file.hpp"
 
 #include <cstdio>
 #include <mutex>
@@ -8,10 +8,10 @@
 #include <rosbag/view.h>
 #include <std_msgs/String.h>
 
-#include "../tool/run_summary.hpp"
-#include "../tool/validators.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/common/configuration.hpp"
 
-#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+#include "base/whole_file.hpp"
 
 namespace hjt
 {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "run_file.hpp"
+#include "apps/sweep/run_file.hpp"
 
-#include "harmonic_joint_twin/ros_io/bag_recorder.hpp"
+#include "ros_io/bag_recorder.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "columns.hpp"
+#include "apps/sweep/columns.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hdf5_run_file.hpp"
+#include "apps/sweep/hdf5_run_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <mutex>
 #include <utility>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

@@ -8,7 +8,7 @@
 
 #include <hdf5.h>
 
-#include "run_file.hpp"
+#include "apps/sweep/run_file.hpp"
 
 namespace hjt
 {

@@ -10,11 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "columns.hpp"
-#include "plan_node.hpp"
-#include "plan_values.hpp"
-#include "run_duty.hpp"
-#include "variable.hpp"
+#include "apps/sweep/columns.hpp"
+#include "apps/sweep/plan_node.hpp"
+#include "apps/sweep/plan_values.hpp"
+#include "apps/sweep/run_duty.hpp"
+#include "apps/sweep/variable.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan_node.hpp"
+#include "apps/sweep/plan_node.hpp"
 
 #include <algorithm>
 
 #include <yaml-cpp/yaml.h>
 
-#include "harmonic_joint_twin/params/parameter_error.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {

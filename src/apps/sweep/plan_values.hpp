@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "plan_node.hpp"
+#include "apps/sweep/plan_node.hpp"
 
-#include "harmonic_joint_twin/params/field_table.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {

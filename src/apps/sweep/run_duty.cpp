@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run_duty.hpp"
+#include "apps/sweep/run_duty.hpp"
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/gear/ratio.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 
 namespace hjt
 {

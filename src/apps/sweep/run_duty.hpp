@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "waveform.hpp"
+#include "apps/sweep/waveform.hpp"
 
 #include "harmonic_joint_twin/twin/twin.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run_file.hpp"
+#include "apps/sweep/run_file.hpp"
 
 #include <filesystem>
 
-#include "bag_run_file.hpp"
-#include "hdf5_run_file.hpp"
+#include "apps/sweep/bag_run_file.hpp"
+#include "apps/sweep/hdf5_run_file.hpp"
 
 namespace hjt
 {

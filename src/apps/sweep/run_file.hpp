@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "plan.hpp"
-#include "run_duty.hpp"
+#include "apps/sweep/plan.hpp"
+#include "apps/sweep/run_duty.hpp"
 
 namespace hjt
 {

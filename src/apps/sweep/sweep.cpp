@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sweep.hpp"
+#include "apps/sweep/sweep.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,16 +15,16 @@
 #include <sstream>
 #include <thread>
 
-#include "../tool/interrupt.hpp"
-#include "../tool/progress.hpp"
-#include "../tool/run_summary.hpp"
-#include "run_file.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/sweep/run_file.hpp"
 
-#include "harmonic_joint_twin/params/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/params/text_hash.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
-#include "harmonic_joint_twin/ros_io/whole_file.hpp"
+#include "base/number_text.hpp"
+#include "base/text_hash.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

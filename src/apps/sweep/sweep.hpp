@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "plan.hpp"
+#include "apps/sweep/plan.hpp"
 
-#include "harmonic_joint_twin/twin/surface_cache.hpp"
+#include "surface/surface_cache.hpp"
 
 namespace hjt
 {

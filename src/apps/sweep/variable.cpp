@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "variable.hpp"
+#include "apps/sweep/variable.hpp"
 
 #include <cmath>
 #include <map>
@@ -10,7 +10,7 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
-#include "harmonic_joint_twin/params/text_hash.hpp"
+#include "base/text_hash.hpp"
 
 namespace hjt
 {

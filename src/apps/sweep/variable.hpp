@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plan_node.hpp"
+#include "apps/sweep/plan_node.hpp"
 
 namespace hjt
 {

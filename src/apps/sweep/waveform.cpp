@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "waveform.hpp"
+#include "apps/sweep/waveform.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/params/number_table.hpp"
+#include "base/number_table.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "harmonic_joint_twin/params/field_table.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recorded_signals.hpp"
+#include "apps/tool/recorded_signals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,12 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "harmonic_joint_twin/params/number_table.hpp"
-#include "harmonic_joint_twin/params/parameter_error.hpp"
-#include "harmonic_joint_twin/ros_io/bag_file.hpp"
-#include "harmonic_joint_twin/ros_io/checked_message.hpp"
-#include "harmonic_joint_twin/ros_io/conversions.hpp"
-#include "harmonic_joint_twin/ros_io/time.hpp"
+#include "base/number_table.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_file.hpp"
+#include "ros_io/checked_message.hpp"
+#include "ros_io/conversions.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {

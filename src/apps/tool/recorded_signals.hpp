@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "harmonic_joint_twin/health/signal_sample.hpp"
+#include "health/signal_sample.hpp"
 
 namespace hjt
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "torque_profile.hpp"
+#include "apps/tool/torque_profile.hpp"
 
 #include <cmath>
 
-#include "harmonic_joint_twin/params/number_table.hpp"
+#include "base/number_table.hpp"
 
 namespace hjt
 {

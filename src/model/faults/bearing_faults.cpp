@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/elements/bearing_sag.hpp"
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/faults/fault_edits.hpp"
+#include "elements/bearing_sag.hpp"
+#include "gear/angle.hpp"
+#include "model/faults/fault_edits.hpp"
 
 namespace hjt
 {

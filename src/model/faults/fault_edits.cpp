@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/model/faults/fault_edits.hpp"
+#include "model/faults/fault_edits.hpp"
 
 namespace hjt
 {

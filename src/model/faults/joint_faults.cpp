@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+#include "model/faults/joint_faults.hpp"
 
 #include <array>
 

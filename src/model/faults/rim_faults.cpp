@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/faults/fault_edits.hpp"
+#include "gear/angle.hpp"
+#include "model/faults/fault_edits.hpp"
 
 namespace hjt
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "harmonic_joint_twin/gear/angle.hpp"
-#include "harmonic_joint_twin/model/faults/joint_faults.hpp"
+#include "gear/angle.hpp"
+#include "model/faults/joint_faults.hpp"
 
 namespace hjt
 {

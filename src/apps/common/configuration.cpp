@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/configuration.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr const char* GROUP = "Common options";
+
+/// The default configuration, one file per stage.
+constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
+                                              "solver.yaml", "sensors.yaml",     "health.yaml",   "life.yaml",
+                                              "faults.yaml", "node.yaml" };
+
+fs::path findConfigDirectory(const CommonOptions& options)
+{
+  if (!options.config_dir.empty())
+  {
+    return options.config_dir;
+  }
+  if (const char* from_environment = std::getenv("HJT_CONFIG_DIR"))
+  {
+    return from_environment;
+  }
+  return packageDirectory() / "config";
+}
+
+/// As given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from anywhere.
+fs::path findOverlay(const std::string& name, const fs::path& config_directory)
+{
+  for (const fs::path& candidate : { fs::path(name), config_directory.parent_path() / name, config_directory / name })
+  {
+    if (fs::exists(candidate))
+    {
+      return candidate;
+    }
+  }
+  return name;
+}
+}  // namespace
+
+fs::path packageDirectory()
+{
+  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin.
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
+  return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
+}
+
+void addFaultOption(Command& command, CommonOptions& options)
+{
+  command
+      .add("--fault", options.faults,
+           "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
+      .type("KIND:SEVERITY[:PLACE[:ONSET]]");
+}
+
+void addConfigurationOptions(Command& command, CommonOptions& options)
+{
+  command.add("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+      .type("FILE")
+      .group(GROUP);
+  command.add("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
+      .type("section.key=value")
+      .group(GROUP);
+  command.add("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
+      .type("DIR")
+      .group(GROUP);
+}
+
+void addCommonOptions(Command& command, CommonOptions& options)
+{
+  addConfigurationOptions(command, options);
+  command.flag("--json", options.json, "one JSON document on stdout and nothing else there").group(GROUP);
+  command.flag("--force", options.force, "overwrite existing output files").group(GROUP);
+}
+
+void addNamespaceOption(Command& command, std::string& joint_namespace)
+{
+  command.add("--joint-namespace", joint_namespace, "of the twin's topics")
+      .type("NAME")
+      .check(
+          [](const std::string& name)
+          {
+            return std::regex_match(name, std::regex("(/[A-Za-z][A-Za-z0-9_]*)+")) ?
+                       std::string() :
+                       "'" + name + "' is not a global ROS name such as /joint_twin";
+          });
+}
+
+ParameterMap loadParameterMap(const CommonOptions& options)
+{
+  const fs::path directory = findConfigDirectory(options);
+  if (!fs::exists(directory / STAGES.front()))
+  {
+    throw ParameterError("no default configuration in '" + directory.string() +
+                         "': name its directory with --config-dir or HJT_CONFIG_DIR");
+  }
+  ParameterMap map;
+  for (const char* stage : STAGES)
+  {
+    readYamlFile((directory / stage).string(), map);
+  }
+  for (const std::string& overlay : options.configs)
+  {
+    readYamlFile(findOverlay(overlay, fs::absolute(directory)).string(), map);
+  }
+  for (const std::string& assignment : options.assignments)
+  {
+    readAssignment(assignment, map);
+  }
+  return map;
+}
+
+void addFaults(const CommonOptions& options, Parameters& parameters)
+{
+  for (const std::string& fault : options.faults)
+  {
+    parameters.faults.push_back(parseFault(fault, parameters));
+  }
+  if (parameters.faults.size() > MOST_FAULTS)
+  {
+    throw ParameterError("--fault: more than " + std::to_string(MOST_FAULTS) + " faults");
+  }
+}
+
+Parameters loadParameters(const CommonOptions& options)
+{
+  Parameters parameters = parseParameters(loadParameterMap(options));
+  addFaults(options, parameters);
+  return parameters;
+}
+}  // namespace hjt

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/common/command.hpp"
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// Of the node when nothing else is said.
+constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
+
+/// What every subcommand of the tool takes.
+struct CommonOptions
+{
+  std::string config_dir;            ///< where the default configuration lies; empty: found by itself
+  std::vector<std::string> configs;  ///< overlays, later wins
+  std::vector<std::string> assignments;
+  std::vector<std::string> faults;  ///< KIND:SEVERITY[:PLACE[:ONSET]], beside the configured ones
+  bool json{};
+  bool force{};
+};
+
+/// Where config/ and scripts/ lie: of the installation, else of the checkout.
+std::filesystem::path packageDirectory();
+
+/// `--fault`, for the commands that march the joint.
+void addFaultOption(Command& command, CommonOptions& options);
+
+/// Those about the configuration alone.
+void addConfigurationOptions(Command& command, CommonOptions& options);
+
+void addCommonOptions(Command& command, CommonOptions& options);
+
+void addNamespaceOption(Command& command, std::string& joint_namespace);
+
+/// The default configuration with the overlays and assignments over it. @throws ParameterError.
+ParameterMap loadParameterMap(const CommonOptions& options);
+
+/// Adds the faults of `--fault` to the configured ones. @throws ParameterError.
+void addFaults(const CommonOptions& options, Parameters& parameters);
+
+/// The same, checked, with the faults of `--fault`. @throws ParameterError.
+Parameters loadParameters(const CommonOptions& options);
+}  // namespace hjt

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace hjt
+{
+/// The process' answer to the shell.
+enum ExitCode : int
+{
+  EXIT_DONE = 0,
+  EXIT_FAILED = 1,
+  EXIT_USAGE = 2,
+  EXIT_BY_SIGNAL = 128  ///< plus the signal's number
+};
+}  // namespace hjt

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/interrupt.hpp"
+
+#include <csignal>
+
+namespace hjt
+{
+namespace
+{
+volatile std::sig_atomic_t g_signal = 0;
+}  // namespace
+
+void catchInterrupts()
+{
+  struct sigaction action
+  {
+  };
+  action.sa_handler = [](int signal) { g_signal = signal; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int interruptSignal()
+{
+  return g_signal;
+}
+}  // namespace hjt

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/motion_options.hpp"
+
+#include <array>
+#include <iostream>
+#include <optional>
+
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress.hpp"
+
+#include "ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Short name and that in the messages of UR's driver, in the order of the columns of its recordings.
+constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shoulder_pan_joint" },
+                                                                 { "shoulder", "shoulder_lift_joint" },
+                                                                 { "elbow", "elbow_joint" },
+                                                                 { "wrist_1", "wrist_1_joint" },
+                                                                 { "wrist_2", "wrist_2_joint" },
+                                                                 { "wrist_3", "wrist_3_joint" } } };
+}  // namespace
+
+std::optional<UrJoint> findUrJoint(const std::string& name)
+{
+  for (std::size_t i = 0; i < UR_JOINTS.size(); ++i)
+  {
+    if (name == UR_JOINTS[i][0] || name == UR_JOINTS[i][1] || name == std::to_string(i))
+    {
+      return UrJoint{ static_cast<int>(i), UR_JOINTS[i][1] };
+    }
+  }
+  return std::nullopt;
+}
+
+MotionSource motionSource(const MotionOptions& options)
+{
+  MotionSource source;
+  source.path = options.recording;
+  source.topic = options.topic;
+  source.load_topic = options.joint_namespace + "/" + topics::LOAD;
+  source.joint = options.joint;
+  if (const std::optional<UrJoint> known = findUrJoint(options.joint))
+  {
+    source.joint = known->name;
+    source.csv_joint = known->number;
+  }
+  return source;
+}
+
+void addMotionOptions(Command& command, MotionOptions& options)
+{
+  options.joint_namespace = DEFAULT_NAMESPACE;
+  options.topic = "/joint_states";
+  command.add("recording", options.recording, "a bag, or a UR controller's CSV recording")
+      .required()
+      .type("IN.bag|IN.csv")
+      .bagOrCsv();
+  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages").required();
+  command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
+  addNamespaceOption(command, options.joint_namespace);
+  addCommonOptions(command, options);
+}
+
+MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit)
+{
+  MotionFindings findings;
+  findings.has_load = recordsLoad(source);
+  MotionSmoother smoother;
+  Progress progress("reading");
+  const auto forward = [&](bool at_end)
+  {
+    while (std::optional<MotionSample> sample = smoother.pop(at_end))
+    {
+      if (!findings.has_load)
+      {
+        sample->load = twin.modelledLoad(*sample);
+      }
+      visit(*sample);
+    }
+  };
+  static_cast<MotionCount&>(findings) = readMotion(
+      source,
+      [&](const MotionRow& row)
+      {
+        smoother.push(row);
+        forward(false);
+        return interruptSignal() == 0;
+      },
+      [&](double done) { progress.update(done); });
+  forward(true);
+  findings.refused = smoother.refused();
+  findings.gaps = smoother.gaps();
+  if (findings.corrupt > 0 || findings.refused > 0 || findings.gaps > 0)
+  {
+    std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "
+              << findings.refused << " rows repeated or out of order, " << findings.gaps << " gaps over "
+              << MotionSmoother::LONGEST_GAP << " s\n";
+  }
+  return findings;
+}
+
+MotionFindings visitMotion(const MotionOptions& options, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit)
+{
+  return visitMotion(motionSource(options), twin, visit);
+}
+}  // namespace hjt

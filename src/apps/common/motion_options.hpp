@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/common/configuration.hpp"
+
+#include "ros_io/recorded_motion.hpp"
+#include "tracking/motion_driven.hpp"
+
+namespace hjt
+{
+/// What subcommands on the measured motion of a joint take.
+struct MotionOptions : CommonOptions
+{
+  std::string recording;
+  std::string joint;
+  std::string joint_namespace;
+  std::string topic;
+};
+
+/// A joint of UR's robots: its place in the columns of a controller's recording.
+struct UrJoint
+{
+  int number{};      ///< 0 ... 5
+  std::string name;  ///< in the messages of UR's driver
+};
+
+/// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
+std::optional<UrJoint> findUrJoint(const std::string& name);
+
+void addMotionOptions(Command& command, MotionOptions& options);
+
+/// The recording and joint they name.
+MotionSource motionSource(const MotionOptions& options);
+
+/// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.
+/// Where the recording gives no load, it is what the joint is configured to carry.
+/// @throws InputError as readMotion.
+MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit);
+MotionFindings visitMotion(const MotionOptions& options, const MotionDriven& twin,
+                           const std::function<void(const MotionSample&)>& visit);
+}  // namespace hjt

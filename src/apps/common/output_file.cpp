@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/output_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+void requireWritable(const std::string& path, bool force, const std::string& input)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!input.empty() && fs::equivalent(path, input, error))
+  {
+    throw InputError(path + " is the input itself; give another name to --out");
+  }
+  if (fs::is_directory(path, error))
+  {
+    throw InputError(path + " is a directory");
+  }
+  if (fs::exists(path, error) && !force)
+  {
+    throw InputError(path + " exists; --force overwrites it");
+  }
+}
+
+CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& columns)
+  : path_(path), file_(std::fopen(path.c_str(), "w"), &std::fclose)
+{
+  if (!file_)
+  {
+    fail();
+  }
+  const char* separator = "";
+  for (const std::string& column : columns)
+  {
+    std::fprintf(file_.get(), "%s%s", separator, column.c_str());
+    separator = ",";
+  }
+  std::fprintf(file_.get(), "\n");
+}
+
+void CsvWriter::writeRow(const std::vector<double>& values)
+{
+  const char* separator = "";
+  for (const double value : values)
+  {
+    std::fprintf(file_.get(), "%s%.17g", separator, value);
+    separator = ",";
+  }
+  std::fprintf(file_.get(), "\n");
+}
+
+void CsvWriter::close()
+{
+  if (std::ferror(file_.get()) != 0 || std::fclose(file_.release()) != 0)
+  {
+    fail();
+  }
+}
+
+void CsvWriter::fail() const
+{
+  throw InputError(path_ + " cannot be written: " + std::strerror(errno));
+}
+}  // namespace hjt

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/sweep/sweep_runner.hpp"
+
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <sstream>
+
+#include "apps/common/exit_code.hpp"
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
+#include "apps/sweep/run_file.hpp"
+#include "apps/sweep/sweep.hpp"
+#include "surface/surface_cache.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Surfaces of the user's cache, each once in memory; each remark about them once.
+SurfaceSource sharedSurfaces(unsigned jobs)
+{
+  struct Remarks
+  {
+    std::mutex mutex;
+    std::set<std::string> said;
+    Progress building{ "building response surfaces" };
+  };
+  const auto remarks = std::make_shared<Remarks>();
+  const auto show = [remarks](double done)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    remarks->building.update(done);
+  };
+  const auto tell = [remarks](const std::string& what)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    if (remarks->said.insert(what).second)
+    {
+      std::cerr << "warning: " << what << '\n';
+    }
+  };
+  return { surfaceCacheDirectory(), show, tell, std::make_shared<SurfacePool>(jobs + 2) };
+}
+
+void printList(const Plan& plan, const SweepArguments& arguments)
+{
+  const SweepDirectory directory(plan, arguments.out);
+  std::cout << directory.indexHeader() << '\n';
+  for (std::uint64_t run = arguments.shard; run < plan.runs(); run += arguments.shards)
+  {
+    nlohmann::ordered_json record = directory.record(run);
+    if (!record.is_object())
+    {
+      record = recordOf(plan.run(run), directory.runFileName(run));
+      record["status"] = "pending";
+    }
+    std::cout << directory.indexRow(record) << '\n';
+  }
+}
+
+std::string shortTime(double seconds)
+{
+  return seconds < 100.0 ? shortNumber(seconds) + " s" : shortNumber(seconds / 3600.0) + " h";
+}
+
+void printExpectation(const Plan& plan, const SweepArguments& arguments)
+{
+  const SurfaceSource surfaces = sharedSurfaces(1);
+  double time = 0.0;
+  double bytes = 0.0;
+  double simulated = 0.0;
+  for (const Plan::Block& block : plan.blocks())
+  {
+    const RunSpec spec = plan.run(block.first);
+    const RunCost cost = measureCost(spec, surfaces);
+    const auto runs = static_cast<double>(block.size);
+    time += runs * (cost.start + spec.duration / cost.real_time_factor);
+    bytes += runs * dataSize(plan.recording(), spec.duration, spec.parameters.gear.teeth_flexspline);
+    simulated += runs * spec.duration;
+    std::cout << "runs " << block.first << " ... " << block.first + block.size - 1 << ": class " << spec.fault_class
+              << ", duty " << spec.duty_name << ", " << shortNumber(cost.real_time_factor) << " times real time\n";
+  }
+  printValues({ { "runs", std::to_string(plan.runs()), "" },
+                { "simulated, together", shortTime(simulated), "" },
+                { "expected time, " + std::to_string(arguments.jobs) + " jobs", shortTime(time / arguments.jobs), "" },
+                { "numbers of all files", bytes > 0.0 ? shortNumber(bytes / 1e6) : "-", "MB" } });
+  std::cout << "The time is told from the first run of each line, its first 0.2 s.\n";
+}
+}  // namespace
+
+void addSweepOptions(Command& command, SweepArguments& arguments)
+{
+  command.add("plan", arguments.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
+  command.add("--out", arguments.out, "directory of runs and index; runs that stand there finished are kept")
+      .required()
+      .type("DIR");
+  command.add("--jobs", arguments.jobs, "runs at the same time").range(1, 4096);
+  command.flag("--dry-run", arguments.dry_run, "check every run, tell time and size to expect, run nothing");
+  command.flag("--list", arguments.list, "print the index with every run of the plan, run nothing");
+  addConfigurationOptions(command, arguments);
+}
+
+int sweep(const SweepArguments& arguments)
+{
+  SweepArguments with_overlays = arguments;
+  for (const std::string& overlay : Plan::overlays(arguments.plan))
+  {
+    with_overlays.configs.push_back(overlay);
+  }
+  const Plan plan(arguments.plan, loadParameterMap(with_overlays));
+  checkRuns(plan);
+  if (arguments.list)
+  {
+    printList(plan, arguments);
+    return EXIT_DONE;
+  }
+  if (arguments.dry_run)
+  {
+    printExpectation(plan, arguments);
+    return EXIT_DONE;
+  }
+  const SweepDirectory directory(plan, arguments.out);
+  directory.open();
+  const SweepResult result =
+      runSweep(plan, directory, { arguments.out, arguments.jobs, arguments.shard, arguments.shards, arguments.quiet },
+               sharedSurfaces(arguments.jobs));
+  if (!arguments.quiet)
+  {
+    std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
+              << " failed; index: " << arguments.out << "/index.csv\n";
+  }
+  if (interruptSignal() != 0)
+  {
+    std::cerr << "joint_twin: interrupted; the same command goes on\n";
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
+}
+}  // namespace hjt

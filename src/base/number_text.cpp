@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/number_text.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+namespace hjt
+{
+std::string numberText(double value)
+{
+  if (std::isnan(value))
+  {
+    return ".nan";
+  }
+  if (std::isinf(value))
+  {
+    return value > 0.0 ? ".inf" : "-.inf";
+  }
+  std::array<char, 40> buffer{};
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits)
+  {
+    std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
+    if (std::strtod(buffer.data(), nullptr) == value)
+    {
+      break;
+    }
+  }
+  // 2e+02 reads better as 200.
+  if (value == std::floor(value) && std::abs(value) < 1e6)
+  {
+    std::snprintf(buffer.data(), buffer.size(), "%.0f", value);
+  }
+  // printf writes 31000 and 1e-07; rosparam wants 31000.0 and 1.0e-7.
+  const std::string text(buffer.data());
+  const std::size_t exponent = text.find('e');
+  std::string mantissa = text.substr(0, exponent);
+  mantissa += mantissa.find('.') == std::string::npos ? ".0" : "";
+  if (exponent == std::string::npos)
+  {
+    return mantissa;
+  }
+  const std::size_t digits = text.find_first_not_of('0', exponent + 2);
+  return mantissa + text.substr(exponent, 2) + text.substr(digits);
+}
+
+std::string rangeText(const Range& range)
+{
+  const auto bound = [](double value)
+  {
+    const bool whole = value == std::floor(value) && std::abs(value) < 1e6;
+    return whole ? std::to_string(static_cast<long long>(value)) : numberText(value);
+  };
+  if (range.max == std::numeric_limits<double>::max())
+  {
+    return ">= " + bound(range.min);
+  }
+  return bound(range.min) + " ... " + bound(range.max);
+}
+
+std::optional<double> looseNumber(const std::string& text)
+{
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0')
+  {
+    return std::nullopt;
+  }
+  return value;
+}
+}  // namespace hjt

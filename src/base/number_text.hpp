@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/range.hpp"
+
+namespace hjt
+{
+/// The shortest text that reads back as the same number, spelt so that rosparam takes it for one: 1.0e-5, 31000.0.
+std::string numberText(double value);
+
+/// "8 ... 4000", or ">= 0.001" where there is no upper end.
+std::string rangeText(const Range& range);
+
+/// The number a text would be to a reader less strict than rosparam ("1e-3", "1e3"); nothing if it is no number at all.
+std::optional<double> looseNumber(const std::string& text);
+}  // namespace hjt

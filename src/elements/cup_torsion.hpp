@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "elements/ring_forces.hpp"
+#include "gear/ring_shape.hpp"
+#include "gear/tooth_ring.hpp"
+
+namespace hjt
+{
+/// Torsion of the flexspline's cup between the toothed rim and the flange (thesis eq. 7.1-7.2).
+///
+/// Torque:  C(Phi), odd, piecewise linear: slope K1 up to torque T1, K2 up to T2, K3 beyond
+/// where    Phi  mean rotation of the tooth points from rest, mean_i(psi_i - psi0_i) [rad]
+///
+/// The torque acts on the mean rotation. Taken per tooth, as the thesis writes it, the cup would be N times too stiff and
+/// would resist the travelling wave.
+class CupTorsion
+{
+public:
+  CupTorsion(const CupParameters& parameters, const ToothRing& rest);
+
+  /// The cup's stiffness becomes this part of what was configured, > 0; the torques where it changes stay [-].
+  void scaleStiffness(double factor) noexcept;
+
+  double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
+  /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
+  static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
+  double torque(double rotation) const noexcept;        ///< C(Phi) [N.m]
+  double storedEnergy(double rotation) const noexcept;  ///< [J]
+  double stiffness(double rotation) const noexcept;     ///< dC/dPhi [N.m/rad]
+  double stiffnessAtTorque(double torque) const noexcept
+  {
+    const double size = torque < 0.0 ? -torque : torque;
+    return size > torques_[1] ? slopes_[2] : size > torques_[0] ? slopes_[1] : slopes_[0];
+  }
+
+  void addForces(const RingShape& shape, RingForces& forces) const noexcept;
+  /// `forces`: of the same shape.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+
+private:
+  std::array<double, 3> made_slopes_;
+  std::array<double, 3> slopes_;
+  std::array<double, 2> torques_;
+  std::array<double, 2> rotations_;  // where the slope changes [rad]
+  Eigen::VectorXd rest_radial_;
+};
+}  // namespace hjt

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "elements/cup_torsion.hpp"
+#include "elements/joint_friction.hpp"
+#include "elements/ring_forces.hpp"
+#include "elements/tooth_mesh.hpp"
+#include "gear/ring_shape.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// How the ring's points move with the two angles of the joint.
+struct RingRates
+{
+  const Eigen::VectorXd& by_motor;   ///< 2 N, by wave generator angle [m/rad]
+  const Eigen::VectorXd& by_output;  ///< 2 N, by output angle [m/rad]
+};
+
+/// Friction on the tooth flanks: mu |F| against the sliding along the flank, mu falling from static to kinetic with the
+/// sliding speed (Stribeck, Gaussian).
+class MeshFriction
+{
+public:
+  MeshFriction(const MeshParameters& parameters, int teeth)
+    : parameters_(parameters)
+    , friction_static_(parameters.friction_static)
+    , friction_kinetic_(parameters.friction_kinetic)
+    , tooth_factor_(Eigen::VectorXd::Ones(teeth))
+  {
+  }
+
+  /// Friction of all flanks, to the configured one [-].
+  void scale(double factor) noexcept
+  {
+    friction_static_ = factor * parameters_.friction_static;
+    friction_kinetic_ = factor * parameters_.friction_kinetic;
+  }
+  /// N, friction of each tooth's flanks to that of the others, editable [-].
+  Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
+
+  /// One term per loaded tooth. `forces`: of the same shape; `speeds`: motor and output [rad/s], for the Stribeck curve.
+  void addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces, const RingRates& rates,
+                const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
+
+  /// At a sliding speed along the flank [m/s]: the Stribeck curve [-].
+  double coefficient(double sliding_speed) const noexcept
+  {
+    const double relative = sliding_speed / parameters_.stribeck_velocity;
+    return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
+  }
+
+  /// The same for several speeds at once, an array of fixed size: quicker, and off by less than 3e-4 of the difference
+  /// between static and kinetic friction, exp(-q) taken as (1 + x + x^2/2)^-32 with x = q/32.
+  template <class Speeds>
+  Speeds coefficients(const Speeds& sliding_speeds) const noexcept
+  {
+    const double scale = 1.0 / (32.0 * parameters_.stribeck_velocity * parameters_.stribeck_velocity);
+    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond it nothing is left of the difference
+    const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
+    return friction_kinetic_ +
+           (friction_static_ - friction_kinetic_) / base.square().square().square().square().square();
+  }
+
+private:
+  MeshParameters parameters_;
+  double friction_static_;
+  double friction_kinetic_;
+  Eigen::VectorXd tooth_factor_;
+};
+
+/// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
+/// acts on the mean rotation of the rim, so it costs nothing while the drive runs at constant load; it opens the torsion
+/// loop and damps the output when the motor stands.
+class CupFriction
+{
+public:
+  explicit CupFriction(const CupParameters& parameters)
+    : made_torque_(parameters.friction_torque), torque_(parameters.friction_torque)
+  {
+  }
+
+  /// To the configured one [-].
+  void scale(double factor) noexcept { torque_ = factor * made_torque_; }
+
+  /// Adds one term, or none if there is no friction.
+  void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
+  {
+    addTerm(
+        { CupTorsion::meanRotationRate(shape, rates.by_motor), CupTorsion::meanRotationRate(shape, rates.by_output) },
+        friction);
+  }
+
+  /// The same where the mean rotation's rates by motor and output angle [-] are known.
+  void addTerm(const Eigen::Vector2d& rates, JointFriction& friction) const noexcept
+  {
+    if (torque_ > 0.0)
+    {
+      friction.terms.push_back({ torque_, rates });
+    }
+  }
+
+private:
+  double made_torque_;
+  double torque_;  // [N.m]
+};
+
+/// Friction between the outer race of the wave generator's bearing and the flexspline.
+///
+/// The race does not slide in the rim: it rolls, held by mu F r >> bearing friction. What slips are the two surfaces as
+/// rim and race bend: their neutral fibres lie a lever apart, so the slip is the lever times the rate at which the rim
+/// tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed and gives 74 N.m on a 2.87 N.m motor.
+class InterfaceFriction
+{
+public:
+  explicit InterfaceFriction(const ContactParameters& parameters)
+    : parameters_(parameters), coefficient_(parameters.friction_coefficient)
+  {
+  }
+
+  /// To the configured one [-].
+  void scale(double factor) noexcept { coefficient_ = factor * parameters_.friction_coefficient; }
+
+  /// Size of the torque at the motor shaft, >= 0 [N.m]; `rates`: of the points by motor angle while running [m/rad].
+  double torque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& rates) const noexcept;
+
+private:
+  ContactParameters parameters_;
+  double coefficient_;
+};
+}  // namespace hjt

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elements/ring_forces.hpp"
+#include "gear/manufacture_errors.hpp"
+#include "gear/ring_shape.hpp"
+#include "gear/tooth_profile.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Where a tooth stands in its space.
+struct ToothPlace
+{
+  double across;  ///< of the axis of the space, counter-clockwise > 0 [m]
+  double depth;   ///< of the tip below the circular spline's tip circle; < 0 outside [m]
+  double tilt;    ///< of the tooth against the axis, counter-clockwise > 0 [rad]
+  double gap;     ///< to the nearer flank, across; < 0 pressed [m]
+};
+
+/// Contact of the flexspline's teeth with the flanks of the circular spline (completes thesis ch. 7.4-7.5).
+///
+/// Energy:  U = sum_i k_i cos^2(beta) [r(xi_i - c_i) + r(-xi_i - c_i)] s(d_i), r the contact ramp
+/// where    P_i     tooth at mid-height, X_i + z_t n_i, n_i outward normal of the chord X_{i+1} - X_{i-1}   [m]
+///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0,
+///                  plus the error of the tooth, minus that of the space                                    [m]
+///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
+///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
+///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
+///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - lost height - r_a             [m]
+///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
+///          k_i     stiffness of the tooth pair along the flank normal, >= 0                                [N/m]
+class ToothMesh
+{
+public:
+  ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
+
+  void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+  /// `forces`: of the same shape.
+  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+
+  /// Pairs every tooth with the space nearest to its angle at rest.
+  void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
+
+  /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
+  /// @returns teeth that changed their space below the circular spline's tip circle: that went through a tip.
+  int pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
+
+  ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
+
+  /// Sliding of a tooth that touches along its loaded flank [m/s] for speeds of the ring's points and of the output.
+  double slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,
+                      double output_speed) const noexcept;
+
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
+  /// N, height lost at the tip, editable per tooth, >= 0 [m]
+  Eigen::VectorXd& tipLoss() noexcept { return tip_loss_; }
+  /// Moves the circular spline's spaces off their axis, towards space 0, from where manufacture left them [m].
+  void moveSpaces(double distance) noexcept;
+  Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
+
+private:
+  struct Space
+  {
+    double axis_x;  // unit vector at output angle 0
+    double axis_y;
+    double across;  // errors of manufacture, see ManufactureErrors [m]
+    double along;
+  };
+  ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
+  double pressedBy(const ToothEngagement& tooth, int i) const noexcept;
+  FlankLaw law(const ToothEngagement& tooth, int i) const noexcept;
+  void findPressed(const RingShape& shape, double cos_output, double sin_output,
+                   Eigen::VectorXd& pressed) const noexcept;
+  double pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept;
+  double firstSpace(double output_angle) const noexcept;
+
+  int spaces_;
+  double mid_height_;
+  double tip_offset_;  // half tooth height minus the circular spline's tip radius [m]
+  double reach_;       // radius of a tooth point below which its tip cannot touch [m]
+  double depth_;
+  double smoothing_;
+  double cos_flank_;
+  double half_space_;  // tangent of half a space
+  ToothProfile profile_;
+  std::vector<Space> space_;
+  std::vector<Space> made_space_;  // as manufacture left them
+  double made_reach_;
+  Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
+  Eigen::VectorXd stiffness_;
+  Eigen::VectorXd clearance_;
+  Eigen::VectorXd tip_loss_;
+};
+}  // namespace hjt

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "health/efficiency_estimate.hpp"
+#include "health/friction_estimate.hpp"
+#include "health/order_tracker.hpp"
+#include "health/signal_sample.hpp"
+#include "health/torsion_loop_estimate.hpp"
+#include "health/turn_window.hpp"
+
+namespace hjt
+{
+/// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
+///
+/// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
+/// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says. Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed
+/// itself within indicators.speed_change of it.
+class SignalMonitor
+{
+public:
+  explicit SignalMonitor(const Parameters& parameters);
+
+  void reset() noexcept;
+
+  /// True: this sample completed a window. A sample without stamp progress, angle or torque is passed over and counted.
+  bool update(const SignalSample& given) noexcept;
+
+  /// Of the last window that was completed.
+  const SignalIndicators& indicators() const noexcept { return indicators_; }
+
+  std::uint64_t refused() const noexcept { return refused_; }
+  double progress() const noexcept;  ///< of the running window, 0 ... 1 [-]
+
+private:
+  /// Sums over a window; the mean is over `weight`.
+  struct Mean
+  {
+    void add(double value, double value_weight = 1.0) noexcept
+    {
+      sum += value_weight * value;
+      weight += value_weight;
+    }
+    double value() const noexcept { return sum / weight; }  // NaN: nothing came
+    double sum{};
+    double weight{};
+  };
+
+  struct Window
+  {
+    std::int64_t elapsed{};  // [ns]
+    double travel{};         // at steady speed [rad]
+    int samples{};           // at steady speed
+    bool both_encoders{ true };
+    Mean speed;
+    Mean direction;
+    Mean load;
+    Mean temperature;
+    Mean running_torque;
+    Mean ratio;
+    Mean kinematic_error;
+    double residuals{};  // number
+    double residual_square{};
+    double residual_fourth{};
+    double residual_largest{};
+  };
+
+  void start(const SignalSample& sample, double motor_angle) noexcept;
+  void addSteady(const SignalSample& sample, double motor_angle, double travel, double torsion) noexcept;
+  void addTurn(double motor_angle, double travel, double torsion) noexcept;
+  void addResidual(double travel) noexcept;
+  void complete(std::int64_t stamp) noexcept;
+  void fillLines(LineSignal signal) noexcept;
+  void set(ScalarIndicator indicator, double value) noexcept { indicators_.values[indexOf(indicator)] = value; }
+  void set(ScalarIndicator indicator, const Indicator& value) noexcept;
+
+  const double ratio_;
+  const OutputParameters output_;
+  const IndicatorParameters parameters_;
+  OrderTracker tracker_;
+  FrictionEstimate friction_;
+  TorsionLoopEstimate loop_;
+  TurnWindow turn_;
+  EfficiencyEstimate efficiency_;
+  SignalIndicators indicators_;
+  std::uint64_t refused_{};
+
+  bool started_{};
+  SignalSample last_;
+  double last_angle_{};     // of the motor [rad]
+  double torsion_zero_{};   // of the first sample, so that what is summed is small [rad]
+  double mean_velocity_{};  // over about half a turn [rad/s]
+  double turn_travel_{};    // since the turn window was read [rad]
+  bool tracked_{};          // lines have been fitted: the residual means something
+  double residual_mean_{};  // slow [rad]
+  Window window_;
+};
+}  // namespace hjt

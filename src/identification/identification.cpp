@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "identification/identification.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "elements/motor.hpp"
+#include "gear/ratio.hpp"
+#include "identification/friction_fit.hpp"
+#include "identification/regression.hpp"
+#include "identification/ripple_fit.hpp"
+#include "tracking/motion_driven.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// In the order of TorqueRipple's lines.
+constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.ripple_circular_spline_2",
+                                                                    "telemetry.ripple_flexspline_2",
+                                                                    "telemetry.ripple_circular_spline_4",
+                                                                    "telemetry.ripple_flexspline_4" };
+constexpr std::size_t MOST_RIPPLE_ROWS = 5000;  // in one fit; a longer recording is thinned out
+
+bool isMoving(const MotionSample& sample)
+{
+  return std::abs(sample.velocity) > FrictionFit::MOVING;
+}
+
+/// Sums up squares of an error over all, moving and resting rows.
+class ErrorSum
+{
+public:
+  void add(const MotionSample& sample, double predicted)
+  {
+    const double square = std::pow(predicted - sample.current, 2);
+    const std::size_t kind = isMoving(sample) ? 1 : 0;
+    squares_[kind] += square;
+    ++rows_[kind];
+    signal_ += sample.current * sample.current;
+  }
+
+  CurrentError result() const
+  {
+    const auto rms = [](double squares, std::size_t rows)
+    { return rows > 0 ? std::sqrt(squares / static_cast<double>(rows)) : 0.0; };
+    const std::size_t rows = rows_[0] + rows_[1];
+    return { rows,
+             rows_[1],
+             rms(squares_[0] + squares_[1], rows),
+             rms(squares_[1], rows_[1]),
+             rms(squares_[0], rows_[0]),
+             rms(signal_, rows) };
+  }
+
+private:
+  std::array<double, 2> squares_{};
+  std::array<std::size_t, 2> rows_{};
+  double signal_{};
+};
+
+/// Error of the motion-driven twin with these parameters.
+CurrentError errorOf(const Parameters& parameters, const JudgedPart& judge)
+{
+  MotionDriven twin(parameters);
+  ErrorSum sum;
+  for (const MotionSample& sample : judge.samples)
+  {
+    const double predicted = twin.step(sample).current;
+    if (sample.time >= judge.from)
+    {
+      sum.add(sample, predicted);
+    }
+  }
+  return sum.result();
+}
+
+/// The usual model: current by load, sign of the speed and speed, fitted to all rows.
+CurrentError simpleModelError(const std::vector<MotionSample>& train, const JudgedPart& judge)
+{
+  constexpr double STANDSTILL = 0.005;  // [rad/s]
+  const auto columns = [](const MotionSample& sample)
+  {
+    const double sign = std::abs(sample.velocity) < STANDSTILL ? 0.0 : std::copysign(1.0, sample.velocity);
+    return Eigen::Vector3d(sample.load, sign, sample.velocity);
+  };
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Identity() * 1e-9;
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const MotionSample& sample : train)
+  {
+    const Eigen::Vector3d row = columns(sample);
+    normal += row * row.transpose();
+    right += row * sample.current;
+  }
+  const Eigen::Vector3d coefficients = normal.ldlt().solve(right);
+  ErrorSum sum;
+  for (const MotionSample& sample : judge.samples)
+  {
+    if (sample.time >= judge.from)
+    {
+      sum.add(sample, coefficients.dot(columns(sample)));
+    }
+  }
+  return sum.result();
+}
+
+/// What the friction's fit found, as parameters of the twin.
+void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& result)
+{
+  const auto add = [&](FrictionFit::Quantity quantity, const char* name, const char* key, const char* unit,
+                       double configured, double value, double half_width) {
+    result.values.push_back({ name, key, unit, configured, value, half_width, fit.refusal(quantity) });
+  };
+  const auto found = [&](FrictionFit::Quantity quantity) { return fit.value(quantity); };
+  const auto width = [&](FrictionFit::Quantity quantity) { return fit.halfWidth(quantity); };
+  Parameters& p = result.parameters;
+
+  const double gain = 1.0 / found(FrictionFit::GAIN);
+  add(FrictionFit::GAIN, "gain", "telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, gain,
+      width(FrictionFit::GAIN) * gain * gain);
+  p.telemetry.torque_per_current = gain;
+  add(FrictionFit::OFFSET, "offset of the current", "telemetry.current_offset", "A", p.telemetry.current_offset,
+      found(FrictionFit::OFFSET), width(FrictionFit::OFFSET));
+  p.telemetry.current_offset = found(FrictionFit::OFFSET);
+  // Without inertia beside the load, all of it is in the load.
+  if (load_recorded)
+  {
+    const double held = Motor(p.motor).inertia() - found(FrictionFit::INERTIA);
+    add(FrictionFit::INERTIA, "motor's inertia that the load holds", "telemetry.inertia_in_load", "kg.m^2",
+        p.telemetry.inertia_in_load, held, width(FrictionFit::INERTIA));
+    p.telemetry.inertia_in_load = held;
+  }
+  else
+  {
+    const double rotor = found(FrictionFit::INERTIA) - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load;
+    add(FrictionFit::INERTIA, "rotor inertia", "motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, rotor,
+        width(FrictionFit::INERTIA));
+    p.motor.rotor_inertia = rotor;
+  }
+  add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
+      found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));
+  p.bearing.race_preload = found(FrictionFit::PRELOAD);
+  // The grease's friction grows with the viscosity to the power of 2/3.
+  const double grease = found(FrictionFit::GREASE);
+  const double viscosity = p.bearing.viscosity * std::pow(grease, 1.5);
+  add(FrictionFit::GREASE, "friction by speed to the power 2/3 (viscosity)", "bearing.viscosity", "m^2/s",
+      p.bearing.viscosity, viscosity, 1.5 * p.bearing.viscosity * std::sqrt(grease) * width(FrictionFit::GREASE));
+  p.bearing.viscosity = viscosity;
+  const double flanks = found(FrictionFit::FLANKS);
+  add(FrictionFit::FLANKS, "load-dependent friction (flanks)", "mesh.friction_kinetic", "-", p.mesh.friction_kinetic,
+      flanks * p.mesh.friction_kinetic, width(FrictionFit::FLANKS) * p.mesh.friction_kinetic);
+  p.mesh.friction_kinetic *= flanks;
+  p.mesh.friction_static *= flanks;
+  add(FrictionFit::VISCOUS, "viscous friction", "motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction,
+      found(FrictionFit::VISCOUS), width(FrictionFit::VISCOUS));
+  p.motor.viscous_friction = found(FrictionFit::VISCOUS);
+  add(FrictionFit::STRIBECK, "Stribeck rise at the motor", "", "N.m", 0.0, found(FrictionFit::STRIBECK),
+      width(FrictionFit::STRIBECK));
+}
+
+Parameters withoutRipple(Parameters parameters)
+{
+  TelemetryParameters& p = parameters.telemetry;
+  p.ripple_circular_spline_2 = p.ripple_flexspline_2 = p.ripple_circular_spline_4 = p.ripple_flexspline_4 = {};
+  return parameters;
+}
+
+/// What the motion-driven twin's torque lacks without ripple in the rows that move.
+std::vector<RippleRow> rippleRows(const Parameters& parameters, const std::vector<MotionSample>& samples)
+{
+  MotionDriven twin(withoutRipple(parameters));
+  std::vector<RippleRow> rows;
+  for (const MotionSample& sample : samples)
+  {
+    const double lacking = sample.current - twin.step(sample).current;
+    if (isMoving(sample))
+    {
+      rows.push_back({ sample.position, sample.velocity, parameters.telemetry.torque_per_current * lacking });
+    }
+  }
+  const std::size_t stride = rows.size() / MOST_RIPPLE_ROWS + 1;
+  std::vector<RippleRow> kept;
+  for (std::size_t i = 0; i < rows.size(); i += stride)
+  {
+    kept.push_back(rows[i]);
+  }
+  return kept;
+}
+
+/// Presliding angle and lasting share by the error over all rows, resting ones too: the other values are known by then.
+class PreslidingFit
+{
+public:
+  PreslidingFit(const Parameters& parameters, const std::vector<MotionSample>& samples)
+    : parameters_(parameters), samples_(samples)
+  {
+    // Without mobilised friction, and with all of it: what a share of 1 adds, and what is missing at 0.
+    MotionDriven twin(parameters);
+    const double gain = parameters.telemetry.torque_per_current;
+    for (const MotionSample& sample : samples)
+    {
+      const MotionPrediction prediction = twin.step(sample);
+      friction_.push_back(prediction.friction_limit / gain);
+      missing_.push_back(sample.current - prediction.current + prediction.friction_torque / gain);
+    }
+  }
+
+  void run(Identification& result)
+  {
+    const IdentifiedValue angle = findAngle();
+    result.values.push_back(angle);
+    result.parameters.telemetry.presliding_angle = parameters_.telemetry.presliding_angle = angle.value;
+    const Trial trial = fitted(std::log(angle.value));
+    IdentifiedValue share{ "share of the friction that lasts at rest",
+                           "telemetry.lasting_share",
+                           "-",
+                           parameters_.telemetry.lasting_share,
+                           trial.share,
+                           trial.half_width,
+                           "" };
+    if (trial.half_width > WIDEST_SHARE || trial.share <= 0.0)
+    {
+      share = { share.name,
+                share.key,
+                share.unit,
+                share.configured,
+                share.configured,
+                0.0,
+                trial.share <= 0.0 ? "comes out at zero" : "no rest of this motion shows it" };
+    }
+    result.values.push_back(share);
+    result.parameters.telemetry.lasting_share = share.value;
+  }
+
+private:
+  static constexpr double WIDEST_SHARE = 0.25;  // half width of its interval
+  static constexpr double WIDEST = 0.5;         // half width of the angle's interval over the angle
+
+  struct Trial
+  {
+    double squares;
+    double share;
+    double half_width;
+    double correlation_rows;
+  };
+
+  /// The best lasting share at one presliding angle: the error is linear in it.
+  Trial fitted(double log_angle) const
+  {
+    TelemetryParameters telemetry = parameters_.telemetry;
+    telemetry.presliding_angle = std::exp(log_angle);
+    const double ratio = nominalRatio(parameters_.gear);
+    Presliding presliding(telemetry);
+    Eigen::VectorXd column(static_cast<Eigen::Index>(samples_.size()));
+    Eigen::VectorXd missing(column.size());
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+    {
+      if (i == 0 || samples_[i].after_gap)
+      {
+        presliding.reset();
+      }
+      else
+      {
+        presliding.move(ratio * (samples_[i].position - samples_[i - 1].position),
+                        samples_[i].time - samples_[i - 1].time);
+      }
+      const auto at = static_cast<Eigen::Index>(i);
+      column[at] = friction_[i] * (presliding.lasting() - presliding.contacts());
+      missing[at] = missing_[i] - friction_[i] * presliding.contacts();
+    }
+    Trial trial{};
+    const double size = std::max(column.squaredNorm(), 1e-12);
+    trial.share = std::clamp(column.dot(missing) / size, 0.0, 1.0);
+    const Eigen::VectorXd residual = missing - trial.share * column;
+    trial.squares = residual.squaredNorm();
+    trial.correlation_rows = correlationRows(residual);
+    trial.half_width =
+        NORMAL_95 * std::sqrt(trial.squares / static_cast<double>(samples_.size()) * trial.correlation_rows / size);
+    return trial;
+  }
+
+  IdentifiedValue findAngle() const
+  {
+    const double configured = parameters_.telemetry.presliding_angle;
+    IdentifiedValue value{ "presliding angle",
+                           "telemetry.presliding_angle",
+                           "rad",
+                           configured,
+                           configured,
+                           0.0,
+                           "no reversal of this motion shows it" };
+    constexpr int POINTS = 17;
+    const double lowest = std::log(1e-4);
+    const double highest = std::log(0.3);
+    const double step = (highest - lowest) / (POINTS - 1);
+    std::array<Trial, POINTS> trials{};
+    for (int i = 0; i < POINTS; ++i)
+    {
+      trials[i] = fitted(lowest + step * i);
+    }
+    const auto best = std::min_element(trials.begin(), trials.end(),
+                                       [](const Trial& a, const Trial& b) { return a.squares < b.squares; });
+    if (best == trials.begin() || best == trials.end() - 1)
+    {
+      return value;
+    }
+    // A parabola through the best point and its neighbours, in the logarithm.
+    const double below = (best - 1)->squares;
+    const double above = (best + 1)->squares;
+    const double curvature = (above - 2.0 * best->squares + below) / (step * step);
+    const double log_angle =
+        lowest + step * static_cast<double>(best - trials.begin()) - 0.5 * (above - below) / step / curvature;
+    const double variance = best->squares / static_cast<double>(samples_.size());
+    const double half_width = NORMAL_95 * std::sqrt(2.0 * variance * best->correlation_rows / curvature);
+    if (half_width < WIDEST)
+    {
+      value.value = std::exp(log_angle);
+      value.half_width = half_width * value.value;
+      value.refusal.clear();
+    }
+    return value;
+  }
+
+  Parameters parameters_;
+  const std::vector<MotionSample>& samples_;
+  std::vector<double> friction_;  // [A]
+  std::vector<double> missing_;   // [A]
+};
+}  // namespace
+
+Identification identify(const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge,
+                        bool load_recorded)
+{
+  Identification result;
+  result.parameters = parameters;
+  storeFriction(FrictionFit(parameters, FrictionMap(parameters), train), load_recorded, result);
+
+  const RippleFit ripple(rippleRows(result.parameters, train), parameters.telemetry, nominalRatio(parameters.gear));
+  ripple.store(result.parameters.telemetry);
+  for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
+  {
+    result.lines.push_back({ RIPPLE_KEYS[i], ripple.line(i), ripple.orders()[i], ripple.amplitude(i),
+                             ripple.halfWidth(i), ripple.phase(i), ripple.refusal(i) });
+  }
+  PreslidingFit(result.parameters, train).run(result);
+  result.values.push_back({ "temperature of the friction", "bearing.viscosity_slope", "-",
+                            parameters.bearing.viscosity_slope, parameters.bearing.viscosity_slope, 0.0,
+                            "the recording has no temperature" });
+  result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
+                            parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
+                            "the recording has one angle a joint; motor and output are needed" });
+
+  result.judged.configured = errorOf(parameters, judge);
+  result.judged.without_ripple = errorOf(withoutRipple(result.parameters), judge);
+  result.judged.identified = errorOf(result.parameters, judge);
+  result.judged.gain_coulomb_viscous = simpleModelError(train, judge);
+  return result;
+}
+}  // namespace hjt

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "identification/regression.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <ceres/crs_matrix.h>
+#include <ceres/solver.h>
+#include <Eigen/Cholesky>
+
+namespace hjt
+{
+double correlationRows(const Eigen::VectorXd& residuals)
+{
+  const Eigen::Index rows = residuals.size();
+  const double power = residuals.squaredNorm();
+  double length = 1.0;
+  for (Eigen::Index lag = 1; lag < rows / 4 && power > 0.0; ++lag)
+  {
+    const double correlation = residuals.head(rows - lag).dot(residuals.tail(rows - lag)) / power;
+    if (correlation <= 0.0)
+    {
+      break;
+    }
+    length += 2.0 * correlation;
+  }
+  return length;
+}
+
+Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations)
+{
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = most_iterations;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+
+  ceres::Problem::EvaluateOptions evaluate;
+  evaluate.apply_loss_function = false;
+  evaluate.parameter_blocks = parameters;
+  std::vector<double> residuals;
+  ceres::CRSMatrix sparse;
+  problem.Evaluate(evaluate, nullptr, &residuals, nullptr, &sparse);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
+  for (int row = 0; row < sparse.num_rows; ++row)
+  {
+    for (int k = sparse.rows[row]; k < sparse.rows[row + 1]; ++k)
+    {
+      jacobian(row, sparse.cols[k]) = sparse.values[k];
+    }
+  }
+
+  Regression result;
+  result.residuals = Eigen::Map<Eigen::VectorXd>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+  result.correlation_rows = correlationRows(result.residuals);
+  result.norm = jacobian.colwise().norm();
+  const Eigen::VectorXd size = result.norm.unaryExpr([](double norm) { return norm > 0.0 ? norm : 1.0; });
+  const Eigen::Index n = jacobian.cols();
+  const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd normal = scaled.transpose() * scaled + 1e-12 * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)).diagonal();
+  const double variance =
+      result.residuals.squaredNorm() / std::max(1.0, static_cast<double>(result.residuals.size() - n));
+  result.tolerance = inverse.cwiseInverse();
+  result.half_width = NORMAL_95 * (variance * result.correlation_rows * inverse).cwiseSqrt().cwiseQuotient(size);
+  return result;
+}
+
+std::string percentText(double share)
+{
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2g %%", 100.0 * share);
+  return text.data();
+}
+}  // namespace hjt

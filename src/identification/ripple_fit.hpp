@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tracking/torque_ripple.hpp"
+
+namespace hjt
+{
+/// What of the motor's torque is left when load, inertia and friction are known, at one instant.
+struct RippleRow
+{
+  double position;  ///< of the joint [rad]
+  double velocity;  ///< [rad/s]
+  double torque;    ///< at the joint [N.m]
+};
+
+/// The lines of TorqueRipple in that torque, by least squares (Ceres), with the resonance of what the joint carries.
+/// A line that is lost in the residual is refused, and zero.
+class RippleFit
+{
+public:
+  /// `rows`: consecutive rows that move. `start`: what is configured, which the resonance falls back to without a line.
+  RippleFit(const std::vector<RippleRow>& rows, const TelemetryParameters& start, double ratio);
+
+  const TorqueRipple::Orders& orders() const { return orders_; }
+  std::array<double, 2> line(std::size_t line) const { return { values_[2 * line], values_[2 * line + 1] }; }
+  double amplitude(std::size_t line) const;  ///< [N.m at the joint]
+  double halfWidth(std::size_t line) const;  ///< of its 95 % interval [N.m]
+  double phase(std::size_t line) const;      ///< of the cosine at joint angle 0 [rad]
+  const std::string& refusal(std::size_t line) const { return refusal_[line]; }
+
+  void store(TelemetryParameters& parameters) const;  ///< writes the lines and their resonance
+
+private:
+  using Values = std::array<double, TorqueRipple::VALUES>;
+
+  bool anyLine() const;
+  void chooseResonance(const std::vector<RippleRow>& rows);
+  void solve(const std::vector<RippleRow>& rows);
+  bool refuseWorst();
+
+  TorqueRipple::Orders orders_;
+  Values values_{};
+  Values half_width_{};
+  std::array<bool, TorqueRipple::LINES> present_{};
+  std::array<std::string, TorqueRipple::LINES> refusal_;
+};
+}  // namespace hjt

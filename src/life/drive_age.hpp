@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <boost/random/lognormal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+
+#include "life/ageing_laws.hpp"
+
+namespace hjt
+{
+/// How old a drive is, by every way in which it ages.
+struct DriveAge
+{
+  double turns{};           ///< of the wave generator
+  double flank_wear{};      ///< depth worn off both flanks of a pair [m]
+  double interface_wear{};  ///< depth worn off outer race and rim [m]
+  double grease{};          ///< share of its life that the grease has behind it; 1: a change is due [-]
+  double flaw_depth{};      ///< of the deepest flaw at a tooth root [m]
+  double bearing_turns{};   ///< of the wave generator's bearing, in turns at rated torque
+};
+
+/// In what one drive differs from the next: unknown from outside, constant over its life.
+struct DriveNature
+{
+  double flank_factor{ 1.0 };      ///< its flank wear over that of the nominal drive [-]
+  double interface_factor{ 1.0 };  ///< its interface wear over that of the nominal drive [-]
+  double bearing_life{};           ///< turns at rated torque until the bearing's first spall
+  double spall_growth{};           ///< share of that life from the first spall to the end [-]
+};
+
+/// What ends a drive's use.
+enum class EndOfLife
+{
+  FLANK_WEAR,
+  INTERFACE_WEAR,
+  ROOT_CRACK,
+  BEARING
+};
+
+constexpr std::size_t ENDS_OF_LIFE = 4;
+
+/// In words: flank wear, interface wear, root crack, bearing; still in use.
+const char* nameOf(const std::optional<EndOfLife>& end) noexcept;
+
+/// One drive out of many: factors of wear log-normal, the bearing's life after the catalogue's Weibull distribution.
+template <class Engine>
+DriveNature drawNature(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
+{
+  boost::random::lognormal_distribution<double> wear(0.0, parameters.wear_spread);
+  boost::random::lognormal_distribution<double> growth(std::log(parameters.spall_growth), parameters.spall_spread);
+  DriveNature nature;
+  nature.flank_factor = wear(engine);
+  nature.interface_factor = wear(engine);
+  nature.bearing_life = bearing.quantile(boost::random::uniform_01<double>()(engine));
+  nature.spall_growth = growth(engine);
+  return nature;
+}
+
+/// Size of the bearing's spall: 0 up to `bearing_life`, 1 at the end of use, between them as the square of the turns, for a
+/// spall grows the faster the larger it is (assumed) [-].
+inline double spallSize(const DriveNature& nature, double bearing_turns)
+{
+  const double grown = (bearing_turns / nature.bearing_life - 1.0) / nature.spall_growth;
+  return grown > 0.0 ? grown * grown : 0.0;
+}
+}  // namespace hjt

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gear/angle.hpp"
+
+namespace hjt
+{
+/// A stretch of steady work.
+struct DutyPhase
+{
+  double duration{};     ///< > 0 [s]
+  double motor_speed{};  ///< its magnitude counts [rad/s]
+  double load_torque{};  ///< at the output [N.m]
+  double temperature{};  ///< of the drive [degC]
+
+  double turns() const { return duration * motor_speed / TWO_PI; }  ///< of the wave generator, >= 0
+};
+
+/// What the joint does over and over.
+struct DutyCycle
+{
+  std::vector<DutyPhase> phases;
+
+  /// CSV with the columns duration, motor_speed, load_torque, temperature. @throws InputError naming line and column.
+  static DutyCycle fromFile(const std::string& path);
+
+  double turnsPerHour() const;
+};
+}  // namespace hjt

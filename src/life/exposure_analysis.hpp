@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "life/ageing_laws.hpp"
+
+namespace hjt
+{
+/// Measures on the tooth model what turning does to the drive. One drive, any number of loads.
+class ExposureAnalysis
+{
+public:
+  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no equilibrium.
+  ExposureAnalysis(const Parameters& parameters, int positions);
+  ~ExposureAnalysis();
+
+  /// One turn of the wave generator under `load_torque` [N.m].
+  /// @throws ParameterError if the ring finds no equilibrium under it.
+  Exposure under(double load_torque);
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+}  // namespace hjt

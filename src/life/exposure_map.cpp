@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "life/exposure_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "life/exposure_analysis.hpp"
+
+namespace hjt
+{
+namespace
+{
+Exposure blend(const Exposure& a, const Exposure& b, double share)
+{
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  return { mix(a.flank_sliding, b.flank_sliding), mix(a.interface_sliding, b.interface_sliding),
+           mix(a.rim_stress_range, b.rim_stress_range) };
+}
+
+struct Cell
+{
+  std::size_t index;
+  double share;
+};
+
+Cell cellOf(double value, double step, int stages)
+{
+  const double place = std::clamp(value / step, 0.0, static_cast<double>(stages - 1));
+  const int index = std::min(static_cast<int>(place), stages - 2);
+  return { static_cast<std::size_t>(index), place - index };
+}
+
+/// Entry by entry.
+Exposure larger(const Exposure& a, const Exposure& b)
+{
+  return { std::max(a.flank_sliding, b.flank_sliding), std::max(a.interface_sliding, b.interface_sliding),
+           std::max(a.rim_stress_range, b.rim_stress_range) };
+}
+}  // namespace
+
+Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
+{
+  Parameters worn = parameters;
+  worn.faults.push_back({ FaultKind::TOOTH_WEAR, age.flank_wear / worn.fault_scale.tooth_wear_depth });
+  worn.faults.push_back({ FaultKind::INTERFACE_WEAR, age.interface_wear / worn.fault_scale.interface_wear_depth });
+  return worn;
+}
+
+ExposureMap::ExposureMap(const Parameters& parameters, int positions)
+  : parameters_(parameters)
+  , positions_(positions)
+  , flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
+  , interface_step_(parameters.life.interface_wear_limit / (STAGES - 1))
+{
+}
+
+void ExposureMap::cover(const DutyCycle& duty, const std::function<void(double)>& progress)
+{
+  std::map<double, Stages> added;
+  for (const DutyPhase& phase : duty.phases)
+  {
+    if (nodes_.count(phase.load_torque) == 0)
+    {
+      added[phase.load_torque] = {};
+    }
+  }
+  if (added.empty())
+  {
+    return;
+  }
+  for (int flank = 0; flank < STAGES; ++flank)
+  {
+    for (int interface = 0; interface < STAGES; ++interface)
+    {
+      DriveAge age;
+      age.flank_wear = flank * flank_step_;
+      age.interface_wear = interface * interface_step_;
+      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      for (auto& [load, stages] : added)
+      {
+        stages[static_cast<std::size_t>(flank)][static_cast<std::size_t>(interface)] = analysis.under(load);
+      }
+      if (progress)
+      {
+        progress((flank * STAGES + interface + 1.0) / (STAGES * STAGES));
+      }
+    }
+  }
+  nodes_.merge(added);
+}
+
+Exposure ExposureMap::at(double load_torque, double flank_wear, double interface_wear) const
+{
+  const Cell flank = cellOf(flank_wear, flank_step_, STAGES);
+  const Cell interface = cellOf(interface_wear, interface_step_, STAGES);
+  const Stages& stages = nodes_.at(load_torque);
+  const auto along = [&](std::size_t row)
+  { return blend(stages[row][interface.index], stages[row][interface.index + 1], interface.share); };
+  return blend(along(flank.index), along(flank.index + 1), flank.share);
+}
+
+double ExposureMap::largestError() const
+{
+  Exposure miss;
+  Exposure largest;
+  for (int flank = 0; flank < STAGES - 1; ++flank)
+  {
+    for (int interface = 0; interface < STAGES - 1; ++interface)
+    {
+      DriveAge age;
+      age.flank_wear = (flank + 0.5) * flank_step_;
+      age.interface_wear = (interface + 0.5) * interface_step_;
+      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      for (const auto& [load, stages] : nodes_)
+      {
+        const Exposure measured = analysis.under(load);
+        const Exposure mapped = at(load, age.flank_wear, age.interface_wear);
+        largest = larger(largest, measured);
+        miss = larger(miss, { std::abs(mapped.flank_sliding - measured.flank_sliding),
+                              std::abs(mapped.interface_sliding - measured.interface_sliding),
+                              std::abs(mapped.rim_stress_range - measured.rim_stress_range) });
+      }
+    }
+  }
+  return std::max({ miss.flank_sliding / largest.flank_sliding, miss.interface_sliding / largest.interface_sliding,
+                    miss.rim_stress_range / largest.rim_stress_range });
+}
+}  // namespace hjt

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "life/nominal_use.hpp"
+
+#include <cmath>
+
+namespace hjt
+{
+NominalUse::NominalUse(const DriveAgeing& ageing, const LifeParameters& life, bool grease_changes)
+  : grease_factor_(life.grease_wear_factor), grease_changes_(grease_changes)
+{
+  const DriveAge rate = ageing.rates(nominalDrive(life), {});
+  hourly_ = { rate.flank_wear, rate.interface_wear, rate.bearing_turns };
+  grease_rate_ = rate.grease;
+}
+
+Usage NominalUse::until(double hours) const
+{
+  // Mean of the wear factor: grease of age g wears 1 + (factor - 1) g times as fast, g linear in time.
+  const double age = grease_rate_ * hours;
+  const double changes = grease_changes_ ? std::floor(age) : 0.0;
+  const double left = age - changes;
+  const double extra = grease_rate_ > 0.0 ? 0.5 * (grease_factor_ - 1.0) * (changes + left * left) / grease_rate_ : 0.0;
+  const double fresh_hours = hours + extra;
+  return { hourly_.flank_wear * fresh_hours, hourly_.interface_wear * fresh_hours, hourly_.bearing_turns * hours };
+}
+
+Outlook NominalUse::from(double now, double hours, int stretches) const
+{
+  Outlook outlook;
+  outlook.step = hours / stretches;
+  const Usage before = until(now);
+  for (int i = 0; i <= stretches; ++i)
+  {
+    outlook.usage.push_back(until(now + i * outlook.step) - before);
+  }
+  return outlook;
+}
+}  // namespace hjt

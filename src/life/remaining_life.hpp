@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+
+#include "life/ageing_laws.hpp"
+#include "life/drive_age.hpp"
+
+namespace hjt
+{
+/// How much a drive has been used: what the nominal drive would have aged by it.
+struct Usage
+{
+  double flank_wear{};      ///< of the nominal drive [m]
+  double interface_wear{};  ///< of the nominal drive [m]
+  double bearing_turns{};   ///< [turns at rated torque]
+
+  Usage operator-(const Usage& other) const noexcept
+  {
+    return { flank_wear - other.flank_wear, interface_wear - other.interface_wear,
+             bearing_turns - other.bearing_turns };
+  }
+};
+
+/// The use ahead, from now on: entry i after i times `step` hours. The last stretch goes on for ever.
+struct Outlook
+{
+  double step{};             ///< [h]
+  std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
+};
+
+/// What the indicators say of a drive's wear.
+struct WearReading
+{
+  double flank_wear{};        ///< depth, from the lost motion [m]
+  double flank_wear_error{};  ///< its standard deviation, > 0 [m]
+  double spall{};             ///< size of the bearing's spall, from the lines of the bearing [-]
+  double spall_error{};       ///< its standard deviation, > 0 [-]
+};
+
+/// Hours of use that are left.
+struct RemainingHours
+{
+  static constexpr std::array<double, 5> SHARES{ 0.05, 0.1, 0.5, 0.9, 0.95 };
+  std::array<double, SHARES.size()> quantile{};  ///< by which these shares of the particles have ended [h]
+  double ended{};                                ///< share of the particles that has ended already [-]
+  std::array<double, 3> by_cause{};              ///< shares that end by flank wear, interface wear, bearing [-]
+};
+
+/// The remaining life as a distribution: a particle filter on what cannot be seen of one drive, its nature.
+///
+/// A particle is a drive with factors of wear and a life of its bearing of its own, drawn from what the literature and the
+/// catalogue leave open (log-normal factors, the Weibull distribution of the bearing's life). Use ages every particle by
+/// the same laws; a reading weighs it by how likely it makes what was read. Where few particles carry the weight they are
+/// drawn anew, with a kernel that keeps mean and variance of the natures (Liu and West 2001).
+class RemainingLife
+{
+public:
+  RemainingLife(const LifeParameters& parameters, int particles, std::uint32_t seed);
+
+  /// Ages all particles. Allocates nothing.
+  void use(const Usage& usage) noexcept;
+
+  /// Weighs all particles. Allocates nothing.
+  void read(const WearReading& reading) noexcept;
+
+  /// The drive is known to be in use still: particles at their end lose their weight, unless all are. Allocates nothing.
+  void survive() noexcept;
+
+  /// The hours until each particle's end, with this use ahead. Allocates nothing.
+  RemainingHours remaining(const Outlook& outlook) noexcept;
+
+private:
+  struct Particle
+  {
+    std::array<double, 4> nature;  // logarithms: flank factor, interface factor, bearing life, spall growth
+    double flank_wear;
+    double interface_wear;
+  };
+  static constexpr double LARGEST_SPALL = 3.0;  // beyond the end of use one is as bad as the other
+  bool hasEnded(const Particle& particle) const noexcept;
+  static DriveNature natureOf(const Particle& particle) noexcept;
+  void resample() noexcept;
+
+  LifeParameters parameters_;
+  boost::random::mt19937 random_;
+  double bearing_turns_{};
+  std::vector<Particle> particles_;
+  std::vector<double> weights_;  // sum 1
+  std::vector<Particle> drawn_;  // scratch
+  struct End
+  {
+    double hours;
+    double weight;
+  };
+  std::vector<End> ends_;  // scratch
+};
+}  // namespace hjt

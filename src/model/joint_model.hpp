@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "elements/bearing_friction.hpp"
+#include "elements/joint_friction.hpp"
+#include "elements/load.hpp"
+#include "elements/motor.hpp"
+#include "elements/ring_damping.hpp"
+#include "elements/ring_friction.hpp"
+#include "model/ring_model.hpp"
+#include "model/ring_response.hpp"
+
+namespace hjt
+{
+/// What acts on the joint from outside, at one instant.
+struct JointInputs
+{
+  double motor_torque{};  ///< at the shaft, after the drive's limits [N.m]
+  double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
+  bool brake_engaged{};
+  double temperature{};  ///< of the drive [degC]
+};
+
+/// The whole joint: ring, motor, bearing, load, frictions. Faults edit it between steps.
+struct JointModel
+{
+  explicit JointModel(const Parameters& parameters);
+
+  Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
+
+  /// Stored in ring and gravity [J].
+  double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
+  {
+    return storedEnergy(summary(forces), position.output_angle);
+  }
+  double storedEnergy(const RingResponse& ring_response, double output_angle) const noexcept
+  {
+    return ring_response.energy + load.gravityEnergy(output_angle);
+  }
+
+  /// All torques but friction, on motor and output [N.m].
+  Eigen::Vector2d torque(const RingResponse& ring_response, double output_angle,
+                         const JointInputs& inputs) const noexcept
+  {
+    return { inputs.motor_torque + ring_response.wave_generator_torque,
+             ring_response.output_torque + load.gravityTorque(output_angle) - inputs.load_torque };
+  }
+
+  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
+                         const JointInputs& inputs) const noexcept
+  {
+    return torque(summary(forces), position.output_angle, inputs);
+  }
+
+  static RingResponse summary(const RingForces& forces) noexcept
+  {
+    RingResponse response;
+    response.energy = forces.energy;
+    response.wave_generator_torque = forces.wave_generator_torque;
+    response.output_torque = forces.output_torque;
+    return response;
+  }
+
+  /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.
+  /// `follow`: output speed over motor speed at constant load, from the ring's own stiffness [-]; `viscosity`: of the
+  /// bearing's grease [m^2/s].
+  void friction(const RingShape& shape, const RingForces& forces, const RingRates& rates, double follow,
+                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity, Eigen::VectorXd& running,
+                JointFriction& friction) const noexcept;
+
+  /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].
+  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
+                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
+                JointFriction& friction) const noexcept;
+
+  RingModel ring;
+  Motor motor;
+  Load load;
+  BearingFriction bearing;
+  MeshFriction mesh_friction;
+  CupFriction cup_friction;
+  InterfaceFriction interface_friction;
+  RingDamping damping;
+  double brake_torque;  ///< holding torque of the engaged brake, motor side [N.m]
+};
+}  // namespace hjt

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <sensor_msgs/JointState.h>
+
+#include "harmonic_joint_twin/Assessment.h"
+#include "harmonic_joint_twin/ContactForces.h"
+#include "harmonic_joint_twin/Encoders.h"
+#include "harmonic_joint_twin/Fault.h"
+#include "harmonic_joint_twin/Faults.h"
+#include "harmonic_joint_twin/Health.h"
+#include "harmonic_joint_twin/Indicators.h"
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// Names under which the joint appears in JointState messages.
+struct JointNames
+{
+  explicit JointNames(const std::string& joint_name) : joint(joint_name), motor(joint_name + "_motor") {}
+
+  std::string joint;
+  std::string motor;
+};
+
+// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
+
+/// Order of the entries: motor, joint.
+sensor_msgs::JointState makeJointStates(const JointNames& names);
+
+/// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
+void fillJointStates(const JointOutputs& outputs, const EncoderReadings& readings,
+                     sensor_msgs::JointState& message) noexcept;
+
+harmonic_joint_twin::Encoders makeEncoders(const JointNames& names);
+void fillEncoders(const JointOutputs& outputs, const EncoderReadings& readings,
+                  harmonic_joint_twin::Encoders& message) noexcept;
+
+/// One entry per tooth in every array.
+harmonic_joint_twin::ContactForces makeContactForces(const JointNames& names, int teeth);
+void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
+                       harmonic_joint_twin::ContactForces& message) noexcept;
+
+harmonic_joint_twin::Health makeHealth(const JointNames& names);
+/// The solver's state of the steps after `since` [ns].
+void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
+
+harmonic_joint_twin::Indicators makeIndicators(const JointNames& names);
+void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
+/// All but the uncertainties, which the message does not tell.
+SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message) noexcept;
+
+constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closing zero included
+
+/// "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." into `text`; returns the length. Empty at level OK.
+std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
+
+harmonic_joint_twin::Assessment makeAssessment(const JointNames& names);
+void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
+/// Allocates.
+harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
+
+/// The fault in a message; its onset is the stamp. @returns what is wrong with it, or nothing.
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault);
+
+/// What was found in a stamped torque message.
+enum class EffortStatus
+{
+  FOUND,
+  UNKNOWN_JOINT,  ///< no entry for this joint
+  MISSING_EFFORT  ///< the joint is named, but the effort array does not reach it
+};
+
+/// Motor torque [N.m] in a stamped command: the effort of the joint or, if only that is named, of its motor.
+EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
+
+/// Load torque [N.m] in a stamped load: the effort of the joint.
+EffortStatus readLoadTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
+}  // namespace hjt

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/wall_timer.h>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "ros_io/inbox.hpp"
+#include "ros_io/input_subscribers.hpp"
+#include "ros_io/output_publishers.hpp"
+#include "ros_io/realtime.hpp"
+#include "ros_io/recent_events.hpp"
+#include "ros_io/twin_loop.hpp"
+
+namespace hjt
+{
+/// Level and text of one diagnostic task.
+struct DiagnosticVerdict
+{
+  std::uint8_t level{};
+  std::string text;
+};
+
+/// What the indicators say, whether or not they are up to date. A fault told once stands until windows say otherwise.
+std::string verdictText(const Assessment& assessment);
+
+/// Cause, evidence and windows of a verdict.
+void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Tells /diagnostics how the drive, the input, the timing and the health are: about once a second by the wall clock, and at once
+/// when a level changes. Also logs, once per jump, that the clock went back.
+class Diagnostics
+{
+public:
+  Diagnostics(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop, const RealtimeState& realtime,
+              const Inbox& inbox, const InputSubscribers& subscribers, const OutputPublishers& publishers);
+
+private:
+  /// What the tasks speak of, read once per look.
+  struct Snapshot
+  {
+    LoopStatus loop;
+    MessageCounters messages;
+    std::uint64_t not_finite{};
+    std::uint64_t overflow{};
+    std::array<ChannelCounters, OUTPUT_COUNT> outputs{};
+  };
+
+  void look();
+  void readSnapshot();
+  void logClockJumps();
+  DiagnosticVerdict judgeDrive() const;
+  DiagnosticVerdict judgeInput() const;
+  DiagnosticVerdict judgeTiming() const;
+  DiagnosticVerdict judgeHealth() const;
+  void reportDrive(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportInput(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportTiming(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportHealth(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const TwinLoop& loop_;
+  const RealtimeState& realtime_;
+  const Inbox& inbox_;
+  const InputSubscribers& subscribers_;
+  const OutputPublishers& publishers_;
+  const double command_timeout_;
+  const double deadline_;
+  Snapshot snapshot_;
+  std::array<DiagnosticVerdict, 4> verdicts_;  ///< drive, input, timing, health
+  RecentEvents solver_failures_;
+  RecentEvents step_cuts_;
+  RecentEvents jumps_;
+  RecentEvents coarse_steps_;
+  RecentEvents speed_limits_;
+  RecentEvents refusals_;
+  RecentEvents clamps_;
+  RecentEvents late_inputs_;
+  RecentEvents timeouts_;
+  RecentEvents lost_inputs_;
+  RecentEvents drops_;
+  RecentEvents clock_jumps_;
+  RecentEvents missed_deadlines_;
+  std::uint64_t logged_clock_jumps_{};
+  Stamp last_clock_{};
+  ros::WallTime clock_moved_;
+  ros::WallTime last_report_;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+}  // namespace hjt

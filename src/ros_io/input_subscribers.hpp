@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
+
+#include "ros_io/conversions.hpp"
+#include "ros_io/inbox.hpp"
+
+namespace hjt
+{
+/// Messages that held no torque or fault for this joint, since start.
+struct MessageCounters
+{
+  std::uint64_t unknown_joint{};   ///< neither the joint nor, in a command, its motor was named
+  std::uint64_t missing_effort{};  ///< named, but without an effort
+  std::uint64_t refused_fault{};   ///< of unknown kind, or severity or place out of its range
+};
+
+/// Subscribes the topics of torques and faults and puts what they bring, stamped, into the inbox.
+/// A message without a stamp counts as made when it is received.
+class InputSubscribers
+{
+public:
+  InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox);
+
+  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, refused_fault_ }; }
+
+private:
+  void receiveNow(InputKind kind, const std_msgs::Float64& message);
+  void receiveCommand(const sensor_msgs::JointState& message);
+  void receiveLoad(const sensor_msgs::JointState& message);
+  void receiveFault(const harmonic_joint_twin::Fault& message);
+  void receiveStamped(InputKind kind, const ros::Time& stamp, double torque);
+  void refuse(EffortStatus status, const char* topic, const std::string& expected);
+
+  const Parameters parameters_;
+  const JointNames names_;
+  Inbox& inbox_;
+  std::atomic<std::uint64_t> unknown_joint_{ 0 };
+  std::atomic<std::uint64_t> missing_effort_{ 0 };
+  std::atomic<std::uint64_t> refused_fault_{ 0 };
+  ros::Subscriber motor_torque_subscriber_;
+  ros::Subscriber command_subscriber_;
+  ros::Subscriber load_torque_subscriber_;
+  ros::Subscriber load_subscriber_;
+  ros::Subscriber fault_subscriber_;
+};
+}  // namespace hjt

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include "harmonic_joint_twin/RemainingLife.h"
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+#include "life/life_estimate.hpp"
+#include "ros_io/slot_ring.hpp"
+
+namespace hjt
+{
+/// Keeps the drive's record of use and publishes what is left of its life. Whoever runs the twin counts; ageing, publishing
+/// and the file are done in a thread of its own, every life.forecast_period by the wall clock and at the end.
+///
+/// A file that cannot be read is set aside under another name, and the count starts anew.
+class LifePublisher
+{
+public:
+  LifePublisher(ros::NodeHandle& node, const Parameters& parameters);
+
+  /// After the last `offer`: takes in what was counted, and writes.
+  ~LifePublisher();
+
+  /// One thread, the loop's: counts the time since the last call. No allocation, no lock.
+  /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC].
+  void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept;
+
+private:
+  struct Stretch
+  {
+    Stamp until;
+    UseRecord use;
+  };
+  void readRecord();
+  void run();
+  void takeStretches();
+  void publish();
+  void write();
+
+  const Parameters parameters_;
+  std::string path_;  // of the record; empty: none
+  Stretch counted_;   // by the loop, not yet handed over
+  Stamp counted_from_{};
+  Stamp last_{};
+  SlotRing<Stretch> stretches_;
+  UseRecord record_;
+  Stamp until_{};
+  LifeEstimator estimator_;
+  ros::Publisher publisher_;
+  std::mutex mutex_;
+  std::condition_variable wake_up_;
+  bool stopping_{};
+  std::thread thread_;
+};
+}  // namespace hjt

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include "ros_io/slot_ring.hpp"
+
+namespace hjt
+{
+struct ChannelCounters
+{
+  std::uint64_t computed{};  ///< messages filled since start
+  std::uint64_t dropped{};   ///< messages due but not filled: the publisher had fallen behind by the whole ring
+};
+
+/// One topic: filled by the loop into preallocated slots, published by another thread.
+template <class Message>
+class OutputChannel
+{
+public:
+  OutputChannel(ros::NodeHandle& node, const std::string& topic, std::size_t slots, const Message& prototype)
+    : ring_(slots, prototype), publisher_(node.advertise<Message>(topic, static_cast<std::uint32_t>(slots)))
+  {
+  }
+
+  /// Loop: whether anybody listened when last looked.
+  bool isHeard() const noexcept { return heard_.load(std::memory_order_relaxed); }
+
+  /// Loop: lets `fill(Message&)` write the next message. A full ring drops it and counts.
+  template <class Fill>
+  void write(Fill&& fill) noexcept
+  {
+    Message* message = ring_.claim();
+    if (message == nullptr)
+    {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    fill(*message);
+    ring_.commit();
+    computed_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  /// Publisher thread: publishes what is waiting.
+  void drain()
+  {
+    for (const Message* message = ring_.front(); message != nullptr; message = ring_.front())
+    {
+      publisher_.publish(*message);
+      ring_.pop();
+    }
+  }
+
+  /// Publisher thread: asks roscpp, which locks and counts, who listens.
+  void refreshHeard() { heard_.store(publisher_.getNumSubscribers() > 0, std::memory_order_relaxed); }
+
+  ChannelCounters counters() const noexcept { return { computed_, dropped_ }; }
+
+private:
+  SlotRing<Message> ring_;
+  ros::Publisher publisher_;
+  std::atomic<bool> heard_{ false };
+  std::atomic<std::uint64_t> computed_{ 0 };
+  std::atomic<std::uint64_t> dropped_{ 0 };
+};
+}  // namespace hjt

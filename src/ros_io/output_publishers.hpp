@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <ros/node_handle.h>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "ros_io/conversions.hpp"
+#include "ros_io/output_channel.hpp"
+#include "ros_io/output_schedule.hpp"
+
+namespace hjt
+{
+/// Everything the twin publishes. The loop fills what is due and heard; serialising and sending, which allocate and
+/// lock, happen in a thread of their own.
+class OutputPublishers
+{
+public:
+  OutputPublishers(ros::NodeHandle& node, const Twin& twin);
+
+  /// Stops the thread after the messages already filled.
+  ~OutputPublishers();
+
+  /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
+  void offer(Twin& twin) noexcept;
+
+  /// The faults published last, for a human reader.
+  std::string activeFaults() const;
+
+  /// Per `Output`.
+  std::array<ChannelCounters, OUTPUT_COUNT> counters() const noexcept;
+
+private:
+  struct FaultsAt
+  {
+    Stamp stamp;
+    FaultList faults;
+  };
+  void offerFaults(const Twin& twin) noexcept;
+  void drainFaults();
+  bool isWanted(Output output, bool heard, Stamp instant) const noexcept;
+  void run();
+  void refreshHeard();
+  void drain();
+
+  OutputSchedule schedule_;
+  ToothForces tooth_forces_;
+  Stamp health_since_{};  // stamp of the last health message [ns]
+  OutputChannel<sensor_msgs::JointState> joint_states_;
+  OutputChannel<harmonic_joint_twin::Encoders> encoders_;
+  OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;
+  OutputChannel<harmonic_joint_twin::Health> health_;
+  OutputChannel<harmonic_joint_twin::Indicators> indicators_;
+  OutputChannel<harmonic_joint_twin::Assessment> assessment_;
+  const JointNames names_;
+  SlotRing<FaultsAt> faults_;
+  ros::Publisher faults_publisher_;
+  std::uint64_t offered_faults_;  // version of the list that was offered last
+  std::atomic<bool> stopping_{ false };
+  mutable std::mutex text_mutex_;
+  std::string active_faults_;
+  std::thread thread_;
+};
+}  // namespace hjt

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "tracking/motion_smoother.hpp"
+
+namespace hjt
+{
+/// Which joint of which recording.
+struct MotionSource
+{
+  std::string path;                      ///< .bag or .csv
+  std::string joint;                     ///< its name in the messages
+  int csv_joint{};                       ///< its number in the columns of a CSV file
+  std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState, effort the motor current [A]
+  std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
+  /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
+  double current_per_motor_torque{};
+};
+
+/// What a reading found.
+struct MotionCount
+{
+  std::uint64_t rows{};
+  std::uint64_t corrupt{};  ///< messages that could not be read, hold no finite angle and current, or cannot be true
+  double duration{};        ///< of the recording [s]
+  double start{};           ///< stamp of the first row [s]
+  double least_delay{};     ///< bag: of the recording behind the stamps [s]
+  double most_delay{};      ///< [s]
+};
+
+/// What was found, and what stood in the way.
+struct MotionFindings : MotionCount
+{
+  std::uint64_t refused{};  ///< rows repeated or out of order
+  std::uint64_t gaps{};     ///< longer than MotionSmoother::LONGEST_GAP
+  bool has_load{};          ///< the recording gives the load
+};
+
+bool isCsv(const MotionSource& source);
+
+/// True if the recording gives the load; else it is zero in the rows. @throws InputError if the file cannot be read.
+bool recordsLoad(const MotionSource& source);
+
+/// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index.
+///
+/// Times start at the first row.
+/// Bag: header stamps count, or the time of recording where they are zero. A load counts for rows from its stamp on. A row
+/// that agrees neither with the one before nor with the one after, its angle beyond what a joint can reach in the time or its
+/// stamp more than a second off theirs, was damaged and is left out.
+/// CSV: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`.
+/// `visit` returns false to stop. `progress`: 0 ... 1.
+/// @throws InputError if the file, the topic or the joint is not there; it names those that are.
+MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
+                       const std::function<void(double)>& progress);
+}  // namespace hjt

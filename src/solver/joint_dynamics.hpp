@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "model/joint_model.hpp"
+#include "model/joint_state.hpp"
+#include "solver/dry_friction.hpp"
+#include "solver/response_surface.hpp"
+#include "solver/ring_equilibrium.hpp"
+
+namespace hjt
+{
+/// Right-hand side of the joint: the four-state rigid body with the ring in equilibrium at every instant.
+///
+/// The equilibrium comes from Newton's method on the full ring; or, once a response surface is given, from that, as long
+/// as the angles lie on it. It changes to the surface only where ring and surface agree.
+///
+/// Callable as `system(x, dxdt, t)` for Boost.odeint's explicit steppers; the leapfrog uses the parts.
+class JointDynamics
+{
+public:
+  JointDynamics(const JointModel& model, const SolverParameters& parameters);
+
+  /// Inserts the wave generator and lets the output settle under its load, the motor held at angle 0.
+  SolveStatus settle() noexcept;
+
+  /// From now on by this surface where it holds, which must outlive its use; null: by the full ring.
+  void useSurface(const ResponseSurface* surface) noexcept;
+
+  /// After an edit of the model: the ring in its equilibrium at the present angles, by the full ring.
+  SolveStatus followModel() noexcept;
+
+  /// The present equilibrium is the surface's.
+  bool onSurface() const noexcept { return on_surface_; }
+  const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< while there
+
+  /// Of the present equilibrium. While the surface is in use the full ring is elsewhere.
+  DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_.ring.gear.wave_amplitude }; }
+
+  /// Ring in equilibrium at these angles. On failure the last good ring stays.
+  SolveStatus place(double motor_angle, double output_angle) noexcept;
+
+  /// All torques but friction at the present ring [N.m].
+  Eigen::Vector2d torque() const noexcept { return model_.torque(response_, output_angle_, inputs); }
+
+  /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
+  void updateFriction(const Eigen::Vector2d& speeds) noexcept;
+
+  void operator()(const JointState& x, JointState& rate, double t) noexcept;
+
+  const JointModel& model() const noexcept { return model_; }
+  const RingEquilibrium& ring() const noexcept { return ring_; }
+  double outputAngle() const noexcept { return output_angle_; }  ///< of the present equilibrium [rad]
+  const RingResponse& response() const noexcept { return response_; }
+  const JointFriction& friction() const noexcept { return friction_; }
+  const DryFriction& dryFriction() const noexcept { return dry_; }
+  /// Output speed over motor speed at constant load: from the ring's stiffness, not from the tooth numbers [-].
+  double follow() const noexcept { return response_.follow; }
+  double storedEnergy() const noexcept { return model_.storedEnergy(response_, output_angle_); }
+
+  JointInputs inputs;
+  SolveStatus status;  ///< worst since it was last cleared by its reader
+
+private:
+  SolveStatus bringRing() noexcept;
+  SolveStatus placeRing(double motor_angle, double output_angle) noexcept;
+  void takeRing() noexcept;
+  bool surfaceAgrees() const noexcept;
+  double viscosity() noexcept;
+
+  const JointModel& model_;
+  RingEquilibrium ring_;
+  RingResponse response_;  // present
+  double motor_angle_{};   // of it [rad]
+  double output_angle_{};
+  const ResponseSurface* surface_{};
+  ResponseSurface::Place place_{};
+  Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output [N.m/rad]
+  bool on_surface_{};
+  bool surface_agrees_{};  // at the present angles, while on the full ring
+  DryFriction dry_;
+  JointFriction friction_;
+  Eigen::VectorXd running_;  // scratch
+  double temperature_;       // that the viscosity is known for [degC]
+  double viscosity_;         // [m^2/s]
+};
+}  // namespace hjt

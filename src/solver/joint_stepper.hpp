@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "solver/leapfrog.hpp"
+
+namespace hjt
+{
+/// Marches the joint with the configured stepper and keeps its energy ledger.
+class JointStepper
+{
+public:
+  /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
+  /// after four swings [rad].
+  static constexpr double MAX_SWING_PHASE = 0.1;
+  static constexpr double REST_SPEED = 1e-7;  ///< of the output, 0.02 seconds of arc a second [rad/s]
+  static constexpr double REST_TIME = 0.1;    ///< [s]
+
+  /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
+  JointStepper(const Parameters& parameters, const JointModel& model);
+
+  /// At rest where the joint has settled. @returns false if it has not.
+  bool reset() noexcept;
+
+  /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
+  ///
+  /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved slower
+  /// than regularised friction creeps, or than counts. Then nothing is solved.
+  bool step(const JointInputs& inputs) noexcept;
+
+  /// After an edit of the model between two steps, the full ring in use: what its stored energy changes by is set free,
+  /// or taken up, by the fault. False: the ring did not converge and is still the old one.
+  bool followModel() noexcept;
+  double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
+
+  /// See JointDynamics.
+  void useSurface(const ResponseSurface* surface) noexcept
+  {
+    rest_steps_ = 0;
+    dynamics_.useSurface(surface);
+  }
+
+  double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
+  double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
+  const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
+  const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
+  double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
+  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
+  /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
+  double swingPhase() const noexcept;
+  const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
+  const JointDynamics& dynamics() const noexcept { return dynamics_; }
+
+private:
+  using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
+                                                           boost::numeric::odeint::vector_space_algebra>;
+  bool stepRungeKutta() noexcept;
+  bool staysAtRest(const JointInputs& inputs) const noexcept;
+  void checkStep(const Parameters& parameters);
+
+  StepperKind kind_;
+  int rest_steps_{};  // in a row at whose end the joint was at rest
+  double step_;       // [s]
+  JointDynamics dynamics_;
+  Leapfrog leapfrog_;
+  RungeKutta4 runge_kutta_;
+  JointState x_{ JointState::Zero() };
+  Eigen::Vector2d speeds_{ 0.0, 0.0 };
+  Eigen::Vector2d friction_{ 0.0, 0.0 };
+  double balance_{};          // motor work - load work - dissipated - kinetic energy [J]
+  double stored_at_start_{};  // [J]
+  double released_{};         // [J]
+  double throughput_{};
+};
+}  // namespace hjt

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gear/ratio.hpp"
+#include "statics/pitch_walk.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// The frictions of the joint along its walk through one tooth pitch.
+class LossMeter
+{
+public:
+  LossMeter(const Parameters& parameters, int positions)
+    : walk_(parameters, positions)
+    , friction_(parameters.gear.teeth_flexspline)
+    , running_(2 * parameters.gear.teeth_flexspline)
+    , temperature_(parameters.input.temperature)
+  {
+  }
+
+  PitchWalk& walk() { return walk_; }
+  const SolveStatus& status() const { return walk_.status(); }
+
+  /// What each friction takes at this position, per motor speed [N.m].
+  LossShares shares(double speed, double follow)
+  {
+    const Eigen::Vector2d rates(1.0, follow);  // of both angles by the motor's
+    const JointModel& model = walk_.model();
+    const RingEquilibrium& ring = walk_.ring();
+    const RingRates by_angle{ ring.byWaveGenerator(), ring.byOutput() };
+    running_ = by_angle.by_motor + follow * by_angle.by_output;
+    LossShares shares;
+    shares.bearing = model.bearing.torque(speed, ring.forces().contact_force.sum(), temperature_);
+    shares.interface = model.interface_friction.torque(ring.shape(), ring.forces(), running_);
+    shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
+                   model.load.viscousFriction() * follow * follow * std::abs(speed);
+    friction_.setZero();
+    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), by_angle, speed * rates, friction_);
+    shares.mesh = friction_.dryPower(rates);
+    friction_.setZero();
+    model.cup_friction.addTerm(ring.shape(), by_angle, friction_);
+    shares.cup = friction_.dryPower(rates);
+    model.damping.add(ring.shape(), ring.forces(), by_angle, friction_);
+    shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
+    return shares;
+  }
+
+private:
+  PitchWalk walk_;
+  JointFriction friction_;
+  Eigen::VectorXd running_;
+  double temperature_;
+};
+
+/// Friction of the gear at the wave generator as motion begins: the largest over a tooth pitch [N.m].
+double breakaway(LossMeter& meter, double load)
+{
+  double largest = 0.0;
+  meter.walk().under(load, [&](double follow) { largest = std::max(largest, meter.shares(0.0, follow).gear()); });
+  return largest;
+}
+}  // namespace
+
+std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vector<double>& speeds,
+                                   const std::vector<double>& loads, int positions,
+                                   const std::function<void(int)>& progress)
+{
+  LossMeter meter(parameters, positions);
+  std::vector<LossRow> rows;
+  for (const double load : loads)
+  {
+    const std::size_t first = rows.size();
+    for (const double speed : speeds)
+    {
+      rows.emplace_back();
+      rows.back().motor_speed = speed;
+      rows.back().load_torque = load;
+    }
+    const double part = 1.0 / positions;
+    meter.walk().under(load,
+                       [&](double follow)
+                       {
+                         for (std::size_t i = first; i < rows.size(); ++i)
+                         {
+                           const LossShares at = meter.shares(rows[i].motor_speed, follow);
+                           LossShares& mean = rows[i].loss;
+                           mean.bearing += part * at.bearing;
+                           mean.interface += part * at.interface;
+                           mean.mesh += part * at.mesh;
+                           mean.cup += part * at.cup;
+                           mean.damping += part * at.damping;
+                           mean.motor += part * at.motor;
+                           rows[i].load_reduced += part * load * follow;
+                         }
+                       });
+    for (std::size_t i = first; i < rows.size(); ++i)
+    {
+      rows[i].converged = meter.status().ok();
+      rows[i].residual = meter.status().residual;
+      const double asked = std::abs(rows[i].load_reduced);
+      rows[i].gear_efficiency = asked > 0.0 ? asked / (asked + rows[i].loss.gear()) : 0.0;
+    }
+    if (progress)
+    {
+      progress(static_cast<int>(rows.size() / speeds.size()));
+    }
+  }
+  return rows;
+}
+
+Breakaway analyseBreakaway(const Parameters& parameters, int positions)
+{
+  constexpr int MAX_ITERATIONS = 30;
+  constexpr double ENOUGH = 1e-6;  // relative change of the load
+  LossMeter meter(parameters, positions);
+  Breakaway result;
+  result.starting = breakaway(meter, 0.0);
+  // The load that the friction just holds: friction grows slowly with the load, so repeating converges.
+  const double ratio = nominalRatio(parameters.gear);
+  double load = ratio * result.starting;
+  for (int i = 0; i < MAX_ITERATIONS && !result.converged && meter.status().ok(); ++i)
+  {
+    const double next = ratio * breakaway(meter, load);
+    result.converged = std::abs(next - load) <= ENOUGH * next;
+    load = next;
+  }
+  result.back_driving = load;
+  result.converged = result.converged && meter.status().ok();
+  result.residual = meter.status().residual;
+  return result;
+}
+}  // namespace hjt

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "gear/angle.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+
+namespace hjt
+{
+/// The joint, with the faults it starts with, led quasi-statically through one tooth pitch of the wave generator at
+/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go through side by side in a pitch.
+class PitchWalk
+{
+public:
+  /// `positions`: wave generator angles per tooth pitch, >= 1.
+  PitchWalk(const Parameters& parameters, int positions)
+    : model_(startingJoint(parameters))
+    , ring_(model_.ring, staticSolver(parameters.solver))
+    , pitch_(TWO_PI / parameters.gear.teeth_flexspline)
+    , positions_(positions)
+    , status_(ring_.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }))
+  {
+  }
+
+  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. On failure it stops.
+  template <class Visit>
+  void under(double load, Visit&& visit)
+  {
+    for (int i = 0; i < positions_ && status_.ok(); ++i)
+    {
+      status_ = balanceOutput(ring_, pitch_ * i / positions_, load);
+      if (status_.ok())
+      {
+        visit(ring_.follow());
+      }
+    }
+  }
+
+  const JointModel& model() const { return model_; }
+  const RingEquilibrium& ring() const { return ring_; }
+  const SolveStatus& status() const { return status_; }
+
+private:
+  JointModel model_;
+  RingEquilibrium ring_;
+  double pitch_;
+  int positions_;
+  SolveStatus status_;
+};
+}  // namespace hjt

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "solver/output_balance.hpp"
+#include "statics/static_solver.hpp"
+
+namespace hjt
+{
+namespace
+{
+ToothTable tabulateTeeth(const RingEquilibrium& ring)
+{
+  ToothTable table;
+  const RingModel& model = ring.model();
+  const RingShape& shape = ring.shape();
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const Eigen::Vector2d point = shape.points.segment<2>(2 * i);
+    const Eigen::Vector2d rest = model.rest.radial().segment<2>(2 * i);
+    table.tooth_x.push_back(point.x());
+    table.tooth_y.push_back(point.y());
+    table.radius.push_back(point.norm());
+    table.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
+    table.wave_generator_force.push_back(ring.forces().contact_force[i]);
+    table.rim_tension.push_back(model.tension.tension(shape, i));
+    table.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
+    table.mesh_force.push_back(ring.forces().flank_force[i]);
+    const ToothPlace place = model.mesh.place(shape, ring.position(), i);
+    table.across.push_back(place.across);
+    table.depth.push_back(place.depth);
+    table.tilt.push_back(place.tilt);
+    table.gap.push_back(place.gap);
+  }
+  return table;
+}
+
+/// Of the housing on the flexspline [N.m].
+double housingTorque(const RingEquilibrium& ring)
+{
+  return -ring.model().cup.torque(ring.forces().cup_rotation);
+}
+
+double sum(const std::vector<double>& values)
+{
+  double total = 0.0;
+  for (const double value : values)
+  {
+    total += value;
+  }
+  return total;
+}
+}  // namespace
+
+InsertionResult analyseInsertion(const Parameters& parameters)
+{
+  RingModel model(parameters);
+  model.meshed = false;
+  InsertionResult result;
+  const auto start = std::chrono::steady_clock::now();
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  const SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  result.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.converged = status.ok();
+  result.iterations = status.iterations;
+  result.residual = status.residual;
+  result.teeth = tabulateTeeth(ring);
+  const ToothTable& teeth = result.teeth;
+  const auto force = std::minmax_element(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end());
+  const auto tension = std::minmax_element(teeth.rim_tension.begin(), teeth.rim_tension.end());
+  result.wave_generator_force_min = *force.first;
+  result.wave_generator_force_max = *force.second;
+  result.wave_generator_force_sum = sum(teeth.wave_generator_force);
+  result.teeth_in_contact = static_cast<int>(std::count_if(
+      teeth.wave_generator_force.begin(), teeth.wave_generator_force.end(), [](double f) { return f > 0.0; }));
+  result.tension_min = *tension.first;
+  result.tension_max = *tension.second;
+  result.radius_major_axis = teeth.radius.front();
+  result.radius_minor_axis = teeth.radius[teeth.radius.size() / 4];
+  for (const double force_of_tooth : teeth.bending_force)
+  {
+    result.bending_force_max = std::max(result.bending_force_max, std::abs(force_of_tooth));
+  }
+  return result;
+}
+
+std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
+                                           const std::vector<double>& torques)
+{
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  if (status.ok())
+  {
+    status = balanceOutput(ring, wave_generator_angle, 0.0);
+  }
+  const double unloaded = ring.position().output_angle;
+  std::vector<StiffnessRow> rows;
+  for (const double torque : torques)
+  {
+    if (status.ok())
+    {
+      status = balanceOutput(ring, wave_generator_angle, torque);
+    }
+    StiffnessRow row;
+    row.converged = status.ok();
+    row.torque = torque;
+    row.output_angle = ring.position().output_angle - unloaded;
+    row.wave_generator_torque = ring.forces().wave_generator_torque;
+    row.housing_torque = housingTorque(ring);
+    row.cup_rotation = ring.forces().cup_rotation;
+    row.residual = status.residual;
+    row.teeth = tabulateTeeth(ring);
+    for (int i = 0; i < model.rest.teeth(); ++i)
+    {
+      const double mesh = std::abs(ring.forces().flank_force[i]);
+      row.teeth_loaded += mesh > 0.0 ? 1 : 0;
+      row.mesh_force_max = std::max(row.mesh_force_max, mesh);
+      row.wave_generator_force_sum += ring.forces().contact_force[i];
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
+                                 const std::function<void(int)>& progress)
+{
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  std::vector<TurnRow> rows;
+  for (int i = 0; i <= steps; ++i)
+  {
+    const double angle = angle_range * i / steps;
+    if (status.ok())
+    {
+      status = balanceOutput(ring, angle, load_torque);
+    }
+    const double output_angle = ring.position().output_angle;
+    rows.push_back({ status.ok(), angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
+                     ring.forces().wave_generator_torque, housingTorque(ring), status.residual });
+    if (progress)
+    {
+      progress(i);
+    }
+  }
+  return rows;
+}
+}  // namespace hjt

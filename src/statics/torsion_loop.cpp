@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/statics/torsion_loop.hpp"
+
+#include <cmath>
+
+#include "model/joint_model.hpp"
+#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Where the polyline (torque ascending) passes a torque [rad].
+double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
+{
+  for (std::size_t i = 1; i < sweep.size(); ++i)
+  {
+    const TorsionPoint& a = sweep[i - 1];
+    const TorsionPoint& b = sweep[i];
+    if (torque <= b.torque)
+    {
+      return a.output_angle + (b.output_angle - a.output_angle) * (torque - a.torque) / (b.torque - a.torque);
+    }
+  }
+  return sweep.back().output_angle;
+}
+}  // namespace
+
+TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps)
+{
+  const JointModel model(parameters);
+  RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
+  JointFriction friction(parameters.gear.teeth_flexspline);
+  TorsionLoop loop;
+  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  if (status.ok())
+  {
+    status = balanceOutput(ring, 0.0, 0.0);
+  }
+  const double unloaded = ring.position().output_angle;
+  std::vector<TorsionPoint> up;    // load growing, torque ascending
+  std::vector<TorsionPoint> down;  // load falling
+  for (int i = 0; i <= steps && status.ok(); ++i)
+  {
+    const double elastic = amplitude * (2.0 * i / steps - 1.0);
+    status = balanceOutput(ring, 0.0, elastic);
+    friction.setZero();
+    const RingRates rates{ ring.byWaveGenerator(), ring.byOutput() };
+    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), rates, Eigen::Vector2d::Zero(),
+                                 friction);
+    model.cup_friction.addTerm(ring.shape(), rates, friction);
+    const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
+    const double angle = unloaded - ring.position().output_angle;
+    up.push_back({ elastic + drag, angle });
+    down.push_back({ elastic - drag, angle });
+  }
+  loop.converged = status.ok();
+  loop.residual = status.residual;
+  if (loop.converged)
+  {
+    loop.points.assign(down.rbegin(), down.rend());
+    loop.points.insert(loop.points.end(), up.begin(), up.end());
+    loop.hysteresis = angleAt(down, 0.0) - angleAt(up, 0.0);
+    const auto middle = [&](double torque) { return 0.5 * (angleAt(up, torque) + angleAt(down, torque)); };
+    loop.lost_motion = middle(lost_motion_torque) - middle(-lost_motion_torque);
+  }
+  return loop;
+}
+}  // namespace hjt

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "life/drive_ageing.hpp"
+#include "life/nominal_use.hpp"
+#include "life/remaining_life.hpp"
+
+namespace hjt
+{
+struct LifeTrialOptions
+{
+  int lives{};
+  std::uint32_t seed{};
+  double every{};             ///< hours of use between two readings
+  int particles{};            ///< of the filter
+  double flank_wear_error{};  ///< of one reading, standard deviation [m]
+  double spall_error{};       ///< of one reading, standard deviation [-]
+  bool grease_changes{};
+};
+
+/// What the filter said at one reading, and what came.
+struct LifeForecast
+{
+  double hours{};           ///< of use when it was said
+  double remaining{};       ///< what came [h]
+  RemainingHours forecast;  ///< what was said
+
+  /// The interval from the 10 to the 90 % quantile holds what came.
+  bool held() const { return remaining >= forecast.quantile[1] && remaining <= forecast.quantile[3]; }
+};
+
+struct LifeTrial
+{
+  DriveNature nature;
+  DriveAgeing::Life life;
+  std::vector<LifeForecast> forecasts;  ///< none if the life did not end
+};
+
+/// How often an interval that should hold 80 % of all outcomes did.
+struct Coverage
+{
+  int said{};
+  int held{};
+
+  double share() const { return said > 0 ? static_cast<double>(held) / said : 0.0; }
+};
+
+/// Over all forecasts from a share `from` of each life on.
+Coverage coverage(const std::vector<LifeTrial>& trials, double from);
+
+/// Drives drawn from the spread of the parameters, each worn by the laws until its end and watched by a filter that
+/// knows neither its nature nor, but for the readings with their errors, its wear.
+/// `longest`: a life still going on then is left out [h].
+std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAgeing& ageing,
+                                     const LifeTrialOptions& options, double longest,
+                                     const std::function<void(double)>& progress);
+}  // namespace hjt

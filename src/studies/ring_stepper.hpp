@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "studies/dynamic_ring.hpp"
+
+namespace hjt
+{
+/// Where a dynamic ring is, with its energy ledger.
+struct RingMotion
+{
+  explicit RingMotion(int coordinates) : q(Eigen::VectorXd::Zero(coordinates)), v(Eigen::VectorXd::Zero(coordinates)) {}
+
+  Eigen::VectorXd q;    ///< tooth points [m], wave generator angle, output angle [rad]
+  Eigen::VectorXd v;    ///< their speeds
+  double time{};        ///< [s]
+  double supplied{};    ///< energy from outside since the start [J]
+  double dissipated{};  ///< by dashpots and viscous friction [J]
+};
+
+/// What a run has cost.
+struct StepCounts
+{
+  long steps{};
+  long force_evaluations{};
+  long factorisations{};
+  long halvings{};    ///< of steps that did not converge
+  long rejections{};  ///< of steps whose error was too large
+};
+
+/// A method of marching a dynamic ring.
+class RingStepper
+{
+public:
+  virtual ~RingStepper() = default;
+
+  /// One step; teeth and spaces are paired at its start. On failure the motion stays as it was.
+  virtual bool step(RingMotion& motion, double length) noexcept = 0;
+
+  const StepCounts& counts() const noexcept { return counts_; }
+
+protected:
+  StepCounts counts_;
+};
+
+/// A method that judges the error of each step by a second one embedded in it.
+class EmbeddedRingStepper : public RingStepper
+{
+public:
+  /// One step of just this length, teeth and spaces as they are. False if it does not come about: the motion stays.
+  virtual bool attempt(RingMotion& motion, double length) noexcept = 0;
+
+  /// To be told before the first attempt from a motion, and whenever motion or drive were changed from outside.
+  virtual void restart() noexcept = 0;
+  /// The last attempt stands: the next one goes on from its end. Otherwise the next one starts where that did.
+  virtual void accept() noexcept = 0;
+
+  /// Of the last attempt in the positions: the largest over the teeth [m].
+  double errorEstimate() const noexcept { return error_; }
+  virtual int errorPower() const noexcept = 0;  ///< of the step's length that the estimate goes with
+
+protected:
+  double error_{};
+};
+}  // namespace hjt

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "model/joint_model.hpp"
+#include "solver/response_surface.hpp"
+
+namespace hjt
+{
+/// Departures of a gear from one of equal teeth, or why there are none.
+struct DepartureBuild
+{
+  DepartureTable table;
+  std::string obstacle;  ///< empty: the table is good
+  int solves{};          ///< equilibria of the ring that were found for it
+};
+
+/// Tabulates by how much the ring of `actual` differs from that of `equal`, whose surface has the range `lowest` ... `highest`
+/// of v [rad].
+///
+/// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
+/// size of the departures: half a per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
+DepartureBuild buildDepartures(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
+                               int repetition, double lowest, double highest,
+                               const std::function<void(double)>& progress);
+}  // namespace hjt

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "model/joint_model.hpp"
+#include "solver/response_surface.hpp"
+
+namespace hjt
+{
+/// A response surface, or why there is none.
+struct SurfaceBuild
+{
+  SurfaceTable table;
+  std::string obstacle;  ///< empty: the table is good
+  int solves{};          ///< equilibria of the ring that were found for it
+};
+
+/// Tabulates the ring in equilibrium from no load to twice the torque that load or motor can bring, both ways.
+///
+/// The grid follows from measured errors: wherever the table's torques at the middle of an interval miss the ring's by
+/// more than a tolerance, the interval is halved. `model` must be the same again after every tooth pitch. There is no
+/// surface where its ring finds no equilibrium at the torques of its limits.
+/// `progress`: called with 0 ... 1, or empty.
+SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
+                          const std::function<void(double)>& progress);
+}  // namespace hjt

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/surface_cache.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <random>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/text_hash.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "surface/departure_builder.hpp"
+#include "surface/surface_builder.hpp"
+#include "surface/surface_ring.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+/// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
+constexpr const char* FORMAT = "harmonic_joint_twin response surface 3\n";
+/// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
+/// the friction is added when the surface is read.
+constexpr std::array<const char*, 30> OTHER_KEYS{ "joint.",
+                                                  "fault",
+                                                  "brake.",
+                                                  "solver.",
+                                                  "sensors.",
+                                                  "health.",
+                                                  "indicators.",
+                                                  "telemetry.",
+                                                  "observer.",
+                                                  "comparison.",
+                                                  "life.",
+                                                  "input.",
+                                                  "publish.",
+                                                  "realtime.",
+                                                  "ring.mass",
+                                                  "mesh.friction_kinetic",
+                                                  "mesh.stribeck_velocity",
+                                                  "cup.friction_torque",
+                                                  "bearing.lubricant_factor",
+                                                  "bearing.viscosity",
+                                                  "motor.rotor_inertia",
+                                                  "motor.wave_generator_inertia",
+                                                  "motor.coulomb_torque",
+                                                  "motor.viscous_friction",
+                                                  "motor.speed_limit",
+                                                  "output.circular_spline_inertia",
+                                                  "output.load_inertia",
+                                                  "output.viscous_friction",
+                                                  "output.gravity_torque",
+                                                  "output.gravity_angle" };
+const std::string NO_SURFACE = "no response surface: ";
+const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
+
+/// Format and every parameter that the ring may depend on.
+std::string parametersOfTheRing(const Parameters& parameters)
+{
+  std::istringstream lines(describeParameters(parameters));
+  std::string text = FORMAT;
+  for (std::string line; std::getline(lines, line);)
+  {
+    const bool other =
+        std::any_of(OTHER_KEYS.begin(), OTHER_KEYS.end(), [&](const char* key) { return line.rfind(key, 0) == 0; });
+    text += other ? "" : line.substr(0, line.find("  #")) + '\n';
+  }
+  return text;
+}
+
+/// The same with the faults, and with what stands in files that the parameters name.
+std::string header(const Parameters& parameters, const std::string& faults)
+{
+  std::string text = parametersOfTheRing(parameters) + faults + '\n';
+  for (const std::string& path :
+       { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })
+  {
+    std::ifstream file(path, std::ios::binary);
+    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    text += '\n';
+  }
+  return text;
+}
+
+/// These parameters with teeth and spaces that are all equal.
+Parameters withEqualTeeth(Parameters parameters)
+{
+  ManufactureParameters& errors = parameters.manufacture;
+  for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
+  {
+    pitch->deviation = 0.0;
+    pitch->table = NO_FILE;
+  }
+  errors.circular_spline_eccentricity = {};
+  errors.circular_spline_ellipticity = {};
+  return parameters;
+}
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count)
+{
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+/// The table's numbers as they lie in memory: the cache is for this machine.
+std::string body(const SurfaceTable& table)
+{
+  std::string bytes;
+  const std::array<double, 4> sizes{ table.pitch, table.ratio, static_cast<double>(table.columns),
+                                     static_cast<double>(table.lines.size()) };
+  append(bytes, sizes.data(), sizes.size());
+  append(bytes, table.lines.data(), table.lines.size());
+  append(bytes, table.nodes.data(), table.nodes.size());
+  return bytes;
+}
+
+std::string body(const DepartureTable& table)
+{
+  std::string bytes;
+  const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
+  append(bytes, sizes.data(), sizes.size());
+  for (const DepartureTable::Pitch& pitch : table.pitches)
+  {
+    const std::array<double, 2> counts{ static_cast<double>(pitch.columns), static_cast<double>(pitch.lines.size()) };
+    append(bytes, counts.data(), counts.size());
+    append(bytes, pitch.lines.data(), pitch.lines.size());
+    append(bytes, pitch.nodes.data(), pitch.nodes.size());
+  }
+  return bytes;
+}
+
+/// Takes a body to pieces; whether there were enough bytes and numbers is known in the end.
+class BodyReader
+{
+public:
+  explicit BodyReader(std::string_view bytes) : bytes_(bytes) {}
+
+  /// A whole number not below `least`.
+  std::size_t size(double least)
+  {
+    constexpr double MOST = 1e6;
+    double value = 0.0;
+    take(&value, 1);
+    good_ = good_ && value >= least && value < MOST;
+    return good_ ? static_cast<std::size_t>(value) : 0;
+  }
+
+  template <class T>
+  void vector(std::vector<T>& values, std::size_t count)
+  {
+    good_ = good_ && count <= bytes_.size() / sizeof(T);
+    values.resize(good_ ? count : 0);
+    take(values.data(), values.size());
+  }
+
+  void number(double& value) { take(&value, 1); }
+
+  bool complete() const { return good_ && bytes_.empty(); }
+
+private:
+  template <class T>
+  void take(T* values, std::size_t count)
+  {
+    good_ = good_ && bytes_.size() >= count * sizeof(T);
+    if (good_ && count > 0)
+    {
+      std::memcpy(values, bytes_.data(), count * sizeof(T));
+      bytes_.remove_prefix(count * sizeof(T));
+    }
+  }
+
+  std::string_view bytes_;
+  bool good_{ true };
+};
+
+bool finite(const std::vector<SurfaceTable::Node>& nodes)
+{
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [](const SurfaceTable::Node& node)
+                     { return std::all_of(node.begin(), node.end(), [](double x) { return std::isfinite(x); }); });
+}
+
+bool ascending(const std::vector<double>& lines)
+{
+  return std::is_sorted(lines.begin(), lines.end(), std::less_equal<>());
+}
+
+bool parseBody(std::string_view bytes, SurfaceTable& table)
+{
+  BodyReader reader(bytes);
+  reader.number(table.pitch);
+  reader.number(table.ratio);
+  const std::size_t columns = reader.size(1.0);
+  const std::size_t lines = reader.size(2.0);
+  table.columns = static_cast<int>(columns);
+  reader.vector(table.lines, lines);
+  reader.vector(table.nodes, lines * (columns + 1));
+  return reader.complete() && ascending(table.lines) && finite(table.nodes);
+}
+
+bool parseBody(std::string_view bytes, DepartureTable& table)
+{
+  BodyReader reader(bytes);
+  table.pitches.resize(reader.size(2.0));
+  table.swaps_lobes = reader.size(0.0) != 0;
+  bool good = true;
+  for (DepartureTable::Pitch& pitch : table.pitches)
+  {
+    const std::size_t columns = reader.size(0.0);
+    const std::size_t lines = reader.size(0.0);
+    pitch.columns = static_cast<int>(columns);
+    reader.vector(pitch.lines, lines);
+    reader.vector(pitch.nodes, lines > 0 ? lines * (columns + 1) : 0);
+    good = good && lines != 1 && ascending(pitch.lines) && finite(pitch.nodes);
+  }
+  return good && reader.complete();
+}
+
+template <class Table>
+bool readFile(const std::string& path, const std::string& wanted, Table& table)
+{
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::uint64_t sum = 0;
+  if (!file || bytes.size() < wanted.size() + sizeof(sum) || bytes.compare(0, wanted.size(), wanted) != 0)
+  {
+    return false;
+  }
+  const std::string_view rest = std::string_view(bytes).substr(wanted.size());
+  const std::string_view values = rest.substr(0, rest.size() - sizeof(sum));
+  std::memcpy(&sum, rest.data() + values.size(), sizeof(sum));
+  return sum == textHash(values) && parseBody(values, table);
+}
+
+/// @returns what went wrong, or nothing.
+std::string writeFile(const std::string& path, const std::string& bytes)
+{
+  std::error_code error;
+  fs::create_directories(fs::path(path).parent_path(), error);
+  const std::string temporary = path + '.' + std::to_string(std::random_device{}());
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file)
+    {
+      fs::remove(temporary, error);
+      return "cannot write " + temporary;
+    }
+  }
+  fs::rename(temporary, path, error);
+  if (error)
+  {
+    const std::string reason = error.message();
+    fs::remove(temporary, error);
+    return "cannot write " + path + ": " + reason;
+  }
+  return {};
+}
+
+std::string fileOf(const std::string& kind, const std::string& key, const std::string& directory)
+{
+  std::ostringstream name;
+  name << directory << '/' << kind << '_' << std::hex << textHash(key) << ".bin";
+  return name.str();
+}
+
+void tell(const SurfaceSource& source, const std::string& what)
+{
+  if (source.notice)
+  {
+    source.notice(what);
+  }
+}
+
+/// A table from the cache, or built and put there. Empty: it could not be built, and why has been told.
+template <class Table, class Build>
+std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
+{
+  const bool kept = !source.cache_directory.empty();
+  const std::string path = fileOf(kind, key, source.cache_directory);
+  Table table;
+  if (kept && readFile(path, key, table))
+  {
+    return table;
+  }
+  auto built = build();
+  if (!built.obstacle.empty())
+  {
+    tell(source, NO_SURFACE + built.obstacle + FULL_RING_INSTEAD);
+    return std::nullopt;
+  }
+  if (kept)
+  {
+    std::string bytes = body(built.table);
+    const std::uint64_t sum = textHash(bytes);
+    append(bytes, &sum, 1);
+    const std::string problem = writeFile(path, key + bytes);
+    if (!problem.empty())
+    {
+      tell(source, "response surface not kept: " + problem);
+    }
+  }
+  return std::move(built.table);
+}
+}  // namespace
+
+std::string surfaceCacheDirectory()
+{
+  const auto variable = [](const char* name)
+  {
+    const char* value = std::getenv(name);
+    return std::string(value != nullptr ? value : "");
+  };
+  const std::string cache = variable("XDG_CACHE_HOME");
+  const std::string home = variable("HOME");
+  const std::string base = !cache.empty() ? cache : !home.empty() ? home + "/.cache" : "";
+  return base.empty() ? "" : base + "/harmonic_joint_twin";
+}
+
+std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory)
+{
+  return fileOf("surface", header(parameters, {}), directory);
+}
+
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
+                                           const std::string& faults, const SurfaceSource& source)
+{
+  // The cache is asked only for gears that repeat: what stops others is not in its keys.
+  const int repetition = SurfaceRing(parameters, model).repetition();
+  const Parameters equal_parameters = repetition == 1 ? parameters : withEqualTeeth(parameters);
+  const JointModel equal = repetition == 1 ? model : JointModel(equal_parameters);
+  if (repetition == 0 || (repetition > 1 && SurfaceRing(equal_parameters, equal).repetition() != 1))
+  {
+    tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
+    return std::nullopt;
+  }
+  const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
+  std::optional<SurfaceTable> table = obtain<SurfaceTable>(
+      "surface", key, source, [&] { return buildSurface(equal_parameters, equal, source.progress); });
+  if (!table)
+  {
+    return std::nullopt;
+  }
+  SurfaceTables tables{ std::move(*table), {} };
+  if (repetition > 1)
+  {
+    std::optional<DepartureTable> departures = obtain<DepartureTable>(
+        "departures", header(parameters, faults), source,
+        [&]
+        {
+          return buildDepartures(parameters, equal, model, repetition, tables.table.lines.front(),
+                                 tables.table.lines.back(), source.progress);
+        });
+    if (!departures)
+    {
+      return std::nullopt;
+    }
+    tables.departures = std::move(*departures);
+  }
+  return tables;
+}
+
+SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
+{
+  std::promise<Surface> promise;
+  std::shared_future<Surface> surface;
+  bool mine = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.first == key; });
+    mine = found == entries_.end();
+    if (mine)
+    {
+      entries_.emplace_front(key, promise.get_future().share());
+      if (entries_.size() > kept_)
+      {
+        entries_.pop_back();
+      }
+    }
+    else
+    {
+      entries_.splice(entries_.begin(), entries_, found);
+    }
+    surface = entries_.front().second;
+  }
+  if (mine)
+  {
+    try
+    {
+      promise.set_value(make());
+    }
+    catch (...)
+    {
+      promise.set_exception(std::current_exception());
+    }
+  }
+  return surface.get();
+}
+
+SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
+                                   const SurfaceSource& source)
+{
+  const auto make = [&]() -> SurfacePool::Surface
+  {
+    std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
+    return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->departures)) :
+                    nullptr;
+  };
+  return source.pool ? source.pool->obtain(header(parameters, faults), make) : make();
+}
+}  // namespace hjt

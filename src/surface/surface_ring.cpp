@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/surface_ring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "gear/ratio.hpp"
+#include "model/lobe_loads.hpp"
+#include "statics/static_solver.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Node = SurfaceTable::Node;
+
+constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
+constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
+constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
+
+MeshParameters unitFriction(MeshParameters parameters)
+{
+  parameters.friction_static = 1.0;
+  parameters.friction_kinetic = 1.0;
+  return parameters;
+}
+
+/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in three by
+/// the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor speed.
+///
+/// While the drive runs, and while the motor stands and the output swings, all flanks of a group slide the same way, so
+/// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean square.
+void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* groups)
+{
+  constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
+  constexpr double LOW = 0.25;   // slip, as a share of the mean, that counts to the slowest group only
+  constexpr double HIGH = 1.25;  // likewise to the fastest; between them it is shared by two
+  struct Sums
+  {
+    double force{};
+    Eigen::Vector2d slip{ 0.0, 0.0 };     // running, twisting
+    Eigen::Vector2d squares{ 0.0, 0.0 };  // running squared, running times twisting
+  };
+  std::array<Sums, RingFrictionResponse::FLANK_GROUPS> sums;
+  std::array<double, 2> first{};
+  std::array<double, 2> second{};
+  const auto running = [&](const FrictionTerm& term) { return term.slip[0] + follow * term.slip[1]; };
+  const auto sense = [&](const FrictionTerm& term) { return running(term) * term.slip[1] >= 0.0 ? 0 : 1; };
+  for (const FrictionTerm& term : terms)
+  {
+    const double slip = std::abs(running(term));
+    first[sense(term)] += term.strength * slip;
+    second[sense(term)] += term.strength * slip * slip;
+  }
+  for (const FrictionTerm& term : terms)
+  {
+    const int half = sense(term);
+    const double mean = first[half] > 0.0 ? second[half] / first[half] : 1.0;
+    const double sign = running(term) >= 0.0 ? 1.0 : -1.0;
+    const Eigen::Vector2d slip(sign * running(term), sign * term.slip[1]);
+    const double size = std::clamp((slip[0] / mean - LOW) / (HIGH - LOW), 0.0, 1.0) * (SIZES - 1);
+    for (int i = 0; i < SIZES; ++i)
+    {
+      const double force = term.strength * std::max(0.0, 1.0 - std::abs(size - i));
+      Sums& group = sums[SIZES * half + i];
+      group.force += force;
+      group.slip += force * slip;
+      group.squares += force * slip[0] * slip;
+    }
+  }
+  for (const Sums& group : sums)
+  {
+    const double size = group.force > 0.0 ? std::sqrt(group.squares[0] / group.force) : 0.0;
+    const Eigen::Vector2d rms =
+        size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
+    // From (motor speed, output speed less what follows) to (motor speed, output speed).
+    groups[0] = group.slip[0] - follow * group.slip[1];
+    groups[2 * SIZES] = group.slip[1];
+    groups[4 * SIZES] = rms[0] - follow * rms[1];
+    groups[6 * SIZES] = rms[1];
+    ++groups;
+  }
+}
+}  // namespace
+
+SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
+  : model_(std::move(model))
+  , unit_friction_(unitFriction(parameters.mesh), parameters.gear.teeth_flexspline)
+  , ring_(model_.ring, staticSolver(parameters.solver))
+  , friction_(parameters.gear.teeth_flexspline)
+  , running_(2 * parameters.gear.teeth_flexspline)
+  , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,
+                                             (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))
+  , pitch_(model_.ring.rest.pitchAngle())
+  , ratio_(nominalRatio(parameters.gear))
+  , wave_amplitude_(model_.ring.gear.wave_amplitude)
+  , torque_limit_(std::max(parameters.output.load_torque_limit, parameters.motor.torque_limit * ratio_))
+  , motor_limit_(parameters.motor.torque_limit)
+  , softest_(parameters.cup.torsion_stiffness[0])
+  , static_friction_(parameters.mesh.friction_static)
+  , temperature_(parameters.input.temperature)
+{
+  unit_friction_.toothFactor() = model_.mesh_friction.toothFactor();
+}
+
+bool SurfaceRing::insert()
+{
+  return ring_.insert({ 0.0, 0.0, wave_amplitude_ }).ok();
+}
+
+bool SurfaceRing::moveTo(double motor_angle, double v)
+{
+  ++solves_;
+  return ring_.moveTo({ motor_angle, v + motor_angle / ratio_, wave_amplitude_ }).ok();
+}
+
+Node SurfaceRing::measure()
+{
+  Node node{};
+  const RingForces& forces = ring_.forces();
+  const Eigen::Matrix2d& k = ring_.stiffness();
+  const double follow = ring_.follow();
+  const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
+  node[SurfaceTable::ENERGY] = forces.energy;
+  node[SurfaceTable::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
+  node[SurfaceTable::ENERGY_BY_V] = -forces.output_torque;
+  node[SurfaceTable::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
+  node[SurfaceTable::FOLLOW] = follow;
+  node[SurfaceTable::OUTPUT_STIFFNESS] = k(1, 1);
+  node[SurfaceTable::CONTACT_FORCE] = forces.contact_force.sum();
+  running_ = rates.by_motor + follow * rates.by_output;
+  node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), forces, running_);
+  friction_.setZero();
+  model_.damping.add(ring_.shape(), forces, rates, friction_);
+  node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
+  node[SurfaceTable::VISCOUS + 1] = friction_.viscous(0, 1);
+  node[SurfaceTable::VISCOUS + 2] = friction_.viscous(1, 1);
+  unit_friction_.addTerms(model_.ring.mesh, ring_.shape(), forces, rates, { 0.0, 0.0 }, friction_);
+  groupFlanks(friction_.terms, follow, &node[SurfaceTable::FLANKS]);
+  const LobeLoads lobes =
+      lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles_, ring_.position().wave_generator_angle });
+  node[SurfaceTable::TEETH_LOADED] = lobes.teeth_loaded;
+  node[SurfaceTable::LOBE_FORCE] = lobes.mesh_force[0];
+  node[SurfaceTable::LOBE_FORCE + 1] = lobes.mesh_force[1];
+  return node;
+}
+
+double SurfaceRing::overload(const Node& node) const noexcept
+{
+  return std::abs(node[SurfaceTable::ENERGY_BY_V]) > torque_limit_ ? OVERLOAD_FACTOR : 1.0;
+}
+
+double SurfaceRing::outputTolerance(const Node& node) const noexcept
+{
+  return ANGLE_TOLERANCE * std::max(node[SurfaceTable::OUTPUT_STIFFNESS], softest_) * overload(node);
+}
+
+double SurfaceRing::motorTolerance(const Node& node) const noexcept
+{
+  return MOTOR_TOLERANCE * motor_limit_ * overload(node);
+}
+
+double SurfaceRing::frictionTorque(const Node& node) const noexcept
+{
+  double flanks = 0.0;
+  for (int i = SurfaceTable::FLANKS; i < SurfaceTable::FLANKS + RingFrictionResponse::FLANK_GROUPS; ++i)
+  {
+    flanks += std::abs(node[i] + node[SurfaceTable::FOLLOW] * node[i + RingFrictionResponse::FLANK_GROUPS]);
+  }
+  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) +
+         node[SurfaceTable::INTERFACE_TORQUE] + static_friction_ * flanks;
+}
+
+int SurfaceRing::repetition()
+{
+  constexpr double SAME = 1e-6;  // of the torque limit [-]
+  constexpr double LOAD = 0.25;  // of the torque limit [-]
+  const int teeth = model_.ring.rest.teeth();
+  // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to the
+  // circular spline's. Where its lobes differ, twice as much.
+  const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
+  std::array<bool, candidates.size()> repeats;
+  repeats.fill(true);
+  std::vector<Eigen::Vector2d> torques(2 * static_cast<std::size_t>(teeth) + 2);
+  for (const double direction : { -1.0, 1.0 })
+  {
+    if (!insert())
+    {
+      return 0;
+    }
+    for (std::size_t i = 0; i < torques.size(); ++i)
+    {
+      if (!moveTo(static_cast<double>(i) * pitch_, direction * twist(LOAD * torque_limit_)))
+      {
+        return 0;
+      }
+      torques[i] = { ring_.forces().output_torque, ring_.forces().wave_generator_torque * ratio_ };
+    }
+    for (std::size_t c = 0; c < candidates.size(); ++c)
+    {
+      const auto period = static_cast<std::size_t>(candidates[c]);
+      for (std::size_t i = period; i < torques.size() && repeats[c]; ++i)
+      {
+        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME * torque_limit_;
+      }
+    }
+  }
+  const auto first = std::find(repeats.begin(), repeats.end(), true);
+  return first == repeats.end() ? 0 : candidates[static_cast<std::size_t>(first - repeats.begin())];
+}
+}  // namespace hjt

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/joint_model.hpp"
+#include "solver/response_surface.hpp"
+#include "solver/ring_equilibrium.hpp"
+
+namespace hjt
+{
+/// A ring in equilibrium, solved to rounding, that is led over the nodes of a response surface and measured there.
+class SurfaceRing
+{
+public:
+  SurfaceRing(const Parameters& parameters, JointModel model);
+
+  SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
+  SurfaceRing& operator=(const SurfaceRing&) = delete;
+
+  /// At angle 0 of both, from cold. False: not converged.
+  bool insert();
+
+  /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.
+  bool moveTo(double motor_angle, double v);
+
+  /// All values of a node at the present place.
+  SurfaceTable::Node measure();
+
+  double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
+  double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
+  double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]
+  double torqueLimit() const noexcept { return torque_limit_; }  ///< of load or motor, at the output [N.m]
+  const JointModel& model() const noexcept { return model_; }
+
+  /// Departure from no load that brings about this torque on the softest slope of the cup [rad].
+  double twist(double torque) const noexcept { return torque / softest_; }
+
+  /// How far a table's output torque may be off at a node: what 0.002 seconds of arc make [N.m].
+  double outputTolerance(const SurfaceTable::Node& node) const noexcept;
+
+  /// Likewise the motor's torque, or friction there: a share of the motor's torque limit [N.m].
+  double motorTolerance(const SurfaceTable::Node& node) const noexcept;
+
+  /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].
+  double frictionTorque(const SurfaceTable::Node& node) const noexcept;
+
+  /// Teeth that the gear must turn by to be the same again at the same v: 1 where all teeth are equal, half a turn or a
+  /// whole one where those of one member differ; 0: none of these. As torques of both signs tell, sampled once a pitch.
+  int repetition();
+
+  int solves() const noexcept { return solves_; }
+
+  /// Beyond the torque limits tolerances are this much wider.
+  double overload(const SurfaceTable::Node& node) const noexcept;
+
+private:
+  JointModel model_;
+  MeshFriction unit_friction_;
+  RingEquilibrium ring_;
+  JointFriction friction_;
+  Eigen::VectorXd running_;  // scratch
+  Eigen::VectorXd tooth_angles_;
+  double pitch_;
+  double ratio_;
+  double wave_amplitude_;
+  double torque_limit_;
+  double motor_limit_;  // [N.m]
+  double softest_;      // slope of the cup [N.m/rad]
+  double static_friction_;
+  double temperature_;
+  int solves_{};
+};
+}  // namespace hjt

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/surface_worker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <sstream>
+#include <string>
+
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "model/faults/joint_faults.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr std::chrono::milliseconds LOOK_PERIOD{ 20 };
+
+/// Thrown out of the report of progress to end the building.
+struct GivenUp : std::exception
+{
+};
+
+/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
+std::string keyOf(const FaultList& faults, const Parameters& parameters)
+{
+  if (faults.empty())
+  {
+    return "";
+  }
+  std::ostringstream text;
+  for (const ActiveFault& active : faults)
+  {
+    text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
+         << '\n';
+  }
+  std::istringstream lines(describeParameters(parameters));
+  for (std::string line; std::getline(lines, line);)
+  {
+    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
+  }
+  return text.str();
+}
+
+/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
+bool isOfTheBalls(const ActiveFault& active) noexcept
+{
+  const FaultKind kind = active.fault.kind;
+  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
+         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
+}
+}  // namespace
+
+SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
+                                       const SurfaceSource& source)
+{
+  if (std::any_of(faults.begin(), faults.end(), isOfTheBalls))
+  {
+    if (source.notice)
+    {
+      source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
+    }
+    return nullptr;
+  }
+  JointModel model(parameters);
+  JointFaults(parameters, model).apply(faults);
+  return sharedSurface(parameters, model, keyOf(faults, parameters), source);
+}
+
+SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source)
+  : parameters_(parameters), source_(source), faults_(faults), thread_([this] { run(); })
+{
+}
+
+SurfaceWorker::~SurfaceWorker()
+{
+  stopping_ = true;
+  thread_.join();
+}
+
+bool SurfaceWorker::request(const FaultList& faults) noexcept
+{
+  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock())
+  {
+    return false;
+  }
+  faults_ = faults;
+  asked_.fetch_add(1, std::memory_order_relaxed);
+  return true;
+}
+
+void SurfaceWorker::run()
+{
+  for (std::uint64_t taken = 0; !stopping_; std::this_thread::sleep_for(LOOK_PERIOD))
+  {
+    if (taken == asked_)
+    {
+      continue;
+    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    const FaultList faults = faults_;
+    taken = asked_;
+    lock.unlock();
+    obtain(taken, faults);
+  }
+}
+
+void SurfaceWorker::obtain(std::uint64_t request, const FaultList& faults)
+{
+  const auto given_up = [this, request] { return stopping_ || asked_ != request; };
+  SurfaceSource watched = source_;
+  watched.progress = [&](double done)
+  {
+    if (given_up())
+    {
+      throw GivenUp{};
+    }
+    if (source_.progress)
+    {
+      source_.progress(done);
+    }
+  };
+  SurfacePool::Surface surface;
+  try
+  {
+    surface = surfaceWithFaults(parameters_, faults, watched);
+  }
+  catch (const std::exception& error)
+  {
+    if (!given_up() && source_.notice)
+    {
+      source_.notice(std::string("no response surface: ") + error.what());
+    }
+  }
+  surface_ = std::move(surface);
+  done_.store(request, std::memory_order_release);
+}
+}  // namespace hjt

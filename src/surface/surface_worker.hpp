@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+
+#include "harmonic_joint_twin/model/faults/fault_list.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "surface/surface_cache.hpp"
+
+namespace hjt
+{
+/// The response surface of the drive with these faults; none, and the source is told why, if there is none.
+SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
+                                       const SurfaceSource& source);
+
+/// Obtains response surfaces in a thread of its own, beside a twin that runs.
+class SurfaceWorker
+{
+public:
+  /// Starts the thread with a first request.
+  SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source);
+
+  /// Gives up what is not finished.
+  ~SurfaceWorker();
+
+  /// Asks for the surface of the drive with these faults in place of the last one, which must not be in use any more.
+  /// False: not now, ask again. Neither waits nor allocates.
+  bool request(const FaultList& faults) noexcept;
+
+  /// The surface asked for last once it is there; until then, or if there is none, null. Neither waits nor allocates.
+  const ResponseSurface* surface() const noexcept
+  {
+    return done_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed) ? surface_.get() : nullptr;
+  }
+
+private:
+  void run();
+  void obtain(std::uint64_t request, const FaultList& faults);
+
+  const Parameters parameters_;
+  const SurfaceSource source_;
+  std::mutex mutex_;
+  FaultList faults_;  // asked for last
+  SurfacePool::Surface surface_;
+  std::atomic<std::uint64_t> asked_{ 1 };  // requests so far
+  std::atomic<std::uint64_t> done_{ 0 };   // the request that surface_ is for
+  std::atomic<bool> stopping_{ false };
+  std::thread thread_;
+};
+}  // namespace hjt

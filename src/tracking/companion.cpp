@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/companion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/motion_driven.hpp"
+#include "tracking/observer.hpp"
+#include "tracking/torque_driven.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Half width of a band, in deviations.
+constexpr double DEVIATIONS = 3.0;
+/// Beyond these a message was damaged [rad], [A].
+constexpr double LARGEST_ANGLE = 1.0e4;
+constexpr double LARGEST_CURRENT = 1.0e4;
+
+bool isPlausible(const MotionRow& row)
+{
+  return std::isfinite(row.time) && std::abs(row.position) < LARGEST_ANGLE && std::abs(row.current) < LARGEST_CURRENT &&
+         !(std::abs(row.motor_angle) > LARGEST_ANGLE * LARGEST_ANGLE);
+}
+
+class TorqueFollower : public Companion::Follower
+{
+public:
+  TorqueFollower(const Parameters& parameters, const SurfaceSource& source) : twin_(parameters, source) {}
+
+  void follow(const MotionSample& sample, double external, Comparison& now) noexcept override
+  {
+    const TorqueDriven::Motion motion = twin_.step(sample, external);
+    now.position.predicted = motion.position;
+    now.velocity.predicted = motion.velocity;
+    now.joint_torque = motion.joint_torque;
+    now.friction_torque = motion.friction_torque;
+  }
+  std::uint64_t solverFailures() const noexcept override { return twin_.solverFailures(); }
+
+private:
+  TorqueDriven twin_;
+};
+
+class MotionFollower : public Companion::Follower
+{
+public:
+  explicit MotionFollower(const Parameters& parameters) : twin_(parameters), telemetry_(parameters.telemetry) {}
+
+  void follow(const MotionSample& sample, double /*external*/, Comparison& now) noexcept override
+  {
+    const MotionPrediction predicted = twin_.step(sample);
+    now.current.predicted = predicted.current;
+    now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
+    now.sticking = predicted.band > telemetry_.current_deviation;
+    now.friction_torque = predicted.friction_torque;
+    now.joint_torque = sample.load + telemetry_.torque_per_current * now.current.residual();
+  }
+
+private:
+  MotionDriven twin_;
+  TelemetryParameters telemetry_;
+};
+
+class ObserverFollower : public Companion::Follower
+{
+public:
+  explicit ObserverFollower(const Parameters& parameters)
+    : observer_(parameters), telemetry_(parameters.telemetry), ratio_(nominalRatio(parameters.gear))
+  {
+  }
+
+  void follow(const MotionSample& sample, double external, Comparison& now) noexcept override
+  {
+    const double to_current = ratio_ / telemetry_.torque_per_current;
+    const Observation seen = observer_.step({ sample.time, (sample.current - telemetry_.current_offset) / to_current,
+                                              external, sample.position, sample.motor_angle, sample.after_gap });
+    now.position.predicted = sample.position - seen.innovation;
+    now.position.band = seen.innovation_band;
+    // Of the rotor: the output's own swings by what the load is not known.
+    now.velocity.predicted = seen.motor_velocity / ratio_;
+    now.current.predicted = sample.current + to_current * seen.residual_torque;
+    now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
+    now.sticking = seen.sticking;
+    now.friction_torque = ratio_ * seen.friction_torque;
+    now.joint_torque = seen.joint_torque;
+  }
+
+private:
+  Observer observer_;
+  TelemetryParameters telemetry_;
+  double ratio_;
+};
+
+std::unique_ptr<Companion::Follower> makeFollower(const Parameters& parameters, InputMode mode,
+                                                  const SurfaceSource& source)
+{
+  if (mode == InputMode::MOTION)
+  {
+    return std::make_unique<MotionFollower>(parameters);
+  }
+  if (parameters.telemetry.load == LoadSource::TARGET_MOMENT && parameters.output.gravity_torque != 0.0)
+  {
+    throw ParameterError(
+        "telemetry.load = target_moment holds the weight already, but output.gravity_torque = " +
+        numberText(parameters.output.gravity_torque) +
+        " [N.m]: give config/recorded_load.yaml after the joint's own file, or telemetry.load = model");
+  }
+  if (mode == InputMode::TORQUE)
+  {
+    return std::make_unique<TorqueFollower>(parameters, source);
+  }
+  return std::make_unique<ObserverFollower>(parameters);
+}
+}  // namespace
+
+Companion::Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source)
+  : mode_(mode)
+  , load_source_(parameters.telemetry.load)
+  , load_(parameters.output)
+  , telemetry_(parameters.telemetry)
+  , ratio_(nominalRatio(parameters.gear))
+  , temperature_(parameters.input.temperature)
+  , follower_(makeFollower(parameters, mode, surface_source))
+  , signals_(parameters)
+  , assessor_(parameters)
+{
+}
+
+Companion::~Companion() = default;
+
+void Companion::reset() noexcept
+{
+  earlier_.refused += smoother_.refused();
+  earlier_.gaps += smoother_.gaps();
+  smoother_ = MotionSmoother();
+  restarted_ = true;
+  loads_end_ = 0;
+  outside_share_ = 0.0;
+  timing_.reset();
+  lag_.reset();
+  signals_.reset();
+  assessor_.reset();
+}
+
+void Companion::giveLoad(double time, double torque) noexcept
+{
+  if (std::isfinite(time) && std::isfinite(torque))
+  {
+    loads_[loads_end_ % LOADS] = { time, torque };
+    ++loads_end_;
+  }
+}
+
+/// The load given last of those not later than `time`.
+std::optional<double> Companion::loadAt(double time) const noexcept
+{
+  if (load_source_ == LoadSource::MODEL)
+  {
+    return std::nullopt;
+  }
+  for (std::uint64_t i = loads_end_; i > 0 && loads_end_ - i < LOADS; --i)
+  {
+    const LoadAt& load = loads_[(i - 1) % LOADS];
+    if (load.time <= time)
+    {
+      return load.torque;
+    }
+  }
+  return std::nullopt;
+}
+
+void Companion::give(const MotionRow& row) noexcept
+{
+  if (!isPlausible(row))
+  {
+    ++earlier_.refused;
+    return;
+  }
+  if (row.time < last_time_ - RESTART)
+  {
+    reset();
+    ++counters_.restarts;
+  }
+  timing_.add(row.time, row.received);
+  if (smoother_.push(row))
+  {
+    last_time_ = row.time;
+  }
+}
+
+std::optional<Comparison> Companion::take(bool at_end) noexcept
+{
+  std::optional<MotionSample> sample = smoother_.pop(at_end);
+  if (!sample)
+  {
+    return std::nullopt;
+  }
+  sample->after_gap = sample->after_gap || restarted_;
+  restarted_ = false;
+
+  const std::optional<double> told = loadAt(sample->time);
+  const bool is_all = told && load_source_ == LoadSource::TARGET_MOMENT;
+  const double modelled = load_.inertia() * sample->acceleration - load_.gravityTorque(sample->position);
+  sample->load = told.value_or(0.0) + (is_all ? 0.0 : modelled);
+  // What of the motor's inertia a controller reckons with is not there a second time.
+  const double external =
+      told.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample->acceleration : 0.0);
+
+  Comparison now;
+  now.time = sample->time;
+  now.position = { sample->position, sample->position, 0.0 };
+  now.velocity = { sample->velocity, sample->velocity, 0.0 };
+  now.current = { sample->current, sample->current, 0.0 };
+  now.load_torque = sample->load;
+  now.load_told = told.has_value();
+  now.after_gap = sample->after_gap;
+  follower_->follow(*sample, external, now);
+  now.residual_torque = telemetry_.torque_per_current * now.current.residual();
+
+  watch(*sample, sample->load);
+  if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
+  {
+    const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
+    lag_.add(now.time, judged.predicted, judged.measured);
+  }
+  const double step = now.after_gap ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
+  outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
+  last_compared_ = now.time;
+  ++counters_.compared;
+  counters_.outside += now.isOutside() ? 1 : 0;
+  counters_.without_load += load_source_ != LoadSource::MODEL && !told ? 1 : 0;
+  return now;
+}
+
+/// Health from the measured signals.
+void Companion::watch(const MotionSample& sample, double load) noexcept
+{
+  SignalSample signal;
+  signal.stamp = std::llround(1e9 * sample.time);
+  signal.motor_angle = sample.motor_angle;
+  signal.output_angle = sample.position;
+  signal.motor_velocity = ratio_ * sample.velocity;
+  signal.motor_torque = telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_;
+  // The monitor adds the weight that is configured.
+  signal.load_torque = load + load_.gravityTorque(sample.position);
+  signal.temperature = temperature_;
+  if (signals_.update(signal))
+  {
+    assessor_.take(signals_.indicators());
+  }
+}
+
+CompanionCounters Companion::counters() const noexcept
+{
+  CompanionCounters counters = counters_;
+  counters.refused = earlier_.refused + smoother_.refused();
+  counters.gaps = earlier_.gaps + smoother_.gaps();
+  counters.solver_failures = follower_->solverFailures();
+  return counters;
+}
+}  // namespace hjt

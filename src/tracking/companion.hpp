@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "elements/load.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "health/signal_monitor.hpp"
+#include "surface/surface_cache.hpp"
+#include "tracking/lag_estimate.hpp"
+#include "tracking/motion_smoother.hpp"
+#include "tracking/stream_timing.hpp"
+
+namespace hjt
+{
+/// One quantity, measured and predicted.
+struct Compared
+{
+  double measured{};
+  double predicted{};
+  double band{};  ///< half width within which a healthy joint's residual is expected; 0: nothing is known of it
+
+  double residual() const noexcept { return measured - predicted; }
+};
+
+/// A healthy joint beside the measured one at the time of one row of telemetry. Fields as in Comparison.msg; always finite.
+struct Comparison
+{
+  double time{};             ///< of the row [s]
+  Compared position;         ///< of the joint [rad]
+  Compared velocity;         ///< of the joint [rad/s]
+  Compared current;          ///< of the motor [A]
+  double joint_torque{};     ///< what the joint gives to the arm: measured, less friction and the rotor's inertia [N.m]
+  double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
+  double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
+  bool load_told{};          ///< it was told; else it is weight and inertia as configured
+  bool sticking{};           ///< friction holds the joint: any current within the band fits
+  bool after_gap{};          ///< first after a gap in the telemetry
+
+  /// Measured less predicted current as a torque at the joint [N.m].
+  double residual_torque{};
+  bool isOutside() const noexcept { return std::abs(current.residual()) > current.band && current.band > 0.0; }
+};
+
+/// What came of the rows that were given.
+struct CompanionCounters
+{
+  std::uint64_t compared{};         ///< rows beside which there is a comparison
+  std::uint64_t refused{};          ///< repeated, out of order, not finite or beyond what can be
+  std::uint64_t gaps{};             ///< longer than MotionSmoother::LONGEST_GAP
+  std::uint64_t restarts{};         ///< stamps went back by more than Companion::RESTART
+  std::uint64_t outside{};          ///< comparisons whose current lies outside its band
+  std::uint64_t without_load{};     ///< comparisons with a load that was not told, though input is to tell it
+  std::uint64_t solver_failures{};  ///< steps of the twin in torque mode that did not converge
+};
+
+/// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion` and
+/// `observer`. Live and offline alike: the same rows and loads give the same numbers, if a load comes before the rows that
+/// are MotionSmoother::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or allocates.
+class Companion
+{
+public:
+  /// Stamps that go back by more are a new recording or a clock that was set [s].
+  static constexpr double RESTART = 1.0;
+  static constexpr double OUTSIDE_MEMORY = 2.0;  ///< [s]
+  /// Loads that are kept for rows to come.
+  static constexpr std::size_t LOADS = 512;
+
+  /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
+  Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
+  ~Companion();
+
+  void reset() noexcept;
+
+  /// The load at the output from `time` on; as telemetry.load says, external or all in all [N.m]. Not finite: refused.
+  void giveLoad(double time, double torque) noexcept;
+
+  /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
+  void give(const MotionRow& row) noexcept;
+
+  /// The next comparison that is ready, at most MotionSmoother::HALF_WIDTH after its row. Call it until there is none.
+  std::optional<Comparison> take(bool at_end = false) noexcept;
+
+  CompanionCounters counters() const noexcept;
+  StreamTimingReport timing() const noexcept { return timing_.report(); }
+
+  /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
+  double outsideShare() const noexcept { return outside_share_; }
+
+  /// By how much what was measured comes after what is predicted from the other signals: current (motion) or speed (torque);
+  /// the observer tells nothing of it [s].
+  std::optional<double> lag() const noexcept { return lag_.lag(); }
+
+  /// Health of the measured joint, from its own signals.
+  const SignalIndicators& signalIndicators() const noexcept { return signals_.indicators(); }
+  const Assessment& assessment() const noexcept { return assessor_.assessment(); }
+
+  /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the weight and
+  /// inertia that are configured; the whole is in the sample [N.m]
+  class Follower
+  {
+  public:
+    virtual ~Follower() = default;
+    virtual void follow(const MotionSample& sample, double external, Comparison& now) noexcept = 0;
+    virtual std::uint64_t solverFailures() const noexcept { return 0; }
+  };
+
+private:
+  struct LoadAt
+  {
+    double time;
+    double torque;
+  };
+  std::optional<double> loadAt(double time) const noexcept;
+  void watch(const MotionSample& sample, double load) noexcept;
+
+  InputMode mode_;
+  LoadSource load_source_;
+  Load load_;
+  TelemetryParameters telemetry_;
+  double ratio_;
+  double temperature_;
+  std::unique_ptr<Follower> follower_;
+  MotionSmoother smoother_;
+  bool restarted_{};
+  double last_time_{};
+  std::array<LoadAt, LOADS> loads_{};
+  std::uint64_t loads_end_{};
+  double outside_share_{};
+  double last_compared_{};  // [s]
+  StreamTiming timing_;
+  LagEstimate lag_;
+  SignalMonitor signals_;
+  Assessor assessor_;
+  CompanionCounters counters_;
+  CompanionCounters earlier_;  // refused before the smoother, and by it before the last restart
+};
+}  // namespace hjt

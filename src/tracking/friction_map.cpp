@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/friction_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int POSITIONS = 8;  // over a tooth pitch
+// Equally spaced in their logarithm.
+constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
+// Shares of the load that the motor can hold.
+constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
+
+Parameters withoutErrors(Parameters parameters)
+{
+  parameters.manufacture = {};
+  parameters.manufacture.flexspline_pitch.table = NO_FILE;
+  parameters.manufacture.circular_spline_pitch.table = NO_FILE;
+  return parameters;
+}
+}  // namespace
+
+FrictionMap::FrictionMap(const Parameters& parameters)
+  : bearing_(parameters.bearing)
+  , race_preload_(parameters.bearing.race_preload)
+  , viscous_(parameters.motor.viscous_friction +
+             parameters.output.viscous_friction / std::pow(nominalRatio(parameters.gear), 2))
+  , preload_torque_(bearing_.torque(0.0, 0.0, parameters.input.temperature) -
+                    bearing_.torque(0.0, -race_preload_, parameters.input.temperature))
+{
+  static_assert(SPEEDS == hjt::SPEEDS.size());
+  const double largest = parameters.motor.torque_limit * nominalRatio(parameters.gear);
+  std::vector<double> loads;
+  for (const double share : LOADS)
+  {
+    loads.push_back(share * largest);
+  }
+  const std::vector<double> speeds(hjt::SPEEDS.begin(), hjt::SPEEDS.end());
+  const std::vector<LossRow> rows = analyseLosses(withoutErrors(parameters), speeds, loads, POSITIONS, {});
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    const LossRow& row = rows[i];
+    if (!row.converged)
+    {
+      throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.load_torque) +
+                           " N.m at the output");
+    }
+    if (i % SPEEDS == 0)
+    {
+      const double grease = bearing_.torque(row.motor_speed, -race_preload_, parameters.input.temperature);
+      lines_.push_back({ row.load_torque,
+                         row.loss.bearing - grease - preload_torque_ + row.loss.interface + row.loss.cup +
+                             parameters.motor.coulomb_torque,
+                         {} });
+    }
+    lines_.back().flanks[i % SPEEDS] = row.loss.mesh;
+  }
+}
+
+FrictionShares FrictionMap::at(double motor_speed, double load, double temperature) const noexcept
+{
+  const double speed = std::abs(motor_speed);
+  const double size = std::clamp(std::abs(load), 0.0, lines_.back().load);
+  const auto above =
+      std::find_if(lines_.begin() + 1, lines_.end() - 1, [&](const Line& line) { return line.load >= size; });
+  const Line& high = *above;
+  const Line& low = *(above - 1);
+  const double v = (size - low.load) / (high.load - low.load);
+
+  const double step = std::log(hjt::SPEEDS[1] / hjt::SPEEDS[0]);
+  const double at = std::clamp(std::log(std::max(speed, hjt::SPEEDS[0]) / hjt::SPEEDS[0]) / step, 0.0, SPEEDS - 1.0);
+  const std::size_t k = std::min(static_cast<std::size_t>(at), SPEEDS - 2);
+  const double u = at - static_cast<double>(k);
+  const auto flanks = [&](const Line& line) { return (1.0 - u) * line.flanks[k] + u * line.flanks[k + 1]; };
+
+  FrictionShares shares;
+  shares.preload = preload_torque_;
+  shares.grease = bearing_.torque(speed, -race_preload_, temperature);
+  shares.flanks = (1.0 - v) * flanks(low) + v * flanks(high);
+  shares.rest = (1.0 - v) * low.rest + v * high.rest;
+  shares.viscous = viscous_ * speed;
+  return shares;
+}
+}  // namespace hjt

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "elements/bearing_friction.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Friction of the joint in steady motion, each share as a torque at the motor shaft, >= 0 [N.m].
+struct FrictionShares
+{
+  double preload{};  ///< bearing: balls loaded by their own outer race; proportional to bearing.race_preload
+  double grease{};   ///< bearing: by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power of 2/3
+  double flanks{};   ///< tooth flanks; proportional to mesh.friction_static and _kinetic together
+  double rest{};     ///< bearing under the wave generator's load, outer race, cup, the motor's Coulomb torque
+  double viscous{};  ///< motor and output, proportional to the speed
+
+  double sum() const noexcept { return preload + grease + flanks + rest + viscous; }
+};
+
+/// The twin's friction by speed and load, tabled once from the whole ring, so that a motion of hours costs seconds.
+///
+/// Errors of manufacture are left out: they change the friction's ripple over a tooth pitch, not its mean.
+class FrictionMap
+{
+public:
+  /// Tables loads up to what the motor can hold (some ten milliseconds).
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit FrictionMap(const Parameters& parameters);
+
+  /// At motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the largest.
+  FrictionShares at(double motor_speed, double load, double temperature) const noexcept;
+
+private:
+  static constexpr std::size_t SPEEDS = 7;
+  struct Line  // at one load
+  {
+    double load;                        // [N.m]
+    double rest;                        // [N.m]
+    std::array<double, SPEEDS> flanks;  // [N.m]
+  };
+
+  BearingFriction bearing_;
+  double race_preload_;    // [N]
+  double viscous_;         // motor side, output's in it [N.m.s/rad]
+  double preload_torque_;  // [N.m]
+  std::vector<Line> lines_;
+};
+}  // namespace hjt

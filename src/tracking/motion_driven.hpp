@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "elements/load.hpp"
+#include "elements/motor.hpp"
+#include "tracking/friction_map.hpp"
+#include "tracking/motion_smoother.hpp"
+#include "tracking/presliding.hpp"
+#include "tracking/torque_ripple.hpp"
+
+namespace hjt
+{
+/// What a healthy joint takes to make a motion.
+struct MotionPrediction
+{
+  double motor_torque{};     ///< at the shaft [N.m]
+  double current{};          ///< [A]
+  double friction_torque{};  ///< of the whole, at the joint, with its sign [N.m]
+  double friction_limit{};   ///< the most that it could be at this speed and load [N.m]
+  double band{};             ///< half width of the current's band that the motion leaves open [A]
+};
+
+/// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table of it.
+///
+///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
+/// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
+///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
+///       T_r what the kinematic error makes of it (TorqueRipple)
+/// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred nanoseconds;
+/// nothing allocates.
+class MotionDriven
+{
+public:
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit MotionDriven(const Parameters& parameters);
+
+  MotionPrediction step(const MotionSample& sample) noexcept;
+
+  /// Weight and inertia of what the joint is configured to carry, where a recording does not tell the load [N.m].
+  double modelledLoad(const MotionSample& sample) const noexcept
+  {
+    return load_.inertia() * sample.acceleration - load_.gravityTorque(sample.position);
+  }
+
+private:
+  FrictionMap friction_;
+  Presliding presliding_;
+  TorqueRipple ripple_;
+  Load load_;
+  TelemetryParameters telemetry_;
+  double inertia_;  // of motor and wave generator, less what the load holds [kg.m^2]
+  double ratio_;
+  double temperature_;
+  MotionSample last_;
+  bool started_{};
+};
+}  // namespace hjt

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/observer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "base/number_text.hpp"
+#include "elements/motor.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double DAMPING = 0.02;  // of the torsional swing, of critical [-]
+constexpr std::array<double, 9> CURVE{ 0.0, 5.0, 14.0, 25.0, 48.0, 75.0, 110.0, 150.0, 200.0 };  // [N.m]
+constexpr double DEVIATIONS = 3.0;                                                               // of a band
+// Of the first state, rms.
+constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
+constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
+constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // as much as the disturbance changes in this time [s]
+
+using Vector = ObserverPiece::Vector;
+using Matrix = ObserverPiece::Matrix;
+}  // namespace
+
+ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
+                                const ObserverParameters& noise)
+{
+  ObserverPiece piece;
+  piece.stiffness = stiffness;
+  // Damping of the swing of both bodies against each other, seen from the output.
+  const double reduced = 1.0 / (1.0 / (inertia[0] * ratio * ratio) + 1.0 / inertia[1]);
+  const double damping = 2.0 * DAMPING * std::sqrt(stiffness * reduced);
+
+  Eigen::Matrix<double, 7, 7> rates = Eigen::Matrix<double, 7, 7>::Zero();
+  const Eigen::Matrix<double, 1, 4> torsion(1.0 / ratio, 0.0, -1.0, 0.0);
+  const Eigen::Matrix<double, 1, 4> torsion_rate(0.0, 1.0 / ratio, 0.0, -1.0);
+  const Eigen::Matrix<double, 1, 4> torque = stiffness * torsion + damping * torsion_rate;
+  rates(0, 1) = 1.0;
+  rates(2, 3) = 1.0;
+  rates.block<1, 4>(1, 0) = -torque / (ratio * inertia[0]);
+  rates.block<1, 4>(3, 0) = torque / inertia[1];
+  rates(1, 4) = rates(1, 5) = 1.0 / inertia[0];
+  rates(3, 6) = 1.0 / inertia[1];
+  rates *= step;
+  const Eigen::Matrix<double, 7, 7> whole = rates.exp();
+  piece.transition = whole.block<5, 5>(0, 0);
+  piece.input = whole.block<5, 2>(0, 5);
+
+  const Eigen::Vector2d power(std::pow(noise.torque_noise, 2) / step, std::pow(noise.load_noise, 2) / step);
+  piece.process = piece.input * power.asDiagonal() * piece.input.transpose();
+  piece.process(4, 4) += std::pow(noise.disturbance_growth, 2) * step;
+  return piece;
+}
+
+Vector takeAngle(Matrix& covariance, ObserverPiece::State angle, double noise) noexcept
+{
+  const double power = noise * noise;
+  const Vector gain = covariance.col(angle) / (covariance(angle, angle) + power);
+  Matrix left = Matrix::Identity();
+  left.col(angle) -= gain;
+  covariance = (left * covariance * left.transpose() + power * gain * gain.transpose()).eval();
+  return gain;
+}
+
+Observer::Observer(const Parameters& parameters)
+  : friction_(parameters)
+  , load_(parameters.output)
+  , noise_(parameters.observer)
+  , ratio_(nominalRatio(parameters.gear))
+  , temperature_(parameters.input.temperature)
+{
+  const std::vector<StiffnessRow> rows =
+      analyseStiffness(parameters, 0.0, std::vector<double>(CURVE.begin(), CURVE.end()));
+  const Eigen::Vector2d inertia(Motor(parameters.motor).inertia(), load_.inertia());
+  for (const StiffnessRow& row : rows)
+  {
+    if (!row.converged)
+    {
+      throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
+                           " N.m at the output");
+    }
+    curve_.push_back({ -row.output_angle, row.torque });
+    if (curve_.size() > 1)
+    {
+      const CurvePoint& last = curve_[curve_.size() - 2];
+      const double slope = (curve_.back().torque - last.torque) / (curve_.back().torsion - last.torsion);
+      pieces_.push_back(makeObserverPiece(inertia, ratio_, slope, STEP, noise_));
+    }
+  }
+}
+
+/// The piece of the curve that holds a torsion; the last one goes on for ever.
+std::size_t Observer::pieceAt(double torsion) const noexcept
+{
+  std::size_t piece = 0;
+  while (piece + 1 < pieces_.size() && curve_[piece + 1].torsion < std::abs(torsion))
+  {
+    ++piece;
+  }
+  return piece;
+}
+
+double Observer::torque(double torsion) const noexcept
+{
+  const std::size_t piece = pieceAt(torsion);
+  const CurvePoint& low = curve_[piece];
+  return std::copysign(low.torque + pieces_[piece].stiffness * (std::abs(torsion) - low.torsion), torsion);
+}
+
+double Observer::torsionUnder(double torque) const noexcept
+{
+  std::size_t piece = 0;
+  while (piece + 1 < pieces_.size() && curve_[piece + 1].torque < std::abs(torque))
+  {
+    ++piece;
+  }
+  const CurvePoint& low = curve_[piece];
+  return std::copysign(low.torsion + (std::abs(torque) - low.torque) / pieces_[piece].stiffness, torque);
+}
+
+/// At rest under the load; what the first rows say of speed and disturbance is believed at once.
+void Observer::start(const Measurement& measurement) noexcept
+{
+  const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
+  const double motor_angle = ratio_ * (measurement.output_angle + torsionUnder(load));
+  motor_zero_ = measurement.motor_angle - motor_angle;
+  state_ << motor_angle, 0.0, measurement.output_angle, 0.0, 0.0;
+  Vector deviation;
+  deviation << ratio_ * FIRST_TORSION, ratio_ * FIRST_SPEED, noise_.output_angle_noise, FIRST_SPEED,
+      noise_.disturbance_growth * std::sqrt(FIRST_DISTURBANCE_TIME);
+  covariance_ = deviation.cwiseAbs2().asDiagonal();
+  now_ = measurement.time;
+  started_ = true;
+}
+
+/// One step on.
+void Observer::predict(double motor_torque, double load_torque) noexcept
+{
+  const double torsion = state_[0] / ratio_ - state_[2];
+  const double gear = torque(torsion);
+  const ObserverPiece& piece = pieces_[pieceAt(torsion)];
+
+  // The curve's own torque where the linear piece gives stiffness times torsion.
+  const double beyond = gear - piece.stiffness * torsion;
+  const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
+  const Vector free =
+      piece.transition * state_ + piece.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
+
+  const double most = friction_.at(state_[1], gear, temperature_).sum();
+  const double by_friction = piece.input(1, 0);
+  friction_now_ = std::clamp(free[1] / by_friction, -most, most);
+  sticking_ = std::abs(friction_now_) < most;
+  state_ = free - piece.input.col(0) * friction_now_;
+
+  Matrix transition = piece.transition;
+  if (sticking_)
+  {
+    // Friction takes what would move the motor: a linear map too.
+    Matrix held = Matrix::Identity();
+    held.col(1) -= piece.input.col(0) / by_friction;
+    transition = held * transition;
+    covariance_ = (transition * covariance_ * transition.transpose() + held * piece.process * held.transpose()).eval();
+  }
+  else
+  {
+    covariance_ = (transition * covariance_ * transition.transpose() + piece.process).eval();
+  }
+  now_ += STEP;
+}
+
+/// Takes one angle; returns the innovation.
+double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
+{
+  const double innovation = measured - state_[angle];
+  angle_deviation_ = std::sqrt(covariance_(angle, angle) + noise * noise);
+  state_ += takeAngle(covariance_, angle, noise) * innovation;
+  return innovation;
+}
+
+Observation Observer::step(const Measurement& measurement) noexcept
+{
+  if (!started_ || measurement.anew)
+  {
+    start(measurement);
+    last_ = measurement;
+  }
+  const double motor_torque = 0.5 * (last_.motor_torque + measurement.motor_torque);
+  const double load_torque = 0.5 * (last_.load_torque + measurement.load_torque);
+  last_ = measurement;
+  while (now_ + 0.5 * STEP < measurement.time)
+  {
+    predict(motor_torque, load_torque);
+  }
+  // The row lies within half a step of the state.
+  const double beside = measurement.time - now_;
+  if (std::isfinite(measurement.motor_angle))
+  {
+    correct(ObserverPiece::MOTOR_ANGLE, measurement.motor_angle - motor_zero_ - state_[1] * beside,
+            noise_.motor_angle_noise);
+  }
+
+  Observation now;
+  now.innovation =
+      correct(ObserverPiece::OUTPUT_ANGLE, measurement.output_angle - state_[3] * beside, noise_.output_angle_noise);
+  now.innovation_band = DEVIATIONS * angle_deviation_;
+  now.motor_angle = state_[0];
+  now.motor_velocity = state_[1];
+  now.output_angle = state_[2];
+  now.output_velocity = state_[3];
+  now.joint_torque = torque(state_[0] / ratio_ - state_[2]);
+  now.friction_torque = friction_now_;
+  now.residual_torque = state_[4];
+  now.residual_band = DEVIATIONS * std::sqrt(covariance_(4, 4));
+  now.sticking = sticking_;
+  return now;
+}
+}  // namespace hjt

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elements/load.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/friction_map.hpp"
+
+namespace hjt
+{
+/// The joint about one local stiffness, one step on: x' = transition x + input (motor torque, output torque).
+/// x: motor angle and speed, output angle and speed, disturbance torque at the motor.
+struct ObserverPiece
+{
+  using Vector = Eigen::Matrix<double, 5, 1>;
+  using Matrix = Eigen::Matrix<double, 5, 5>;
+  enum State : int
+  {
+    MOTOR_ANGLE,
+    MOTOR_SPEED,
+    OUTPUT_ANGLE,
+    OUTPUT_SPEED,
+    DISTURBANCE
+  };
+
+  double stiffness{};  ///< [N.m/rad] at the output
+  Matrix transition;
+  Eigen::Matrix<double, 5, 2> input;
+  Matrix process;  ///< covariance of what no model knows, over a step
+};
+
+/// The exact step of one stiffness. `inertia`: of motor and output [kg.m^2]; `step` [s].
+/// Two per cent of critical damping are taken for the torsional swing, so that a swing faster than the rows cannot hide.
+ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
+                                const ObserverParameters& noise);
+
+/// Kalman gain of one measured angle; the covariance becomes that after the measurement (Joseph's form).
+ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece::State angle, double noise) noexcept;
+
+/// What is measured at one instant.
+struct Measurement
+{
+  double time{};          ///< [s]
+  double motor_torque{};  ///< told from the current [N.m]
+  double load_torque{};   ///< external, at the output, > 0 resists positive motion [N.m]
+  double output_angle{};  ///< [rad]
+  double motor_angle{};   ///< NaN: there is no such encoder [rad]
+  bool anew{};            ///< first after a gap: what was before is forgotten
+};
+
+/// What the observer knows after it.
+struct Observation
+{
+  double motor_angle{};      ///< zero where output and load say [rad]
+  double motor_velocity{};   ///< [rad/s]
+  double output_angle{};     ///< [rad]
+  double output_velocity{};  ///< [rad/s]
+  double joint_torque{};     ///< in the gear, at the output [N.m]
+  double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
+  double residual_torque{};  ///< at the motor: what the measurement needs beyond the healthy joint [N.m]
+  double residual_band{};    ///< of it, three deviations, if the noise is as stated and the joint healthy [N.m]
+  double innovation{};       ///< output angle measured less predicted [rad]
+  double innovation_band{};  ///< of it, three deviations [rad]
+  bool sticking{};           ///< friction holds the motor: within it any torque fits, so the residual says nothing new
+};
+
+/// The joint of four states, driven by the measured torque and corrected towards the encoders, the output's alone or both: an
+/// extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
+///
+/// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed to
+/// stop the motor, at most what it is. While friction holds the motor, no torque within it moves anything, so angles teach
+/// nothing of the disturbance and nothing winds up; its band widens instead. A robot that moves all the same pulls the model's
+/// output along, whose spring then tears the motor loose.
+/// What the encoders ask for beyond is one torque, the residual: friction that has grown, a load that was not told. The
+/// model's own parameters are never adapted, so a fault cannot be learnt away. A step costs about a microsecond.
+class Observer
+{
+public:
+  static constexpr double STEP = 1.0e-3;  ///< [s]
+
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit Observer(const Parameters& parameters);
+
+  Observation step(const Measurement& measurement) noexcept;
+
+private:
+  struct CurvePoint
+  {
+    double torsion;  // [rad]
+    double torque;   // [N.m]
+  };
+  std::size_t pieceAt(double torsion) const noexcept;
+  double torque(double torsion) const noexcept;
+  double torsionUnder(double torque) const noexcept;
+  void start(const Measurement& measurement) noexcept;
+  void predict(double motor_torque, double load_torque) noexcept;
+  double correct(ObserverPiece::State angle, double measured, double noise) noexcept;
+
+  FrictionMap friction_;
+  Load load_;
+  ObserverParameters noise_;
+  double ratio_;
+  double temperature_;
+  std::vector<CurvePoint> curve_;  // for torsion >= 0, ascending
+  std::vector<ObserverPiece> pieces_;
+  ObserverPiece::Vector state_;
+  ObserverPiece::Matrix covariance_;
+  Measurement last_;
+  bool started_{};
+  double now_{};           // of the state [s]
+  double motor_zero_{};    // of the motor encoder [rad]
+  double friction_now_{};  // [N.m]
+  bool sticking_{};
+  double angle_deviation_{};  // expected of the innovation of the angle taken last [rad]
+};
+}  // namespace hjt
