@@ -32,14 +32,6 @@ int wrapped(int number, int size) noexcept
 {
   return (number % size + size) % size;
 }
-
-/// One attempt after another: the second's outcome, the effort of both.
-SolveStatus add(const SolveStatus& first, SolveStatus second) noexcept
-{
-  second.iterations += first.iterations;
-  second.cuts += first.cuts;
-  return second;
-}
 }  // namespace
 
 RingEquilibrium::Equilibrium::Equilibrium(const RingModel& model)
@@ -73,12 +65,13 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , by_wave_generator_(now_.by_wave_generator)
   , by_output_(now_.by_output)
 {
-  parameters_.force_tolerance = std::max(parameters_.force_tolerance, rounding());
+  rounding_ = measureRounding();
+  parameters_.force_tolerance = std::max(parameters_.force_tolerance, rounding_);
 }
 
-/// What a coordinate's last digit is worth as a force [N]: no solve comes below it. It is less than the shipped
-/// tolerance by a factor of 1000, and counts for rims much stiffer or teeth much finer than the shipped gear's.
-double RingEquilibrium::rounding() noexcept
+/// Less than the shipped tolerance by a factor of 1000; it counts for rims much stiffer or teeth much finer than the
+/// shipped gear's.
+double RingEquilibrium::measureRounding() noexcept
 {
   model_.forces(now_.shape, now_.position, forces_);
   model_.tangent(now_.shape, forces_, tangent_);
@@ -92,15 +85,16 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   SolveStatus status = moveTo(target);
   if (!status.ok() && wedged)
   {
-    status = add(status, insertWedged(target));
+    status = insertWedged(target).addEffort(status);
   }
   if (!status.ok())
   {
     beginRound(target);
     descending_ = true;
-    status = add(status, moveTo(target));
+    status = moveTo(target).addEffort(status);
     descending_ = false;
   }
+  status.stage = SolveStage::INSERTION;
   return status;
 }
 
@@ -120,7 +114,7 @@ SolveStatus RingEquilibrium::insertWedged(const DrivePosition& target) noexcept
   }
   updateForces();
   now_.residual = largest(forces_.teeth);
-  return add(status, moveTo(target));
+  return moveTo(target).addEffort(status);
 }
 
 SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
@@ -185,7 +179,7 @@ SolveStatus RingEquilibrium::followModel() noexcept
   if (!status.ok())
   {
     now_ = start_;
-    status = add(status, reinsert(target));
+    status = reinsert(target).addEffort(status);
   }
   return status;
 }
@@ -246,7 +240,7 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
   }
   if (status.iterations >= MAX_STEPS || damping >= MOST_DAMPING)
   {
-    status.code = SolveCode::NOT_CONVERGED;
+    status.code = SolveCode::NO_DESCENT;
   }
   if (!status.ok())
   {
@@ -466,9 +460,14 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
     {
       break;
     }
-    if (++status.iterations > max_iterations || !(descending_ ? stepDownhill() : searchLine(status.residual)))
+    if (++status.iterations > max_iterations)
     {
-      status.code = SolveCode::NOT_CONVERGED;
+      status.code = SolveCode::ITERATION_LIMIT;
+      return status;
+    }
+    if (!(descending_ ? stepDownhill() : searchLine(status.residual)))
+    {
+      status.code = SolveCode::NO_DESCENT;
       return status;
     }
     const double residual = largest(forces_.teeth);

@@ -5,31 +5,12 @@
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "model/ring_model.hpp"
 #include "solver/cyclic_solver.hpp"
 
 namespace hjt
 {
-enum class SolveCode
-{
-  CONVERGED,
-  NOT_CONVERGED,  ///< the iterations ran out or no step reduced the forces
-  SINGULAR,       ///< the tangent has no inverse
-  NOT_FINITE      ///< NaN or Inf came up
-};
-
-/// What a solve says of itself; the caller must look.
-struct [[nodiscard]] SolveStatus
-{
-  SolveCode code{ SolveCode::CONVERGED };
-  int iterations{};   ///< Newton iterations, all attempts
-  int cuts{};         ///< halvings of the path
-  int jumps{};        ///< teeth that changed their space through a tip: ratcheting, or too long a move
-  double residual{};  ///< largest out-of-balance force component on a tooth [N]
-
-  bool ok() const noexcept { return code == SolveCode::CONVERGED; }
-};
-
 /// The ring in equilibrium for a position of wave generator and circular spline.
 ///
 /// Newton with the analytic tangent, line search, and continuation: a target that is not reached directly is approached
@@ -66,6 +47,9 @@ public:
   const RingShape& shape() const noexcept { return now_.shape; }
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return forces_; }
+
+  /// What a coordinate's last digit is worth as a force [N]: no solve comes below it.
+  double rounding() const noexcept { return rounding_; }
 
   /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
   /// Of the last factored tangent: with the teeth that touch now, at a shape at most a Newton step away.
@@ -113,7 +97,7 @@ private:
   bool slopesChanged() const noexcept;
   void solveStep() noexcept;
   bool searchLine(double residual) noexcept;
-  double rounding() noexcept;
+  double measureRounding() noexcept;
   bool stepDownhill() noexcept;
   bool downhill() noexcept;
   double slopeAt(double length) noexcept;
@@ -121,6 +105,7 @@ private:
 
   const RingModel& model_;
   SolverParameters parameters_;
+  double rounding_;            // [N]
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool descending_{ false };   // down the energy, not by Newton's method alone
   CyclicSolver solver_;

@@ -9,6 +9,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/text_table.hpp"
@@ -201,9 +202,7 @@ int dynamics(DynamicsOptions options)
   }
   if (result.outcome == QuasiStaticOutcome::NO_EQUILIBRIUM)
   {
-    std::cerr << "joint_twin: no equilibrium found to compare with at " << result.stopped_at
-              << " s; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("the comparison at " + shortNumber(result.stopped_at) + " s", result.status);
   }
   if (result.outcome == QuasiStaticOutcome::STEP_FAILED)
   {

@@ -79,9 +79,9 @@ int state(const StateOptions& options)
   for (const double load : options.loads)
   {
     const StateInvariants invariants = analyseState(parameters, options.angle, load, options.pitches);
-    if (!invariants.converged)
+    if (!invariants.status.ok())
     {
-      return notConverged("a load of " + shortNumber(load) + " N.m", invariants.residual);
+      return notConverged("a load of " + shortNumber(load) + " N.m", invariants.status);
     }
     states.push_back(rowOf(invariants));
     table.push_back({ load, invariants.half_turn.position, invariants.half_turn.flank_force,
@@ -90,9 +90,9 @@ int state(const StateOptions& options)
                       invariants.residual });
     for (const PotentialRow& row : analysePotential(parameters, options.angle, load, options.steps))
     {
-      if (!row.converged)
+      if (!row.status.ok())
       {
-        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.residual);
+        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.status);
       }
       potential.push_back(rowOf(load, row));
       potential_table.push_back({ load, row.wave_generator_step, row.wave_generator_difference, row.output_difference,
@@ -129,9 +129,9 @@ int frame(const FrameOptions& options)
 {
   const TurnedMachine result =
       analyseTurnedMachine(loadParameters(options), options.load, options.seed, options.samples);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.residual);
+    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.status);
   }
   Json elements = Json::array();
   std::vector<NamedValue> changes;
@@ -186,13 +186,13 @@ int smallWave(const SmallWaveOptions& options)
   const WaveBending bending = options.hold ? WaveBending::PROPORTIONAL : WaveBending::KEPT;
   for (const SmallWaveRow& row : analyseSmallWave(loadParameters(options), bending, options.smallest, options.count))
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.residual);
+      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.status);
     }
     rows.push_back({ { "wave_amplitude", row.wave_amplitude },
                      { "teeth_in_contact", row.teeth_in_contact },
-                     { "residual", row.residual },
+                     { "residual", row.status.residual },
                      { "contact_force_min", row.contact_force_min },
                      { "contact_force_max", row.contact_force_max },
                      { "thin_ring", jsonOf(row.thin_ring) },
@@ -234,9 +234,9 @@ int energy(const EnergyOptions& options)
     Progress progress("random motion at " + shortNumber(rate) + " Hz");
     const LedgerResult result = runLedger(parameters, { options.seed, options.load, true }, options.duration,
                                           [&](double done) { progress.update(done); });
-    if (!result.converged)
+    if (!result.status.ok())
     {
-      return notConverged("a step at " + shortNumber(rate) + " Hz", result.force_residual);
+      return notConverged("a step at " + shortNumber(rate) + " Hz", result.status);
     }
     rows.push_back({ { "rate", rate },
                      { "throughput", result.throughput },

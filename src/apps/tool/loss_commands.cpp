@@ -54,9 +54,9 @@ int losses(const LossesOptions& options)
   std::vector<std::vector<double>> table;
   for (const LossRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("the load of " + shortNumber(row.load_torque) + " N.m", row.residual);
+      return notConverged("the load of " + shortNumber(row.load_torque) + " N.m", row.status);
     }
     json_rows.push_back({ { "motor_speed", row.motor_speed },
                           { "load_torque", row.load_torque },
@@ -87,9 +87,9 @@ int breakaway(const PitchOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   const Breakaway result = analyseBreakaway(parameters, options.positions);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("the load that drives the gear back", result.residual);
+    return notConverged("the load that drives the gear back", result.status);
   }
   if (options.json)
   {
@@ -121,9 +121,9 @@ int hysteresis(const HysteresisOptions& options)
   }
   const TorsionLoop loop =
       analyseTorsionLoop(loadParameters(options), options.amplitude, options.lost_motion_torque, options.steps);
-  if (!loop.converged)
+  if (!loop.status.ok())
   {
-    return notConverged("the torsion loop", loop.residual);
+    return notConverged("the torsion loop", loop.status);
   }
   if (options.json)
   {

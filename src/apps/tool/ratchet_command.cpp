@@ -7,6 +7,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/text_table.hpp"
 #include "apps/common/validators.hpp"
@@ -58,10 +59,9 @@ int ratchet(const RatchetOptions& options)
     result = analyseRatchet(parameters, options.angle, options.lobe_stiffness, options.angle_step, options.torque_limit,
                             [&](double done) { progress.update(done); });
   }
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    std::cerr << "joint_twin: no equilibrium found at no load; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("no load", result.status);
   }
   if (options.json)
   {

@@ -89,9 +89,9 @@ int insert(const InsertOptions& options)
     requireWritable(options.csv, options.force);
   }
   const InsertionResult result = analyseInsertion(parameters);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("the insertion", result.residual);
+    return notConverged("the insertion", result.status);
   }
   if (!options.csv.empty())
   {
@@ -110,8 +110,8 @@ int insert(const InsertOptions& options)
                      { "radius_major_axis", result.radius_major_axis },
                      { "radius_minor_axis", result.radius_minor_axis },
                      { "bending_force_max", result.bending_force_max },
-                     { "residual", result.residual },
-                     { "iterations", result.iterations },
+                     { "residual", result.status.residual },
+                     { "iterations", result.status.iterations },
                      { "solve_time", result.solve_time } };
     std::cout << json.dump(2) << '\n';
     return EXIT_DONE;
@@ -125,8 +125,8 @@ int insert(const InsertOptions& options)
                 { "radius at the major axis", shortNumber(result.radius_major_axis), "m" },
                 { "radius at the minor axis", shortNumber(result.radius_minor_axis), "m" },
                 { "bending force, largest", shortNumber(result.bending_force_max), "N" },
-                { "residual", shortNumber(result.residual), "N" },
-                { "iterations", std::to_string(result.iterations), "" },
+                { "residual", shortNumber(result.status.residual), "N" },
+                { "iterations", std::to_string(result.status.iterations), "" },
                 { "solve time", shortNumber(result.solve_time), "s" } });
   return EXIT_DONE;
 }
@@ -171,9 +171,9 @@ int stiffness(const StiffnessOptions& options)
   std::vector<std::vector<double>> table;
   for (const StiffnessRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.residual);
+      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.status);
     }
     json_rows.push_back({ { "torque", row.torque },
                           { "output_angle", row.output_angle },
@@ -183,13 +183,13 @@ int stiffness(const StiffnessOptions& options)
                           { "teeth_loaded", row.teeth_loaded },
                           { "mesh_force_max", row.mesh_force_max },
                           { "wave_generator_force_sum", row.wave_generator_force_sum },
-                          { "residual", row.residual } });
+                          { "residual", row.status.residual } });
     if (options.teeth)
     {
       json_rows.back()["teeth"] = teethJson(row.teeth);
     }
     table.push_back({ row.torque, row.output_angle, row.wave_generator_torque, static_cast<double>(row.teeth_loaded),
-                      row.mesh_force_max, row.wave_generator_force_sum, row.residual });
+                      row.mesh_force_max, row.wave_generator_force_sum, row.status.residual });
   }
   if (!options.csv.empty())
   {
@@ -226,10 +226,10 @@ int turn(const TurnOptions& options)
   std::vector<std::vector<double>> table;
   for (const TurnRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       return notConverged("the row of wave generator angle " + shortNumber(row.wave_generator_angle) + " rad",
-                          row.residual);
+                          row.status);
     }
     json_rows.push_back({ { "wave_generator_angle", row.wave_generator_angle },
                           { "output_angle", row.output_angle },
