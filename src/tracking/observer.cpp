@@ -81,10 +81,10 @@ Observer::Observer(const Parameters& parameters)
   const Eigen::Vector2d inertia(Motor(parameters.motor).inertia(), load_.inertia());
   for (const StiffnessRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
-                           " N.m at the output");
+                           " N.m at the output: " + explanationOf(row.status));
     }
     curve_.push_back({ -row.output_angle, row.torque });
     if (curve_.size() > 1)

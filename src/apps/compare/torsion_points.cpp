@@ -16,10 +16,10 @@ TorsionPoints::TorsionPoints(const Parameters& parameters) : regression_(3, 1)
   const std::vector<double> torques{ 0.0, 5.0, 14.0, 25.0, 48.0, 75.0, 110.0, 150.0, 200.0, LARGEST };
   for (const StiffnessRow& row : analyseStiffness(parameters, 0.0, torques))
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
-                           " N.m at the output");
+                           " N.m at the output: " + explanationOf(row.status));
     }
     curve_.push_back({ row.torque, -row.output_angle });
   }
