@@ -58,7 +58,10 @@ void addMotionOptions(Command& command, MotionOptions& options)
       .required()
       .type("IN.bag|IN.csv")
       .bagOrCsv();
-  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages").required();
+  command
+      .add("--joint", options.joint,
+           "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages")
+      .required();
   command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
   addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
