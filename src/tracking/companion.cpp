@@ -108,7 +108,8 @@ std::unique_ptr<Companion::Follower> makeFollower(const Parameters& parameters, 
     throw ParameterError(
         "telemetry.load = target_moment holds the weight already, but output.gravity_torque = " +
         numberText(parameters.output.gravity_torque) +
-        " [N.m]: give config/recorded_load.yaml after the joint's own file, or telemetry.load = model");
+        " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
+        "joint's own file");
   }
   if (mode == InputMode::TORQUE)
   {

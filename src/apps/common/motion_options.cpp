@@ -2,11 +2,13 @@
 #include "apps/common/motion_options.hpp"
 
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "ros_io/topics.hpp"
 
@@ -67,6 +69,17 @@ void addMotionOptions(Command& command, MotionOptions& options)
   addCommonOptions(command, options);
 }
 
+void warnOfStamps(const MotionCount& count)
+{
+  constexpr double TOLERANCE = 0.1;
+  if (count.velocity_ratio != 0.0 && std::abs(count.velocity_ratio - 1.0) > TOLERANCE)
+  {
+    std::cerr
+        << "joint_twin: by their stamps the angles change " << shortNumber(count.velocity_ratio)
+        << " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all results\n";
+  }
+}
+
 MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
                            const std::function<void(const MotionSample&)>& visit)
 {
@@ -97,6 +110,7 @@ MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
   forward(true);
   findings.refused = smoother.refused();
   findings.gaps = smoother.gaps();
+  warnOfStamps(findings);
   if (findings.corrupt > 0 || findings.refused > 0 || findings.gaps > 0)
   {
     std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "

@@ -30,7 +30,8 @@ RecordingComparison::RecordingComparison(const Parameters& parameters, std::vect
   , twin_(parameters)
   , spectrum_(ratio_)
   , torsion_(parameters)
-  , loads_(static_cast<std::size_t>(std::ceil(parameters.output.load_torque_limit / LOAD_STEP)) + 1)
+  , load_step_(std::max(parameters.output.load_torque_limit, 1.0) / LOAD_STEPS)
+  , loads_(static_cast<std::size_t>(LOAD_STEPS) + 2)
   , monitor_(withoutWeight(parameters))
   , assessor_(parameters)
   , baseline_given_(!baseline.empty())
@@ -59,8 +60,9 @@ void RecordingComparison::take(const MotionSample& sample)
   const ComparedRow row{ sample, twin_.step(sample) };
   course_.add(row);
   current_squares_ += sample.current * sample.current;
+  predicted_squares_ += row.predicted.current * row.predicted.current;
   residual_squares_ += row.residual() * row.residual();
-  ++loads_[static_cast<std::size_t>(std::abs(sample.load) / LOAD_STEP)];
+  ++loads_[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   if (reach_.rows++ == 0)
   {
     reach_.least_load = reach_.most_load = sample.load;
@@ -141,6 +143,11 @@ double RecordingComparison::currentRms() const
   return reach_.rows == 0 ? 0.0 : std::sqrt(current_squares_ / static_cast<double>(reach_.rows));
 }
 
+double RecordingComparison::predictedRms() const
+{
+  return reach_.rows == 0 ? 0.0 : std::sqrt(predicted_squares_ / static_cast<double>(reach_.rows));
+}
+
 double RecordingComparison::residualRms() const
 {
   return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
@@ -155,7 +162,7 @@ double RecordingComparison::loadQuantile(double share) const
   {
     ++step;
   }
-  return LOAD_STEP * (static_cast<double>(step) + 0.5);
+  return load_step_ * (static_cast<double>(step) + 0.5);
 }
 
 double RecordingComparison::typicalLoad() const

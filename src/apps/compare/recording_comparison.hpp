@@ -69,10 +69,11 @@ public:
   const TorsionPoints& torsion() const { return torsion_; }
   const Assessor& assessor() const { return assessor_; }
 
-  double currentRms() const;   ///< of the measured current [A]
-  double residualRms() const;  ///< [A]
-  double typicalLoad() const;  ///< median of its magnitude [N.m]
-  double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
+  double currentRms() const;    ///< of the measured current [A]
+  double predictedRms() const;  ///< of the predicted current [A]
+  double residualRms() const;   ///< [A]
+  double typicalLoad() const;   ///< median of its magnitude [N.m]
+  double largestLoad() const;   ///< that all but one in a thousand rows stay below [N.m]
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return assessed_; }
@@ -86,7 +87,7 @@ private:
   void watchSignals(const MotionSample& sample);
   double loadQuantile(double share) const;
 
-  static constexpr double LOAD_STEP = 0.5;  // of the histogram [N.m]
+  static constexpr double LOAD_STEPS = 568.0;  // of the histogram
 
   const Parameters parameters_;
   const double ratio_;
@@ -96,8 +97,10 @@ private:
   FrictionPoints friction_;
   ResidualSpectrum spectrum_;
   TorsionPoints torsion_;
+  const double load_step_;            // [N.m]
   std::vector<std::uint64_t> loads_;  // histogram of magnitudes
   double current_squares_{};
+  double predicted_squares_{};
   double residual_squares_{};
 
   SignalMonitor monitor_;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <string>
@@ -152,6 +153,13 @@ int follow(const FollowOptions& options)
     requireWritable(options.out, options.force, options.recording);
     csv.emplace(options.out, COLUMNS);
   }
+  const MotionSource source = motionSource(options);
+  if (parameters.telemetry.load == LoadSource::MODEL && recordsLoad(source))
+  {
+    std::cerr << "joint_twin: the recording holds a load (" << (isCsv(source) ? "target_moment" : source.load_topic)
+              << "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give --config "
+                 "recorded_load.yaml after the joint's own file\n";
+  }
   Companion companion(parameters, MODES.at(options.mode), surfaceSource());
   const FollowSummary summary = compare(options, companion,
                                         [&](const Comparison& now)
@@ -165,6 +173,7 @@ int follow(const FollowOptions& options)
   {
     csv->close();
   }
+  warnOfStamps(summary.count);
   print(summary, options.json);
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }
