@@ -14,20 +14,15 @@
 #include "ros_io/bag_file.hpp"
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
+#include "tracking/plausible.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 20.0;        // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;          // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;      // by which the delay of a message may differ from its neighbour's [s]
-constexpr double LARGEST_EFFORT = 1e4;  // current [A] or torque [N.m]
-
-bool isPlausible(double effort)
-{
-  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
-}
+constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
 
 /// Holds the angles and stamps of neighbouring rows against the velocities that the recording gives beside them.
 class VelocityCheck
@@ -163,7 +158,7 @@ private:
     {
       held.row.current = source_.current_per_motor_torque * message.effort[motor];
     }
-    if (status != TelemetryStatus::FOUND || !isPlausible(held.row.current))
+    if (status != TelemetryStatus::FOUND || !isPlausibleEffort(held.row.current))
     {
       ++count_.corrupt;
       return true;
@@ -188,7 +183,7 @@ private:
   void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
   {
     const std::size_t i = find(message, names_.joint);
-    if (i < message.name.size() && i < message.effort.size() && isPlausible(message.effort[i]))
+    if (i < message.name.size() && i < message.effort.size() && isPlausibleEffort(message.effort[i]))
     {
       load_ = message.effort[i];
       if (waiting_ && stamp <= waiting_->stamp)

@@ -7,20 +7,13 @@
 #include <utility>
 
 #include "gear/ratio.hpp"
+#include "tracking/plausible.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double CURRENT_MARGIN = 3.0;    // peaks over the motor's continuous torque [-]
 constexpr double MOST_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
-
-/// The load of a sample holds weight and inertia, which must not be counted twice.
-Parameters withoutWeight(Parameters parameters)
-{
-  parameters.output.gravity_torque = 0.0;
-  return parameters;
-}
 }  // namespace
 
 RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
@@ -32,27 +25,19 @@ RecordingComparison::RecordingComparison(const Parameters& parameters, std::vect
   , torsion_(parameters)
   , load_step_(std::max(parameters.output.load_torque_limit, 1.0) / LOAD_STEPS)
   , loads_(static_cast<std::size_t>(LOAD_STEPS) + 2)
-  , monitor_(withoutWeight(parameters))
-  , assessor_(parameters)
+  , health_(parameters)
   , baseline_given_(!baseline.empty())
   , watch_(std::move(watch))
 {
   if (baseline_given_)
   {
-    assessor_.give(std::move(baseline));
+    health_.giveReference(std::move(baseline));
   }
-}
-
-bool RecordingComparison::canBe(const MotionSample& sample) const
-{
-  const double most_current =
-      CURRENT_MARGIN * parameters_.motor.torque_limit * ratio_ / parameters_.telemetry.torque_per_current;
-  return std::abs(sample.load) <= parameters_.output.load_torque_limit && std::abs(sample.current) <= most_current;
 }
 
 void RecordingComparison::take(const MotionSample& sample)
 {
-  if (!canBe(sample))
+  if (!isPossible(sample, parameters_))
   {
     ++reach_.impossible;
     return;
@@ -94,22 +79,14 @@ void RecordingComparison::take(const MotionSample& sample)
 
 void RecordingComparison::watchSignals(const MotionSample& sample)
 {
-  const TelemetryParameters& telemetry = parameters_.telemetry;
-  SignalSample signal;
-  signal.stamp = static_cast<std::int64_t>(std::llround(1e9 * sample.time));
-  signal.motor_angle = sample.motor_angle;
-  signal.output_angle = sample.position;
-  signal.motor_velocity = ratio_ * sample.velocity;
-  signal.motor_torque = (sample.current - telemetry.current_offset) * telemetry.torque_per_current / ratio_;
-  signal.load_torque = sample.load;
-  if (!monitor_.update(signal))
+  if (!health_.take(sample))
   {
     return;
   }
   JudgedWindow window;
-  window.indicators = monitor_.indicators();
-  window.assessment = assessor_.take(window.indicators);
-  window.deviations = assessor_.deviations();
+  window.indicators = health_.indicators();
+  window.assessment = health_.assessor().assessment();
+  window.deviations = health_.assessor().deviations();
   watch_(window);
   const bool compared = std::any_of(window.deviations.begin(), window.deviations.end(),
                                     [](const Deviation& deviation) { return std::isfinite(deviation.score); });

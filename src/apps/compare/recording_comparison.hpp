@@ -12,9 +12,8 @@
 #include "apps/compare/thinned.hpp"
 #include "apps/compare/torsion_points.hpp"
 
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/signal_monitor.hpp"
 #include "tracking/motion_driven.hpp"
+#include "tracking/signal_watch.hpp"
 
 namespace hjt
 {
@@ -67,7 +66,7 @@ public:
   const FrictionPoints& friction() const { return friction_; }
   const ResidualSpectrum& spectrum() const { return spectrum_; }
   const TorsionPoints& torsion() const { return torsion_; }
-  const Assessor& assessor() const { return assessor_; }
+  const Assessor& assessor() const { return health_.assessor(); }
 
   double currentRms() const;    ///< of the measured current [A]
   double predictedRms() const;  ///< of the predicted current [A]
@@ -83,7 +82,6 @@ public:
   Cause cause() const;                              ///< that most windows in alarm name
 
 private:
-  bool canBe(const MotionSample& sample) const;
   void watchSignals(const MotionSample& sample);
   double loadQuantile(double share) const;
 
@@ -103,8 +101,7 @@ private:
   double predicted_squares_{};
   double residual_squares_{};
 
-  SignalMonitor monitor_;
-  Assessor assessor_;
+  SignalWatch health_;
   const bool baseline_given_;
   const std::function<void(const JudgedWindow&)> watch_;
   std::uint64_t assessed_{};
