@@ -281,8 +281,8 @@ std::string CommandLine::unknownSubcommand(int argc, char** argv) const
     }
     if (distance > 0)
     {
-      return "unknown subcommand '" + given + "'" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") +
-             " `" + app_->get_name() + " --help` lists all";
+      return "unknown subcommand '" + given + "'" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") + " `" +
+             app_->get_name() + " --help` lists all";
     }
   }
   return {};

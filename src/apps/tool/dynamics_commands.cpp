@@ -113,27 +113,28 @@ int transient(const TransientOptions& options)
   }
   const TransientRow& end = result.rows.back();
   const double numerical = end.supplied - end.dissipated - end.stored - end.kinetic;
-  printReport(options.json, { { "method", "", options.method },
-                              { "step", "", setup.step },
-                              { "tolerance", "", setup.tolerance },
-                              { "window_start", "", setup.window_start },
-                              { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
-                              { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
-                              { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
-                              { "energy_supplied", "energy supplied", end.supplied, "J" },
-                              { "energy_stored", "energy stored", end.stored, "J" },
-                              { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
-                              { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
-                              { "energy_lost", "energy lost by method and contact law", numerical, "J" },
-                              { "steps", "steps", result.counts.steps },
-                              { "force_evaluations", "force evaluations", result.counts.force_evaluations },
-                              { "factorisations", "factorisations", result.counts.factorisations },
-                              { "halvings", "steps halved", result.counts.halvings },
-                              { "rejections", "steps rejected", result.counts.rejections },
-                              { "solve_time", "solve time", result.solve_time, "s" },
-                              { "series", "", Table(TRANSIENT_COLUMNS, result.rows).columns() },
-                              { "tooth_x", "", result.tooth_x },
-                              { "tooth_y", "", result.tooth_y } });
+  printReport(options.json,
+              { { "method", "", options.method },
+                { "step", "", setup.step },
+                { "tolerance", "", setup.tolerance },
+                { "window_start", "", setup.window_start },
+                { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
+                { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
+                { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
+                { "energy_supplied", "energy supplied", end.supplied, "J" },
+                { "energy_stored", "energy stored", end.stored, "J" },
+                { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
+                { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
+                { "energy_lost", "energy lost by method and contact law", numerical, "J" },
+                { "steps", "steps", result.counts.steps },
+                { "force_evaluations", "force evaluations", result.counts.force_evaluations },
+                { "factorisations", "factorisations", result.counts.factorisations },
+                { "halvings", "steps halved", result.counts.halvings },
+                { "rejections", "steps rejected", result.counts.rejections },
+                { "solve_time", "solve time", result.solve_time, "s" },
+                { "series", "", Table(TRANSIENT_COLUMNS, result.rows).columns() },
+                { "tooth_x", "", result.tooth_x },
+                { "tooth_y", "", result.tooth_y } });
   return EXIT_DONE;
 }
 
@@ -245,9 +246,11 @@ void declareDynamics(Command& command, DynamicsOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand DYNAMICS{ Subject::STUDY, "dynamics",
-                           "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
-                           "constant speed, constant load, dry friction left out",
-                           declareDynamics, dynamics };
+const Subcommand DYNAMICS{
+  Subject::STUDY, "dynamics",
+  "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
+  "constant speed, constant load, dry friction left out",
+  declareDynamics, dynamics
+};
 }  // namespace
 }  // namespace hjt

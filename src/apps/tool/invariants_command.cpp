@@ -48,8 +48,7 @@ const std::vector<Column<State>> STATE_COLUMNS{
   { "wave_generator_torque", &State::wave_generator_torque },
   { "output_torque", &State::output_torque },
   { "cup_torque", &State::cup_torque },
-  { "",
-    [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
+  { "", [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
     "torque sum [N.m]" },
   { "residual", [](const State& row) { return row.status.residual; }, "residual [N]" }
 };
@@ -120,14 +119,12 @@ struct FrameOptions : CommonOptions
   int samples{ 41 };
 };
 
-const std::vector<Column<TurnedElement>> ELEMENT_COLUMNS{
-  { "name", &TurnedElement::name },
-  { "force_max", &TurnedElement::force_max },
-  { "force_difference", &TurnedElement::force_difference },
-  { "energy", &TurnedElement::energy },
-  { "energy_difference", &TurnedElement::energy_difference },
-  { "torque_difference", &TurnedElement::torque_difference }
-};
+const std::vector<Column<TurnedElement>> ELEMENT_COLUMNS{ { "name", &TurnedElement::name },
+                                                          { "force_max", &TurnedElement::force_max },
+                                                          { "force_difference", &TurnedElement::force_difference },
+                                                          { "energy", &TurnedElement::energy },
+                                                          { "energy_difference", &TurnedElement::energy_difference },
+                                                          { "torque_difference", &TurnedElement::torque_difference } };
 const std::vector<Column<TurnedBending>> BENDING_COLUMNS{
   { "angle", &TurnedBending::angle, "turn [rad]" },
   { "curvature_force", &TurnedBending::curvature_force, "bending, law curvature [N]" },
@@ -225,10 +222,9 @@ void declareSmallWave(Command& command, SmallWaveOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand SMALL_WAVE{
-  Subject::STUDY, "invariants small-wave",
-  "shape of the inserted ring against thin-ring theory, from the gear's wave amplitude down", declareSmallWave, smallWave
-};
+const Subcommand SMALL_WAVE{ Subject::STUDY, "invariants small-wave",
+                             "shape of the inserted ring against thin-ring theory, from the gear's wave amplitude down",
+                             declareSmallWave, smallWave };
 
 struct EnergyOptions : CommonOptions
 {
@@ -243,8 +239,7 @@ const std::vector<Column<RatedResult>> ENERGY_COLUMNS{
   { "rate", &RatedResult::first, "rate [Hz]" },
   { "throughput", [](const RatedResult& row) { return row.second.throughput; }, "through [J]" },
   { "residual", [](const RatedResult& row) { return row.second.residual; }, "left over [J]" },
-  { "relative_residual",
-    [](const RatedResult& row) { return row.second.residual / row.second.throughput; },
+  { "relative_residual", [](const RatedResult& row) { return row.second.residual / row.second.throughput; },
     "left over / through [-]" },
   { "travel", [](const RatedResult& row) { return row.second.travel; } },
   { "top_speed", [](const RatedResult& row) { return row.second.top_speed; }, "top speed [rad/s]" },

@@ -131,8 +131,7 @@ void declare(Command& command, SimulateOptions& options)
            "holds until the next")
       .type("FILE.csv");
   command.oneOf({ "--torque", "--profile" });
-  command.add("--load", options.load,
-              "constant external torque at the output; > 0 resists positive motion [N.m]");
+  command.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
   command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
       .required()
       .type("FILE.bag|FILE.csv")

@@ -90,20 +90,19 @@ int insert(const InsertOptions& options)
     writeTeeth(csv, {}, result.teeth, RING_COLUMNS);
     csv.close();
   }
-  printReport(
-      options.json,
-      { { "wave_generator_force_max", "wave generator force, largest", result.wave_generator_force_max, "N" },
-        { "wave_generator_force_min", "wave generator force, smallest", result.wave_generator_force_min, "N" },
-        { "wave_generator_force_sum", "wave generator force, sum", result.wave_generator_force_sum, "N" },
-        { "teeth_in_contact", "teeth in contact", result.teeth_in_contact },
-        { "tension_min", "rim tension, smallest", result.tension_min, "N" },
-        { "tension_max", "rim tension, largest", result.tension_max, "N" },
-        { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
-        { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
-        { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
-        { "residual", "residual", result.status.residual, "N" },
-        { "iterations", "iterations", result.status.iterations },
-        { "solve_time", "solve time", result.solve_time, "s" } });
+  printReport(options.json,
+              { { "wave_generator_force_max", "wave generator force, largest", result.wave_generator_force_max, "N" },
+                { "wave_generator_force_min", "wave generator force, smallest", result.wave_generator_force_min, "N" },
+                { "wave_generator_force_sum", "wave generator force, sum", result.wave_generator_force_sum, "N" },
+                { "teeth_in_contact", "teeth in contact", result.teeth_in_contact },
+                { "tension_min", "rim tension, smallest", result.tension_min, "N" },
+                { "tension_max", "rim tension, largest", result.tension_max, "N" },
+                { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
+                { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
+                { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
+                { "residual", "residual", result.status.residual, "N" },
+                { "iterations", "iterations", result.status.iterations },
+                { "solve_time", "solve time", result.solve_time, "s" } });
   return EXIT_DONE;
 }
 
@@ -221,9 +220,9 @@ const std::vector<Column<TurnRow>> TURN_COLUMNS{
 
 int turn(const TurnOptions& options)
 {
-  const std::vector<TurnRow> rows =
-      analyseTurn(loadParameters(options), options.load, options.angle_range, options.steps,
-                  [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
+  const std::vector<TurnRow> rows = analyseTurn(
+      loadParameters(options), options.load, options.angle_range, options.steps,
+      [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
     if (!row.status.ok())
