@@ -20,7 +20,7 @@ std::string extension(const std::string& path)
 const CLI::Validator FINITE(
     [](std::string& text)
     {
-      const auto number = looseNumber(text);
+      const auto number = decimalNumber(text);
       return number && std::isfinite(*number) ? std::string() : "'" + text + "' is not a finite number";
     },
     "");

@@ -26,7 +26,7 @@ Json toJson(const Parameters& parameters)
 {
   Json json;
   visitFields(parameters,
-              [&](const std::string& key, const auto& first, const auto& second, const auto&...)
+              [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
                 Json& entry = json[key.substr(0, key.find('.'))][key.substr(key.find('.') + 1)];
                 // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
@@ -40,7 +40,7 @@ Json toJson(const Parameters& parameters)
                     }
                   }
                 }
-                else if constexpr (std::is_array_v<std::remove_reference_t<decltype(second)>>)
+                else if constexpr (sizeof...(rest) == 0)
                 {
                   entry = first;
                 }
