@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -165,6 +166,11 @@ void TwinLoop::sortInputs() noexcept
     if (input.stamp == 0)
     {
       input.stamp = status_.clock;
+    }
+    if (std::abs(input.stamp - status_.clock) > FAR_STAMP)
+    {
+      ++status_.far_stamps;
+      continue;
     }
     if (status_.state == LoopState::RUNNING)
     {

@@ -64,6 +64,7 @@ struct LoopStatus
   std::uint64_t overruns{};          ///< cycles whose work took longer than their period
   std::uint64_t clock_jumps{};       ///< times the clock jumped back
   std::uint64_t resets{};            ///< resets on request
+  std::uint64_t far_stamps{};        ///< inputs refused: stamped further than FAR_STAMP from the clock
   std::uint64_t waiting_overflow{};  ///< inputs dropped because too many came before the start
   bool command_seen{};               ///< a motor torque command has come since the last start or reset
   Stamp last_command{};              ///< latest stamp of one [ns]
