@@ -39,8 +39,10 @@ private:
     template <class Fill>
     void write(Fill&& fill)
     {
-      fill(message_);
-      bag_.write(topic_, fromRosTime(message_.header.stamp), message_);
+      if (fill(message_))
+      {
+        bag_.write(topic_, fromRosTime(message_.header.stamp), message_);
+      }
     }
 
   private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 #include "ros_io/conversions.hpp"
 #include "ros_io/time.hpp"
@@ -23,8 +24,9 @@ struct Channel
   double PublishParameters::*rate;     ///< [Hz]; divides solver.rate
   std::size_t slots;                   ///< messages that may wait for the publisher's thread
   Message (*make)(const Parameters&);  ///< with names and arrays in place
-  void (*fill)(Twin&, Message&);       ///< at the twin's current instant; no allocation, no throw
-  bool of_signals{};                   ///< filled only while the twin watches its signals
+  /// At the twin's current instant; gets that of the topic's last message [ns]. No allocation, no throw. False: nothing to say.
+  bool (*fill)(Twin&, Stamp, Message&);
+  bool of_signals{};  ///< filled only while the twin watches its signals
 };
 
 /// Slots for messages of a few numbers: seconds of joint states at 1 kHz.
@@ -60,7 +62,7 @@ inline Stamp publishPeriod(double publish_rate, double solver_rate)
 /// All channels of one twin, each with a `Sink<Message>` that its messages go to.
 ///
 /// A sink is constructed from (context, channel, first message) and has `bool isWanted()` and `write(fill)`, which calls
-/// `fill(Message&)` with the message to be filled.
+/// `bool fill(Message&)` with the message to be filled and drops it if that returns false.
 template <template <class> class Sink>
 class Outputs
 {
@@ -85,7 +87,12 @@ public:
           if (output.sink.isWanted() && twin.stamp() % output.period == 0 &&
               (!channel.of_signals || twin.watchesSignals()))
           {
-            output.sink.write([&](auto& message) { channel.fill(twin, message); });
+            output.sink.write(
+                [&](auto& message)
+                {
+                  const Stamp since = std::exchange(output.last, twin.stamp());
+                  return channel.fill(twin, since, message);
+                });
           }
         });
   }
@@ -126,6 +133,7 @@ private:
 
     Row channel;
     Stamp period;  // [ns]
+    Stamp last{};  // instant of the last message [ns]
     Sink<typename Row::Message> sink;
   };
 

@@ -28,7 +28,9 @@ struct JointNames
 /// Place of a name in the message; beyond every array if it is not there.
 std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
 
-// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
+// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing. As
+// functions of a Channel they also get `since`, the instant of the topic's last message, and return false if there is nothing
+// to say.
 
 /// A message without arrays.
 template <class Message>
@@ -43,22 +45,24 @@ Message makeMessage(const Parameters& parameters)
 sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 
 /// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
-void fillJointStates(Twin& twin, sensor_msgs::JointState& message) noexcept;
+bool fillJointStates(Twin& twin, Stamp since, sensor_msgs::JointState& message) noexcept;
 
-void fillEncoders(Twin& twin, harmonic_joint_twin::Encoders& message) noexcept;
+bool fillEncoders(Twin& twin, Stamp since, harmonic_joint_twin::Encoders& message) noexcept;
 
 /// One entry per tooth in every array.
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
-void fillContactForces(Twin& twin, harmonic_joint_twin::ContactForces& message) noexcept;
+/// False: the full ring found no equilibrium.
+bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForces& message) noexcept;
 
-/// Clears the twin's "since last report" states.
-void fillHealth(Twin& twin, harmonic_joint_twin::Health& message) noexcept;
+/// The solver's state is that of the steps after `since`.
+bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);
 void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
-inline void fillIndicators(Twin& twin, harmonic_joint_twin::Indicators& message) noexcept
+inline bool fillIndicators(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Indicators& message) noexcept
 {
   fillIndicators(twin.stamp(), twin.signalIndicators(), message);
+  return true;
 }
 /// All but the uncertainties, which the message does not hold; NaN where it says not valid. Unknown names are left out.
 SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message);
@@ -70,9 +74,10 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
 
 harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters);
 void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
-inline void fillAssessment(Twin& twin, harmonic_joint_twin::Assessment& message) noexcept
+inline bool fillAssessment(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Assessment& message) noexcept
 {
   fillAssessment(twin.stamp(), twin.assessment(), message);
+  return true;
 }
 
 /// Allocates.

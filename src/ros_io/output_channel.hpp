@@ -33,7 +33,7 @@ public:
   /// Loop: whether anybody listened when last looked.
   bool isWanted() const noexcept { return heard_.load(std::memory_order_relaxed); }
 
-  /// Loop: lets `fill(Message&)` write the next message. A full ring drops it and counts.
+  /// Loop: lets `fill(Message&)` write the next message, unless it returns false. A full ring drops it and counts.
   template <class Fill>
   void write(Fill&& fill) noexcept
   {
@@ -43,9 +43,11 @@ public:
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    fill(*message);
-    ring_.commit();
-    computed_.fetch_add(1, std::memory_order_relaxed);
+    if (fill(*message))
+    {
+      ring_.commit();
+      computed_.fetch_add(1, std::memory_order_relaxed);
+    }
   }
 
   /// Publisher thread: publishes what is waiting.
