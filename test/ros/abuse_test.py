@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What other programs can do to the node and to the recorder: messages that are huge or forge log lines, a flood, signals, a
 second recorder."""
+import io
 import os
 import re
 import signal
@@ -10,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+import warnings
 
 import rosbag
 import rospy
@@ -22,7 +24,7 @@ from ros_support import (PACKAGE, WARN, Diagnostics, Node, configuration_files, 
 
 NODE = "/twin_under_test"
 NAMES = 100_000         # in one message
-HUGE_MESSAGES = 60      # of 3.6 MB each
+HUGE_MESSAGES = 300     # of 3.9 MB each
 MOST_MEMORY = 250e6     # of the node's, at the most it ever had [bytes]
 MEGABYTE = 2**20
 
@@ -31,6 +33,19 @@ def most_memory(process):
     """The most memory that a process has had [bytes]."""
     with open(f"/proc/{process.pid}/status") as status:
         return 1024 * int(re.search(r"VmHWM:\s*(\d+) kB", status.read()).group(1))
+
+
+class Frozen(JointState):
+    """A message that is serialized once, so that it can be sent faster than a node can read it."""
+
+    def __init__(self, message):
+        super().__init__()
+        buffer = io.BytesIO()
+        message.serialize(buffer)
+        self._bytes = buffer.getvalue()
+
+    def serialize(self, buff):
+        buff.write(self._bytes)
 
 
 class AbusedNode:
@@ -42,7 +57,7 @@ class AbusedNode:
         wait_until(lambda: self.diagnostics.values("Input"), "diagnostics", 60.0)
 
     def publisher(self, topic, kind):
-        publisher = rospy.Publisher(f"{NODE}/{topic}", kind, queue_size=1000)
+        publisher = rospy.Publisher(f"{NODE}/{topic}", kind, queue_size=None)  # sends at once
         self.addCleanup(publisher.unregister)
         wait_until(lambda: publisher.get_num_connections() > 0, f"a subscriber of {topic}")
         return publisher
@@ -52,8 +67,8 @@ class AbusedNode:
             with self.subTest(mode=mode):
                 self.start(mode)
                 publisher = self.publisher(topic, JointState)
-                huge = JointState(name=[f"joint_{number}" for number in range(NAMES)], position=[0.0] * NAMES,
-                                  velocity=[0.0] * NAMES, effort=[0.0] * NAMES)
+                huge = Frozen(JointState(name=[f"joint_{number}" for number in range(NAMES)], position=[0.0] * NAMES,
+                                         velocity=[0.0] * NAMES, effort=[0.0] * NAMES))
                 for _ in range(HUGE_MESSAGES):
                     publisher.publish(huge)
                 self.diagnostics.wait_for("Input", "Too large, refused", HUGE_MESSAGES)
@@ -149,5 +164,6 @@ class Abuse(AbusedNode, AbusedRecorder, unittest.TestCase):
 
 
 if __name__ == "__main__":
+    warnings.filterwarnings("ignore", message="The publisher should be created with an explicit")
     rospy.init_node("abuse_test")
     rostest.rosrun(PACKAGE, "abuse", Abuse, sys.argv)
