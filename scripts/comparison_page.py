@@ -36,8 +36,8 @@ def read_table(directory, name):
         return None
     with open(path, encoding="utf-8") as file:
         names = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    return dict(zip(names, rows.T)) if rows.size else None
+        lines = file.readlines()
+    return dict(zip(names, np.loadtxt(lines, delimiter=",", ndmin=2).T)) if lines else None
 
 
 def new_figure(width, height, rows=1, columns=1, **settings):

@@ -8,6 +8,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "health/indicator_table.hpp"
 
 namespace hjt
 {
@@ -16,9 +17,6 @@ namespace
 constexpr double LOAD_STEP = 25.0;         // [N.m]
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr double COUNT_SHARE = 0.1;        // of an encoder count that a window's mean may wander by
-constexpr double KURTOSIS_FLOOR = 0.3;  // moments of the residual are no normal quantities: these are not looked into
-constexpr double CREST_FLOOR = 0.5;
 constexpr int LEAST_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
@@ -77,14 +75,11 @@ Baseline::Baseline(const Parameters& parameters)
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / std::exp2(parameters.sensors.output_bits));
-  floor_[indexOf(ScalarIndicator::RATIO_DEVIATION)] = COUNT_SHARE * count * nominalRatio(parameters.gear) / TWO_PI;
-  for (const ScalarIndicator indicator :
-       { ScalarIndicator::KINEMATIC_ERROR, ScalarIndicator::LOST_MOTION, ScalarIndicator::RESIDUAL_RMS })
+  const std::array<double, 3> unit{ 1.0, count, count * nominalRatio(parameters.gear) / TWO_PI };  // by FloorUnit
+  for (const ScalarRow& row : SCALARS)
   {
-    floor_[indexOf(indicator)] = COUNT_SHARE * count;
+    floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
   }
-  floor_[indexOf(ScalarIndicator::RESIDUAL_KURTOSIS)] = KURTOSIS_FLOOR;
-  floor_[indexOf(ScalarIndicator::RESIDUAL_CREST)] = CREST_FLOOR;
   bins_.reserve(MOST_BINS);
 }
 

@@ -8,7 +8,7 @@
 #include <std_msgs/Float64.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/topics.hpp"
+#include "ros_io/channels.hpp"
 
 namespace hjt
 {
@@ -133,10 +133,9 @@ std::vector<std::string> inputTopics(const std::string& joint_namespace)
 
 std::vector<std::string> outputTopics(const std::string& joint_namespace)
 {
-  const std::string prefix = joint_namespace + "/";
-  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS,   prefix + topics::CONTACT_FORCES,
-           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT,
-           prefix + topics::FAULTS };
+  std::vector<std::string> names{ joint_namespace + "/" + topics::FAULTS };
+  std::apply([&](const auto&... channel) { (names.push_back(joint_namespace + "/" + channel.name), ...); }, CHANNELS);
+  return names;
 }
 
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters)

@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-BagWriter::BagWriter(std::string path) : path_(std::move(path)), active_path_(path_ + ".active")
+BagWriter::BagWriter(std::string path) : path_(std::move(path)), active_path_(path_ + ".active"), lock_(active_path_)
 {
   try
   {

@@ -8,6 +8,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/message_instance.h>
 
+#include "base/file_lock.hpp"
 #include "ros_io/time.hpp"
 
 namespace hjt
@@ -17,7 +18,7 @@ namespace hjt
 class BagWriter
 {
 public:
-  /// @throws InputError if the file cannot be written.
+  /// @throws InputError if the file cannot be written, or another BagWriter writes it.
   explicit BagWriter(std::string path);
 
   /// Closes; an error of the disk is then swallowed, so call `close` where it matters.
@@ -44,6 +45,7 @@ public:
 private:
   std::string path_;
   std::string active_path_;
+  FileLock lock_;  // of active_path_
   rosbag::Bag bag_;
   std::vector<std::uint8_t> scratch_;
   std::uint64_t messages_{};

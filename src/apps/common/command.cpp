@@ -31,7 +31,7 @@ std::vector<const Subcommand*>& subcommands()
 
 std::string notFinite(const std::string& text)
 {
-  const auto number = looseNumber(text);
+  const auto number = decimalNumber(text);
   return number && std::isfinite(*number) ? std::string() : "'" + text + "' is not a finite number";
 }
 
@@ -81,7 +81,7 @@ const CommandOption& CommandOption::range(double lowest, double highest) const
   return check(
       [=](const std::string& text)
       {
-        const auto number = looseNumber(text);
+        const auto number = decimalNumber(text);
         return number && *number >= lowest && *number <= highest ?
                    std::string() :
                    "'" + text + "' is not within " + shortNumber(lowest) + " ... " + shortNumber(highest);
@@ -93,7 +93,7 @@ const CommandOption& CommandOption::atLeast(double lowest) const
   return check(
       [=](const std::string& text)
       {
-        const auto number = looseNumber(text);
+        const auto number = decimalNumber(text);
         return number && *number >= lowest ? std::string() : "'" + text + "' is less than " + shortNumber(lowest);
       });
 }
@@ -103,7 +103,7 @@ const CommandOption& CommandOption::positive() const
   return check(
       [](const std::string& text)
       {
-        const auto number = looseNumber(text);
+        const auto number = decimalNumber(text);
         return number && *number > 0.0 ? std::string() : "'" + text + "' is not more than 0";
       });
 }
@@ -281,8 +281,8 @@ std::string CommandLine::unknownSubcommand(int argc, char** argv) const
     }
     if (distance > 0)
     {
-      return "unknown subcommand '" + given + "'" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") +
-             " `" + app_->get_name() + " --help` lists all";
+      return "unknown subcommand '" + given + "'" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") + " `" +
+             app_->get_name() + " --help` lists all";
     }
   }
   return {};

@@ -18,6 +18,10 @@ void catchInterrupts()
   action.sa_handler = [](int signal) { g_signal = signal; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN)  // which it is below nohup
+  {
+    sigaction(SIGHUP, &action, nullptr);
+  }
 }
 
 int interruptSignal()

@@ -171,8 +171,7 @@ Json verdictJson(const Verdict& verdict)
   const std::vector<Column<Finding>> columns{ { "title", &Finding::title },
                                               { "level", level },
                                               { "text", &Finding::text },
-                                              { "causes",
-                                                [](const Finding& finding)
+                                              { "causes", [](const Finding& finding)
                                                 {
                                                   std::vector<std::string> names;
                                                   for (const Cause cause : finding.causes)

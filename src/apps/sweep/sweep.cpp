@@ -21,6 +21,7 @@
 #include "apps/sweep/run_file.hpp"
 
 #include "base/number_text.hpp"
+#include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -32,6 +33,12 @@ namespace
 {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+/// Version and hash of the code: runs made by another code are not added to.
+std::string softwareVersion()
+{
+  return std::string(HJT_VERSION "+") + sourceHash();
+}
 
 constexpr const char* FORMAT = "harmonic_joint_twin data set 1";
 
@@ -266,7 +273,7 @@ void SweepDirectory::open() const
   {
     throw InputError(path_ + " cannot be made: " + error.message());
   }
-  Json document{ { "format", FORMAT }, { "version", HJT_VERSION } };
+  Json document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
   // The plan is written before any run, perhaps by another shard at this moment: looked for in the opposite order.
@@ -389,7 +396,7 @@ Json recordOf(const RunSpec& spec, const std::string& file)
         { { "kind", fault.kind }, { "severity", fault.severity }, { "place", fault.place }, { "onset", fault.onset } });
   }
   return { { "format", FORMAT },
-           { "version", HJT_VERSION },
+           { "version", softwareVersion() },
            { "run", spec.run },
            { "file", file },
            { "status", "ok" },

@@ -49,7 +49,7 @@ class CsvRecorder
 {
 public:
   CsvRecorder(const Twin& twin, const std::string& path, Stamp begin)
-    : schedule_(twin.parameters())
+    : period_(publishPeriod(twin.parameters().publish.joint_states_rate, twin.parameters().solver.rate))
     , begin_(begin)
     , csv_(path, { "time", "motor_angle", "motor_velocity", "output_angle", "output_velocity", "motor_angle_encoder",
                    "motor_velocity_encoder", "output_angle_encoder", "output_velocity_encoder", "motor_torque",
@@ -61,7 +61,7 @@ public:
   void record(Twin& twin)
   {
     const JointOutputs& o = twin.outputs();
-    if (!schedule_.isDue(Output::JOINT_STATES, o.stamp))
+    if (o.stamp % period_ != 0)
     {
       return;
     }
@@ -75,7 +75,7 @@ public:
   void close() { csv_.close(); }
 
 private:
-  OutputSchedule schedule_;
+  Stamp period_;  // [ns]
   Stamp begin_;
   CsvWriter csv_;
 };
@@ -131,8 +131,7 @@ void declare(Command& command, SimulateOptions& options)
            "holds until the next")
       .type("FILE.csv");
   command.oneOf({ "--torque", "--profile" });
-  command.add("--load", options.load,
-              "constant external torque at the output; > 0 resists positive motion [N.m]");
+  command.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
   command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
       .required()
       .type("FILE.bag|FILE.csv")
