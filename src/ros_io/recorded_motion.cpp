@@ -29,6 +29,12 @@ bool isPlausible(double effort)
   return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
 }
 
+/// Damaged stamps may lie farther apart than a ros::Duration reaches [s].
+double secondsBetween(const ros::Time& from, const ros::Time& to)
+{
+  return toSeconds(fromRosTime(to) - fromRosTime(from));
+}
+
 /// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
 /// tells whether it can be true.
 class BagRows
@@ -78,8 +84,8 @@ public:
       count_.least_delay = count_.most_delay = held.delay();
     }
     MotionRow row = held.row;
-    row.time = (held.stamp - *start_).toSec();
-    row.received = (held.recorded - *start_).toSec();
+    row.time = secondsBetween(*start_, held.stamp);
+    row.received = secondsBetween(*start_, held.recorded);
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -98,12 +104,12 @@ private:
     ros::Time recorded;
     bool agrees{};  // with a neighbour
 
-    double delay() const { return (recorded - stamp).toSec(); }
+    double delay() const { return secondsBetween(stamp, recorded); }
   };
 
   static bool agree(const Held& a, const Held& b)
   {
-    const double time = std::abs((b.recorded - a.recorded).toSec()) + SLACK;
+    const double time = std::abs(secondsBetween(a.recorded, b.recorded)) + SLACK;
     return std::abs(b.delay() - a.delay()) < CLOCK_STEP && std::abs(b.row.position - a.row.position) < FASTEST * time;
   }
 
