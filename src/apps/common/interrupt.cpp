@@ -18,6 +18,7 @@ void catchInterrupts()
   action.sa_handler = [](int signal) { g_signal = signal; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
 }
 
 int interruptSignal()

@@ -37,6 +37,7 @@ BagRunFile::~BagRunFile()
   const std::lock_guard<std::mutex> lock(g_opening);
   bag_.reset();
   std::remove(temporary_.c_str());
+  std::remove((temporary_ + ".active").c_str());
 }
 
 void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
