@@ -10,6 +10,7 @@
 
 #include "apps/common/output_file.hpp"
 
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
@@ -188,7 +189,7 @@ Json verdictJson(const Verdict& verdict)
 }
 }  // namespace
 
-SoundJoint readSoundJoint(const std::string& directory)
+SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
   SoundJoint sound;
   const std::string path = directory + "/" + COMPARISON_FILE;
@@ -207,7 +208,7 @@ SoundJoint readSoundJoint(const std::string& directory)
   const std::string baseline = directory + "/" + BASELINE_FILE;
   if (std::filesystem::exists(baseline))
   {
-    sound.baseline = readBaseline(baseline);
+    sound.baseline = readBaseline(baseline, parameters);
   }
   return sound;
 }
@@ -223,7 +224,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
   writeTwinStates(directory + "/twin_states.csv", record.twin_states);
   if (!comparison.assessor().baseline().bins().empty())
   {
-    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline().bins());
+    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline());
   }
 
   const MotionReach& reach = comparison.reach();
@@ -263,12 +264,6 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                   { "windows_assessed", comparison.assessedWindows() },
                   { "health", healthJson(comparison) } };
   const std::string path = directory + "/" + COMPARISON_FILE;
-  std::ofstream file(path);
-  file << all.dump(2) << '\n';
-  file.close();
-  if (!file)
-  {
-    throw InputError(path + " cannot be written");
-  }
+  writeTextFile(path, all.dump(2) + '\n');
 }
 }  // namespace hjt

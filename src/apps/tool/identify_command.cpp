@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "apps/tool/commands.hpp"
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/identification.hpp"
 
@@ -139,25 +139,17 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Of what the joint carries [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
   add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
-  std::FILE* file = std::fopen(options.out.c_str(), "w");
-  if (file == nullptr)
-  {
-    throw InputError(options.out + " cannot be written");
-  }
-  std::fprintf(file, "# Overlay: what `joint_twin identify` found for joint %s in\n# %s\n", options.joint.c_str(),
-               options.recording.c_str());
+  std::string text =
+      "# Overlay: what `joint_twin identify` found for joint " + options.joint + " in\n# " + options.recording + "\n";
   for (const auto& [section, entries] : sections)
   {
-    std::fprintf(file, "\n%s:\n", section.c_str());
+    text += "\n" + section + ":\n";
     for (const Entry& entry : entries)
     {
-      std::fprintf(file, "  # %s\n  %s\n", entry.name.c_str(), entry.text.c_str());
+      text += "  # " + entry.name + "\n  " + entry.text + "\n";
     }
   }
-  if (std::fclose(file) != 0)
-  {
-    throw InputError(options.out + " could not be written in full");
-  }
+  writeTextFile(options.out, text);
 }
 
 Json errorJson(const CurrentError& error)

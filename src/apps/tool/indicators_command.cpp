@@ -23,6 +23,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
+#include "ros_io/bag_file.hpp"
 #include "ros_io/conversions.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
@@ -100,14 +101,7 @@ std::vector<SignalIndicators> readWindows(const std::string& path, const SignalS
 std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
 {
   rosbag::Bag bag;
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
+  openForReading(bag, path);
   std::vector<SignalIndicators> windows;
   for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
   {
@@ -272,7 +266,7 @@ int run(IndicatorsOptions options)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.give(readBaseline(options.baseline));
+    assessor.give(readBaseline(options.baseline, parameters));
   }
   std::vector<WindowResult> windows;
   for (const std::string& recording : options.recordings)
@@ -304,7 +298,7 @@ int run(IndicatorsOptions options)
   }
   if (!options.save_baseline.empty())
   {
-    writeBaseline(options.save_baseline, assessor.baseline().bins());
+    writeBaseline(options.save_baseline, assessor.baseline());
   }
   if (options.json)
   {
