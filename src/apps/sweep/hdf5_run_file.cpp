@@ -192,7 +192,7 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
   writeText(place.get(), "sample_rate_unit", "Hz");
   writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
   writeText(place.get(), "first_time_unit", "s");
-  for (const Column* column : recorded.columns)
+  for (const RunColumn* column : recorded.columns)
   {
     const bool per_tooth = column->per_tooth != nullptr;
     const std::size_t width = per_tooth ? static_cast<std::size_t>(twin.parameters().gear.teeth_flexspline) : 1;

@@ -39,7 +39,7 @@ Recording readRecording(const PlanNode& record)
     const PlanNode& list = required(node, "columns", PlanNode::Kind::LIST);
     for (const auto& [key, element] : list.entries)
     {
-      const Column* column = findColumn(values.text(list, key));
+      const RunColumn* column = findColumn(values.text(list, key));
       if (column == nullptr)
       {
         element.refuse("is no column; there are " + columnNames());

@@ -15,7 +15,7 @@ struct RecordingGroup
   std::string name;
   double rate{};   // [Hz]
   bool float32{};  // else float64
-  std::vector<const Column*> columns;
+  std::vector<const RunColumn*> columns;
 };
 
 enum class RunFormat

@@ -5,27 +5,23 @@
 #include <cmath>
 #include <map>
 
-#include <Random123/philox.h>
-#include <Random123/MicroURNG.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "base/number_text.hpp"
+#include "base/philox.hpp"
 #include "base/text_hash.hpp"
 
 namespace hjt
 {
 namespace
 {
-using Words = r123::MicroURNG<r123::Philox4x32>;
-
-Words wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t run)
+PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t run)
 {
   const std::uint64_t hash = textHash(name);
-  // The last word of the counter is the generator's own.
-  return Words({ { static_cast<std::uint32_t>(run), static_cast<std::uint32_t>(run >> 32), 0, 0 } },
-               { { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) } });
+  return PhiloxStream({ static_cast<std::uint32_t>(run), static_cast<std::uint32_t>(run >> 32), 0 },
+                      { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
 constexpr double LEAST_SHARE = 1e-3;    // of a normal distribution between its limits: values beyond are drawn again
@@ -142,7 +138,7 @@ void Variable::readChoices(const PlanNode& list)
 
 ParameterValue Variable::value(std::uint32_t seed, std::uint64_t run, std::size_t digit) const
 {
-  Words words = wordsOf(seed, node_->path, run);
+  PhiloxStream words = wordsOf(seed, node_->path, run);
   const auto [a, b, lowest, highest] = numbers_;
   switch (distribution_)
   {
