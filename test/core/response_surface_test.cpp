@@ -41,6 +41,7 @@
 #include "statics/static_solver.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
+#include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -58,14 +59,9 @@ constexpr double RATED_MOTOR_TORQUE = RATED_TORQUE / 101.0;
 /// A folder that every test of this program shares as cache, so that the surface is built once.
 const std::string& cacheDirectory()
 {
-  struct Folder
-  {
-    Folder() : path((fs::temp_directory_path() / ("hjt_surface_" + std::to_string(std::random_device{}()))).string()) {}
-    ~Folder() { fs::remove_all(path); }
-    std::string path;
-  };
-  static const Folder folder;
-  return folder.path;
+  static const TemporaryFolder FOLDER;
+  static const std::string PATH = FOLDER.path().string();
+  return PATH;
 }
 
 Parameters surfaceParameters()

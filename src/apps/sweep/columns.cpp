@@ -5,10 +5,10 @@
 
 namespace hjt
 {
-const std::vector<Column>& columns()
+const std::vector<RunColumn>& columns()
 {
   using I = const Instant&;
-  static const std::vector<Column> COLUMNS{
+  static const std::vector<RunColumn> COLUMNS{
     // What a robot's controller has.
     { "motor_angle_encoder", "rad", "motor encoder", [](I i) { return i.encoders.motor_angle; }, nullptr },
     { "motor_velocity_encoder", "rad/s", "motor encoder, difference over sensors.velocity_window",
@@ -52,16 +52,16 @@ const std::vector<Column>& columns()
 std::string columnNames()
 {
   std::string names;
-  for (const Column& column : columns())
+  for (const RunColumn& column : columns())
   {
     names += (names.empty() ? "" : ", ") + std::string(column.name);
   }
   return names;
 }
 
-const Column* findColumn(const std::string& name)
+const RunColumn* findColumn(const std::string& name)
 {
-  const auto found = std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == name; });
+  const auto found = std::find_if(columns().begin(), columns().end(), [&](const RunColumn& c) { return c.name == name; });
   return found == columns().end() ? nullptr : &*found;
 }
 }  // namespace hjt
