@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -123,7 +124,7 @@ void TwinLoop::cycle() noexcept
     forgetInputs(waiting);
     waiting = 0;
   }
-  stampInputs();
+  stampInputs(waiting);
   const Stamp limit = std::max<Stamp>(status_.clock - hold_back_, 0);
   answerRequests(limit, waiting);
   if (status_.state == LoopState::RUNNING || tryStart(limit))
@@ -170,13 +171,19 @@ void TwinLoop::forgetInputs(std::size_t count) noexcept
   arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(std::min(count, arrived_.size())));
 }
 
-/// What was stamped before there was a time is as good as now.
-void TwinLoop::stampInputs() noexcept
+/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes now;
+/// one far from the clock is refused.
+void TwinLoop::stampInputs(std::size_t waiting) noexcept
 {
-  for (Input& input : arrived_)
+  const auto fresh = arrived_.begin() + static_cast<std::ptrdiff_t>(waiting);
+  for (auto input = fresh; input != arrived_.end(); ++input)
   {
-    input.stamp = input.stamp == 0 ? status_.clock : input.stamp;
+    input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
   }
+  const auto kept_end = std::remove_if(
+      fresh, arrived_.end(), [this](const Input& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+  status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
+  arrived_.erase(kept_end, arrived_.end());
 }
 
 bool TwinLoop::tryStart(Stamp limit) noexcept

@@ -64,6 +64,7 @@ struct LoopStatus
   std::uint64_t overruns{};     ///< cycles whose work took longer than their period
   std::uint64_t clock_jumps{};  ///< times the clock jumped back
   std::uint64_t resets{};       ///< resets on request
+  std::uint64_t far_stamps{};   ///< inputs refused: stamped further than FAR_STAMP from the clock
   bool command_seen{};          ///< a motor torque command has come since the last start or reset
   Stamp last_command{};         ///< latest stamp of one [ns]
   JointOutputs outputs;
@@ -103,7 +104,7 @@ private:
   bool readClock(Stamp now) noexcept;
   void answerRequests(Stamp limit, std::size_t waiting) noexcept;
   void forgetInputs(std::size_t count) noexcept;
-  void stampInputs() noexcept;
+  void stampInputs(std::size_t waiting) noexcept;
   bool tryStart(Stamp limit) noexcept;
   void start(Stamp stamp) noexcept;
   void handOverInputs() noexcept;

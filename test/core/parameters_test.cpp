@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "test/support/temporary_folder.hpp"
 #include "params/field_table.hpp"
 
 namespace hjt
@@ -56,14 +56,9 @@ std::string complaint(const std::vector<std::string>& assignments)
 class YamlFile
 {
 public:
-  explicit YamlFile(const std::string& text)
-    : path_(fs::temp_directory_path() / ("hjt_parameters_test_" + std::to_string(::getpid()) + ".yaml"))
-  {
-    std::ofstream(path_) << text;
-  }
-  ~YamlFile() { fs::remove(path_); }
+  explicit YamlFile(const std::string& text) : path_(folder_.write("parameters.yaml", text)) {}
 
-  std::string path() const { return path_.string(); }
+  std::string path() const { return path_; }
 
   std::string complaint() const
   {
@@ -81,7 +76,8 @@ public:
   }
 
 private:
-  fs::path path_;
+  TemporaryFolder folder_;
+  std::string path_;
 };
 
 std::vector<std::string> allKeys()

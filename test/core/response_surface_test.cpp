@@ -41,6 +41,7 @@
 #include "statics/static_solver.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
+#include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -58,14 +59,9 @@ constexpr double RATED_MOTOR_TORQUE = RATED_TORQUE / 101.0;
 /// A folder that every test of this program shares as cache, so that the surface is built once.
 const std::string& cacheDirectory()
 {
-  struct Folder
-  {
-    Folder() : path((fs::temp_directory_path() / ("hjt_surface_" + std::to_string(std::random_device{}()))).string()) {}
-    ~Folder() { fs::remove_all(path); }
-    std::string path;
-  };
-  static const Folder folder;
-  return folder.path;
+  static const TemporaryFolder FOLDER;
+  static const std::string PATH = FOLDER.path().string();
+  return PATH;
 }
 
 Parameters surfaceParameters()
@@ -124,6 +120,22 @@ TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
   const double by_motor =
       (housing(at(motor + 10.0 * STEP, output)) - housing(at(motor - 10.0 * STEP, output))) / (20.0 * STEP);
   EXPECT_NEAR(stiffness[0], by_motor, 1e-3 * std::abs(by_motor));
+}
+
+TEST(ResponseSurface, MotorStiffnessIsTheTorquesDerivative)
+{
+  constexpr double STEP = 1e-7;
+  for (const double motor : { 0.3, 1.7, -2.2 })
+  {
+    for (const double v : { -3.1e-3, 1.7e-3, 4.3e-3 })
+    {
+      const double output = motor / 101.0 + v;
+      const double by_motor =
+          (at(motor + STEP, output).wave_generator_torque - at(motor - STEP, output).wave_generator_torque) /
+          (2.0 * STEP);
+      EXPECT_NEAR(at(motor, output).motor_stiffness, -by_motor, 1e-3 * std::abs(by_motor)) << motor << " " << v;
+    }
+  }
 }
 
 TEST(ResponseSurface, IsTheSameAgainAfterEveryPitch)

@@ -7,6 +7,7 @@ import subprocess
 import threading
 import time
 
+import roslib.message
 import roslib.packages
 import rosgraph
 import rosparam
@@ -15,7 +16,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 PACKAGE = "harmonic_joint_twin"
-PATIENCE = 30.0  # [s]
+PATIENCE = 30.0 * float(os.environ.get("HJT_PATIENCE", "1"))  # [s]
 OK, WARN, ERROR, STALE = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
 
@@ -64,6 +65,23 @@ class Listener:
 
     def close(self):
         self._subscriber.unregister()
+
+
+def numbers_in(message):
+    """Every floating-point number of a message, in its arrays and in the messages below it."""
+    for slot in message.__slots__:
+        value = getattr(message, slot)
+        for entry in value if isinstance(value, (list, tuple)) else [value]:
+            if isinstance(entry, float):
+                yield entry
+            elif hasattr(entry, "__slots__"):
+                yield from numbers_in(entry)
+
+
+def listen_to_all(node):
+    """A listener for each topic that a node publishes below its name."""
+    return {name[len(node) + 1:]: Listener(name, roslib.message.get_message_class(kind))
+            for name, kind in rospy.get_published_topics(node)}
 
 
 class Diagnostics:

@@ -214,12 +214,41 @@ TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
   EXPECT_EQ(loop_->status().timing.lateness.count(), 0U);
 }
 
+TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
+{
+  start(false);
+  setClock(100'000 * SECOND);
+  waitForCycles(2);
+  for (const Stamp stamp : { Stamp{ 1 }, 100'000 * SECOND + FAR_STAMP + SECOND, LAST_ROS_STAMP })
+  {
+    inbox_.push({ stamp, InputKind::MOTOR_TORQUE, 0.5 });
+  }
+  inbox_.push({ 100'001 * SECOND, InputKind::MOTOR_TORQUE, 0.25 });
+  setClock(100'002 * SECOND);
+  waitFor([this] { return loop_->status().counters.input.accepted == 1; });
+  EXPECT_EQ(loop_->status().far_stamps, 3U);
+  EXPECT_EQ(loop_->status().last_command, 100'001 * SECOND);
+}
+
+TEST_F(LoopFixture, OutlivesAClockThatJumpsToTheEndOfTimeAndBack)
+{
+  start(false);
+  for (const Stamp far : { Stamp{ 1 }, 2'147'483'648 * SECOND, LAST_ROS_STAMP })
+  {
+    clock_ = far;  // which it would take years to catch up with
+    waitForCycles(3);
+    setClock(100 * SECOND);
+    waitForCycles(3);
+    EXPECT_EQ(loop_->status().state, LoopState::RUNNING);
+    EXPECT_EQ(loop_->status().clock, 100 * SECOND);
+  }
+}
+
 TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
 {
-  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(JointNames("joint"), 200));
+  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(twin_->parameters()));
   start(false);
   setClock(100 * SECOND);
-  ToothForces forces = twin_->makeToothForces();
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
       *twin_, inbox_, [this] { return clock_.load(); }, ClockKind::STEPPED,
@@ -227,10 +256,11 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
       {
         if (auto* message = ring.claim())
         {
-          twin.toothForces(forces);
-          fillContactForces(twin.outputs(), forces, *message);
-          ring.commit();
-          ring.pop();
+          if (fillContactForces(twin, 0, *message))
+          {
+            ring.commit();
+            ring.pop();
+          }
         }
       });
   setClock(101 * SECOND);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,8 +10,7 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/text_table.hpp"
 #include "apps/tool/torque_profile.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -52,7 +50,7 @@ class CsvRecorder
 {
 public:
   CsvRecorder(const Twin& twin, const std::string& path, Stamp begin)
-    : schedule_(twin.parameters())
+    : period_(publishPeriod(twin.parameters().publish.joint_states_rate, twin.parameters().solver.rate))
     , begin_(begin)
     , csv_(path, { "time", "motor_angle", "motor_velocity", "output_angle", "output_velocity", "motor_angle_encoder",
                    "motor_velocity_encoder", "output_angle_encoder", "output_velocity_encoder", "motor_torque",
@@ -64,10 +62,11 @@ public:
   void record(Twin& twin)
   {
     const JointOutputs& o = twin.outputs();
-    if (!schedule_.isDue(Output::JOINT_STATES, o.stamp))
+    if (o.stamp % period_ != 0)
     {
       return;
     }
+    ++rows_;
     const EncoderReadings e = twin.encoders();
     csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity,
                     e.motor_angle, e.motor_velocity, e.output_angle, e.output_velocity, o.motor_torque, o.load_torque,
@@ -76,10 +75,12 @@ public:
   }
 
   void close() { csv_.close(); }
+  std::uint64_t rows() const { return rows_; }
 
 private:
-  OutputSchedule schedule_;
+  Stamp period_;  // [ns]
   Stamp begin_;
+  std::uint64_t rows_{};
   CsvWriter csv_;
 };
 
@@ -107,11 +108,13 @@ int simulate(const SimulateOptions& options)
   twin.reset(SIMULATION_EPOCH);
   const RunSummary summary{ options.out, twin.stamp() };
   const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
+  std::uint64_t recorded = 0;
   if (extension == ".csv")
   {
     CsvRecorder recorder(twin, options.out, twin.stamp());
     run(twin, profile, end, recorder);
     recorder.close();
+    recorded = recorder.rows();
   }
   else
   {
@@ -120,44 +123,37 @@ int simulate(const SimulateOptions& options)
     BagRecorder recorder(twin, options.joint_namespace, bag);
     run(twin, profile, end, recorder);
     bag.close();
+    recorded = bag.messages();
+  }
+  if (recorded == 0 && interruptSignal() == 0)
+  {
+    throw InputError(options.out + " holds nothing: the run of " + shortNumber(toSeconds(end - summary.begin)) +
+                     " s is shorter than a period of publish.joint_states_rate = " +
+                     shortNumber(parameters.publish.joint_states_rate) + " Hz");
   }
   return summary.report(twin, options.json);
 }
-}  // namespace
 
-void addSimulateCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, SimulateOptions& options)
 {
-  const auto options = std::make_shared<SimulateOptions>();
-  auto* command = app.add_subcommand("simulate", "run the twin under a given torque");
-  command->add_option("--duration", options->duration, "simulated time [s]; default: up to the profile's last row")
-      ->check(FINITE)
-      ->check(CLI::PositiveNumber);
-  auto* source = command->add_option_group("drive", "one of");
-  source->add_option("--torque", options->torque, "constant motor torque [N.m]")->check(FINITE);
-  source
-      ->add_option("--profile", options->profile,
-                   "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); "
-                   "each row holds until the next")
-      ->type_name("FILE.csv");
-  source->require_option(1);
+  command.add("--duration", options.duration, "simulated time [s]; default: up to the profile's last row").positive();
+  command.add("--torque", options.torque, "constant motor torque [N.m]").needs("--duration");
   command
-      ->add_option("--load", options->load, "constant external torque at the output; > 0 resists positive motion [N.m]")
-      ->check(FINITE);
-  command->add_option("--out", options->out, "bag with the node's topics, or CSV with a row per joint_states")
-      ->required()
-      ->type_name("FILE.bag|FILE.csv")
-      ->check(BAG_OR_CSV);
-  addNamespaceOption(*command, options->joint_namespace);
-  addFaultOption(*command, *options);
-  addCommonOptions(*command, *options);
-  command->callback(
-      [options, &exit_code]
-      {
-        if (options->torque && !options->duration)
-        {
-          throw CLI::RequiredError("--duration");
-        }
-        exit_code = simulate(*options);
-      });
+      .add("--profile", options.profile,
+           "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); each row "
+           "holds until the next")
+      .type("FILE.csv");
+  command.oneOf({ "--torque", "--profile" });
+  command.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
+  command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
+      .required()
+      .type("FILE.bag|FILE.csv")
+      .bagOrCsv();
+  addNamespaceOption(command, options.joint_namespace);
+  addFaultOption(command, options);
+  addCommonOptions(command, options);
 }
+
+const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given torque", declare, simulate };
+}  // namespace
 }  // namespace hjt
