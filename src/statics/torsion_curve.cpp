@@ -6,6 +6,7 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 
 namespace hjt
@@ -42,10 +43,10 @@ TorsionCurve::TorsionCurve(const Parameters& parameters)
 {
   for (const StiffnessRow& row : analyseStiffness(parameters, 0.0, torquesOf(parameters.cup)))
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
-                           " N.m at the output");
+                           " N.m at the output: " + explanationOf(row.status));
     }
     if (!pieces_.empty())
     {

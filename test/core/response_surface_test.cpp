@@ -113,6 +113,22 @@ TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
   EXPECT_NEAR(stiffness[0], by_motor, 1e-3 * std::abs(by_motor));
 }
 
+TEST(ResponseSurface, MotorStiffnessIsTheTorquesDerivative)
+{
+  constexpr double STEP = 1e-7;
+  for (const double motor : { 0.3, 1.7, -2.2 })
+  {
+    for (const double v : { -3.1e-3, 1.7e-3, 4.3e-3 })
+    {
+      const double output = motor / 101.0 + v;
+      const double by_motor =
+          (at(motor + STEP, output).wave_generator_torque - at(motor - STEP, output).wave_generator_torque) /
+          (2.0 * STEP);
+      EXPECT_NEAR(at(motor, output).motor_stiffness, -by_motor, 1e-3 * std::abs(by_motor)) << motor << " " << v;
+    }
+  }
+}
+
 TEST(ResponseSurface, IsTheSameAgainAfterEveryPitch)
 {
   const double pitch = TWO_PI / 200;
@@ -279,8 +295,8 @@ TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
     load += forces.wave_generator_force[i];
     teeth += forces.mesh_force[i] != 0.0 ? 1 : 0;
   }
-  EXPECT_NEAR(load, health.wave_generator_load, 1e-3 * load);
-  EXPECT_NEAR(teeth, static_cast<int>(health.teeth_loaded), 2);
+  EXPECT_NEAR(load, health.lobes.wave_generator_force, 1e-3 * load);
+  EXPECT_NEAR(teeth, health.lobes.teeth_loaded, 2);
   EXPECT_TRUE(twin.onSurface());
 }
 

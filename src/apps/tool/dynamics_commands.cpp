@@ -7,6 +7,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
@@ -203,9 +204,7 @@ int dynamics(const DynamicsOptions& options)
   const QuasiStaticResult result = checkQuasiStatic(parameters, setup, showProgress("turning"));
   if (result.outcome == QuasiStaticOutcome::NO_EQUILIBRIUM)
   {
-    std::cerr << "joint_twin: no equilibrium found to compare with at " << result.stopped_at
-              << " s; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("the comparison at " + shortNumber(result.stopped_at) + " s", result.status);
   }
   if (result.outcome == QuasiStaticOutcome::STEP_FAILED)
   {

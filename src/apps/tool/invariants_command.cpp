@@ -50,7 +50,7 @@ const std::vector<Column<State>> STATE_COLUMNS{
   { "cup_torque", &State::cup_torque },
   { "", [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
     "torque sum [N.m]" },
-  { "residual", &State::residual, "residual [N]" }
+  { "residual", [](const State& row) { return row.status.residual; }, "residual [N]" }
 };
 
 using LoadedPotential = std::pair<double, PotentialRow>;
@@ -79,15 +79,15 @@ int state(const StateOptions& options)
   for (const double load : options.loads)
   {
     states.push_back(analyseState(parameters, options.angle, load, options.pitches));
-    if (!states.back().converged)
+    if (!states.back().status.ok())
     {
-      return notConverged("a load of " + shortNumber(load) + " N.m", states.back().residual);
+      return notConverged("a load of " + shortNumber(load) + " N.m", states.back().status);
     }
     for (const PotentialRow& row : analysePotential(parameters, options.angle, load, options.steps))
     {
-      if (!row.converged)
+      if (!row.status.ok())
       {
-        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.residual);
+        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.status);
       }
       potential.emplace_back(load, row);
     }
@@ -137,9 +137,9 @@ int frame(const FrameOptions& options)
 {
   const TurnedMachine result =
       analyseTurnedMachine(loadParameters(options), options.load, options.seed, options.samples);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.residual);
+    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.status);
   }
   std::vector<ReportLine> lines{ { "load", "", options.load },
                                  { "elements", "", Table(ELEMENT_COLUMNS, result.elements).rows() } };
@@ -184,7 +184,7 @@ Column<SmallWaveRow> partOf(const char* heading)
 const std::vector<Column<SmallWaveRow>> SMALL_WAVE_COLUMNS{
   { "wave_amplitude", &SmallWaveRow::wave_amplitude, "wave amplitude [m]" },
   { "teeth_in_contact", &SmallWaveRow::teeth_in_contact, "teeth in contact [-]" },
-  { "residual", &SmallWaveRow::residual },
+  { "residual", [](const SmallWaveRow& row) { return row.status.residual; } },
   { "contact_force_min", &SmallWaveRow::contact_force_min },
   { "contact_force_max", &SmallWaveRow::contact_force_max },
   { "thin_ring", errorOf<&SmallWaveRow::thin_ring> },
@@ -204,9 +204,9 @@ int smallWave(const SmallWaveOptions& options)
   const auto rows = analyseSmallWave(loadParameters(options), bending, options.smallest, options.count);
   for (const SmallWaveRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.residual);
+      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.status);
     }
   }
   printReport(options.json, {}, { { "rows", { SMALL_WAVE_COLUMNS, rows } } });
@@ -257,9 +257,9 @@ int energy(const EnergyOptions& options)
     parameters.solver.rate = rate;
     rows.emplace_back(rate, runLedger(parameters, { options.seed, options.load, true }, options.duration,
                                       showProgress("random motion at " + shortNumber(rate) + " Hz")));
-    if (!rows.back().second.converged)
+    if (!rows.back().second.status.ok())
     {
-      return notConverged("a step at " + shortNumber(rate) + " Hz", rows.back().second.force_residual);
+      return notConverged("a step at " + shortNumber(rate) + " Hz", rows.back().second.status);
     }
   }
   printReport(options.json, { { "seed", "", options.seed }, { "duration", "", options.duration } },

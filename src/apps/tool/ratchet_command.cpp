@@ -4,6 +4,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
 
@@ -43,10 +44,9 @@ int ratchet(const RatchetOptions& options)
 {
   const RatchetResult result = analyseRatchet(loadParameters(options), options.angle, options.lobe_stiffness,
                                               options.angle_step, options.torque_limit, showProgress("loading"));
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    std::cerr << "joint_twin: no equilibrium found at no load; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("no load", result.status);
   }
   const RatchetRow& peak = result.peak;
   printReport(options.json, { { "end", "end", endOf(result.end) },

@@ -80,9 +80,9 @@ int insert(const InsertOptions& options)
     requireWritable(options.csv, options.force);
   }
   const InsertionResult result = analyseInsertion(parameters);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("the insertion", result.residual);
+    return notConverged("the insertion", result.status);
   }
   if (!options.csv.empty())
   {
@@ -100,8 +100,8 @@ int insert(const InsertOptions& options)
                 { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
                 { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
                 { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
-                { "residual", "residual", result.residual, "N" },
-                { "iterations", "iterations", result.iterations },
+                { "residual", "residual", result.status.residual, "N" },
+                { "iterations", "iterations", result.status.iterations },
                 { "solve_time", "solve time", result.solve_time, "s" } });
   return EXIT_DONE;
 }
@@ -133,7 +133,7 @@ const std::vector<Column<StiffnessRow>> STIFFNESS_COLUMNS{
   { "teeth_loaded", &StiffnessRow::teeth_loaded, "teeth loaded [-]" },
   { "mesh_force_max", &StiffnessRow::mesh_force_max, "mesh force max [N]" },
   { "wave_generator_force_sum", &StiffnessRow::wave_generator_force_sum, "WG force sum [N]" },
-  { "residual", &StiffnessRow::residual, "residual [N]" }
+  { "residual", [](const StiffnessRow& row) { return row.status.residual; }, "residual [N]" }
 };
 
 Json teethJson(const StiffnessRow& row)
@@ -166,9 +166,9 @@ int stiffness(const StiffnessOptions& options)
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.residual);
+      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.status);
     }
   }
   if (!options.csv.empty())
@@ -225,10 +225,10 @@ int turn(const TurnOptions& options)
       [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       return notConverged("the row of wave generator angle " + shortNumber(row.wave_generator_angle) + " rad",
-                          row.residual);
+                          row.status);
     }
   }
   printReport(options.json, { { "load", "", options.load } }, { { "rows", { TURN_COLUMNS, rows } } });
