@@ -14,6 +14,7 @@
 #include "ros_io/bag_file.hpp"
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
+#include "ros_io/time.hpp"
 #include "tracking/plausible.hpp"
 
 namespace hjt
@@ -77,10 +78,10 @@ public:
       return true;
     }
     const sensor_msgs::JointState& state = message_.state();
-    const ros::Time stamp = state.header.stamp.isZero() ? instance.getTime() : state.header.stamp;
+    const Stamp stamp = stampOr(state.header.stamp, instance.getTime());
     if (instance.getTopic() == source_.topic)
     {
-      return takeTelemetry(state, stamp, instance.getTime());
+      return takeTelemetry(state, stamp, fromRosTime(instance.getTime()));
     }
     readLoad(state, stamp);
     return true;
@@ -103,12 +104,12 @@ public:
     if (!start_)
     {
       start_ = held.stamp;
-      count_.start = held.stamp.toSec();
+      count_.start = toSeconds(held.stamp);
       count_.least_delay = count_.most_delay = held.delay();
     }
     MotionRow row = held.row;
-    row.time = (held.stamp - *start_).toSec();
-    row.received = (held.recorded - *start_).toSec();
+    row.time = toSeconds(held.stamp - *start_);
+    row.received = toSeconds(held.recorded - *start_);
     check_.add(row.time, row.position, held.velocity);
     count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
@@ -126,25 +127,20 @@ private:
   {
     MotionRow row;
     double velocity{};  // as recorded; NaN: not at all [rad/s]
-    ros::Time stamp;
-    ros::Time recorded;
+    Stamp stamp{};
+    Stamp recorded{};
     bool agrees{};  // with a neighbour
 
-    double delay() const { return (recorded - stamp).toSec(); }
+    double delay() const { return toSeconds(recorded - stamp); }
   };
 
   static bool agree(const Held& a, const Held& b)
   {
-    const double time = std::abs((b.recorded - a.recorded).toSec()) + SLACK;
+    const double time = std::abs(toSeconds(b.recorded - a.recorded)) + SLACK;
     return std::abs(b.delay() - a.delay()) < CLOCK_STEP && std::abs(b.row.position - a.row.position) < FASTEST * time;
   }
 
-  static std::size_t find(const sensor_msgs::JointState& message, const std::string& name)
-  {
-    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
-  }
-
-  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
+  bool takeTelemetry(const sensor_msgs::JointState& message, Stamp stamp, Stamp recorded)
   {
     Held held;
     const TelemetryStatus status = readTelemetry(message, names_, held.row);
@@ -153,8 +149,8 @@ private:
       others_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    const std::size_t motor = find(message, names_.motor);
-    if (source_.current_per_motor_torque > 0.0 && motor < message.name.size() && motor < message.effort.size())
+    const std::size_t motor = placeOf(message, names_.motor);
+    if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())
     {
       held.row.current = source_.current_per_motor_torque * message.effort[motor];
     }
@@ -163,7 +159,7 @@ private:
       ++count_.corrupt;
       return true;
     }
-    const std::size_t joint = find(message, names_.joint);
+    const std::size_t joint = placeOf(message, names_.joint);
     held.velocity = joint < message.velocity.size() ? message.velocity[joint] : std::nan("");
     held.row.load = load_;
     held.stamp = stamp;
@@ -180,10 +176,10 @@ private:
     return more;
   }
 
-  void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  void readLoad(const sensor_msgs::JointState& message, Stamp stamp)
   {
-    const std::size_t i = find(message, names_.joint);
-    if (i < message.name.size() && i < message.effort.size() && isPlausibleEffort(message.effort[i]))
+    const std::size_t i = placeOf(message, names_.joint);
+    if (i < message.effort.size() && isPlausibleEffort(message.effort[i]))
     {
       load_ = message.effort[i];
       if (waiting_ && stamp <= waiting_->stamp)
@@ -203,7 +199,7 @@ private:
   std::optional<Held> waiting_;
   std::optional<Held> last_;  // as it came, true or not
   std::uint64_t seen_{};      // the only row has no neighbour to disagree with
-  std::optional<ros::Time> start_;
+  std::optional<Stamp> start_;
   double load_{};
 };
 

@@ -245,6 +245,28 @@ TEST(Observer, DoesNotWindUpWhileFrictionHoldsTheMotor)
   }
 }
 
+/// While friction holds the motor it stands still to the last bit, and its noise goes into nothing else.
+TEST(Observer, KnowsThatAMotorThatSticksStandsStill)
+{
+  const Parameters joint = shippedParameters(JOINT);
+  for (const Rows& rows : { Rows{}, Rows{ 0.008, Encoders::OUTPUT } })
+  {
+    int stuck = 0;
+    double widest = 0.0;
+    for (const Seen& at : observe(joint, joint, 3.0, standAndTurn, rows))
+    {
+      if (at.time > 1.0 && at.sticking)
+      {
+        ++stuck;
+        widest = std::max(widest, at.innovation_band);
+        ASSERT_EQ(at.motor_velocity, 0.0) << at.time << " s";
+      }
+    }
+    EXPECT_GT(stuck, 200);
+    std::printf("WIDEST %.6g\n", widest);
+  }
+}
+
 TEST(Observer, IsNotHeldByFrictionThatTheRobotDoesNotHave)
 {
   // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes later.

@@ -109,8 +109,12 @@ class Indicators(tool.ToolTest):
     def test_what_cannot_be_read_is_said(self):
         self.write("short.csv", recording(seconds=1.0))
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
-        self.write("bad.yaml", "baseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
+        self.write("bad.yaml", "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
                                "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
+        self.write("other.yaml", "load_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                                 "windows: 3, indicators: {}}\n")
+        self.fail_with(1, ["other.yaml is no baseline: its load_step is 2.925 [N.m], expected 25.125"],
+                       "indicators", "short.csv", *COLUMNS, "--baseline", "other.yaml")
         self.fail_with(1, ["too short for one window"], "indicators", "short.csv", *COLUMNS)
         self.fail_with(1, ["neither column 'motor_angle_encoder'"], "indicators", "no_angle.csv")
         self.fail_with(1, ["bad.yaml is no baseline", "unknown indicator nonsense"], "indicators", "short.csv",

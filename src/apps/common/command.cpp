@@ -36,7 +36,7 @@ Check bound(const std::function<bool(double)>& holds, const std::string& wrong)
 {
   return [=](const std::string& text)
   {
-    const auto number = looseNumber(text);
+    const auto number = decimalNumber(text);
     return number && holds(*number) ? std::string() : "'" + text + "' " + wrong;
   };
 }

@@ -8,8 +8,8 @@
 #include <rosbag/view.h>
 #include <std_msgs/String.h>
 
-#include "apps/common/run_summary.hpp"
 #include "apps/common/configuration.hpp"
+#include "apps/common/run_summary.hpp"
 
 #include "base/whole_file.hpp"
 
@@ -37,6 +37,7 @@ BagRunFile::~BagRunFile()
   const std::lock_guard<std::mutex> lock(g_opening);
   bag_.reset();
   std::remove(temporary_.c_str());
+  std::remove((temporary_ + ".active").c_str());
 }
 
 void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)

@@ -119,7 +119,7 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
 int compare(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference);
+  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference, parameters);
   prepareDirectory(options);
   MotionSource source = motionSource(options);
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;

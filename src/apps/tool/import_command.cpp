@@ -166,6 +166,10 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
   }
   catch (const InputError& error)
   {
+    if (!bag.isOpen())
+    {
+      throw;  // the output itself
+    }
     bag.close();
     throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :
                                                               "; " + options.out + " is readable and holds the " +

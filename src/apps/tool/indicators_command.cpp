@@ -281,7 +281,7 @@ int run(const IndicatorsOptions& given)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.give(readBaseline(options.baseline));
+    assessor.give(readBaseline(options.baseline, parameters));
   }
   std::vector<WindowResult> windows;
   for (const std::string& recording : options.recordings)
@@ -313,7 +313,7 @@ int run(const IndicatorsOptions& given)
   }
   if (!options.save_baseline.empty())
   {
-    writeBaseline(options.save_baseline, assessor.baseline().bins());
+    writeBaseline(options.save_baseline, assessor.baseline());
   }
   if (options.json)
   {
