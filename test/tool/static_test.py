@@ -25,6 +25,19 @@ class CommandLine(tool.ToolTest):
             with self.subTest(arguments):
                 self.fail_with(2, [], *arguments)
 
+    def test_a_misspelt_subcommand_is_named(self):
+        self.fail_with(2, ["unknown subcommand 'compar'", "did you mean compare?"], "compar", "a.bag")
+        self.fail_with(2, ["unknown subcommand 'ag'", "did you mean age?"], "life", "ag")
+        self.fail_with(2, ["unknown subcommand 'xylophone'"], "xylophone")
+
+    def test_the_list_of_faults_fits_a_terminal(self):
+        lines = self.succeed("faults").stdout.splitlines()
+        self.assertLessEqual(max(map(len, lines)), 100)
+        self.assertIn("bearing_cage", lines)
+
+    def test_help_says_which_way_a_torque_turns(self):
+        self.assertIn("negative angles", " ".join(self.succeed("stiffness", "--help").stdout.split()))
+
     def test_help_and_version_end_with_0(self):
         self.assertIn("SI units", self.succeed("--help").stdout)
         self.assertRegex(self.succeed("--version").stdout, r"^joint_twin \d+\.\d+\.\d+$")
