@@ -86,6 +86,25 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   return result;
 }
 
+FitCheck checkFit(const Parameters& parameters)
+{
+  FitCheck check;
+  for (const bool meshed : { false, true })
+  {
+    RingModel model(parameters);
+    model.meshed = meshed;
+    RingEquilibrium ring(model, staticSolver(parameters.solver));
+    check.status = meshed ? insertUnderLoad(ring, 0.0, 0.0) : ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+    if (!check.status.ok())
+    {
+      break;
+    }
+    (meshed ? check.wave_generator_force : check.wave_generator_force_insertion) = ring.forces().contact_force.sum();
+    check.teeth_loaded = static_cast<int>((ring.forces().flank_force.array() != 0.0).count());
+  }
+  return check;
+}
+
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques)
 {

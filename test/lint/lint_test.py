@@ -20,6 +20,7 @@ import layering
 import links
 import message_comments
 import project
+import python
 import spdx
 import type_names
 
@@ -311,6 +312,18 @@ class ClangTidy(Tree):
         options = ["-Winvalid-pch", "-include", prefix]
         self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
         self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
+
+
+class Python(Tree):
+    def test_clean(self):
+        self.write("scripts/one.py", "import sys\n\nsys.exit(0)\n")
+        self.assert_clean(python.check)
+
+    def test_faults(self):
+        for content, word in [("import os\n", "F401"), ("x = 1" + " + 1" * 40 + "\n", "E501"), ("x = y\n", "F821")]:
+            with self.subTest(content=content):
+                self.write("scripts/one.py", content)
+                self.assert_fault(python.check, "scripts/one.py:1", word)
 
 
 class CatkinLint(Tree):
