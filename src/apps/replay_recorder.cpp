@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_file.hpp"
 #include "ros_io/bag_inputs.hpp"
 #include "ros_io/bag_writer.hpp"
 #include "ros_io/shutdown_signals.hpp"
@@ -28,7 +29,8 @@ using topic_tools::ShapeShifter;
 std::set<std::string> topicsToRecord(const std::string& played_bag, const std::string& twin_namespace)
 {
   std::set<std::string> topics{ "/diagnostics" };
-  const rosbag::Bag bag(played_bag, rosbag::bagmode::Read);
+  rosbag::Bag bag;
+  hjt::openForReading(bag, played_bag);
   rosbag::View view(bag);
   for (const rosbag::ConnectionInfo* connection : view.getConnections())
   {
@@ -164,6 +166,7 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "replay_recorder");
   hjt::shutDownOnSignals();
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
   CLI::App app("Records the topics of a bag being played, and everything the twin puts out beside them");
   std::string played_bag;
   std::string output_bag;

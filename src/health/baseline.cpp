@@ -14,14 +14,15 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEP = 25.0;         // [N.m]
+constexpr double LOAD_STEP = 0.375;        // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
 constexpr int LEAST_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {
-  return std::isfinite(value) ? static_cast<int>(std::floor(value / step)) : 0;
+  constexpr double FARTHEST = 1e6;  // damaged recordings hold numbers that no int does
+  return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
 }
 
 /// Student's t with `freedom` as a normal deviate, and back.
@@ -50,12 +51,17 @@ std::size_t sizeOf(std::size_t indicator) noexcept
 }
 }  // namespace
 
-OperatingBin binOf(const OperatingPoint& point) noexcept
+double loadStep(const Parameters& parameters) noexcept
+{
+  return LOAD_STEP * parameters.life.rated_torque;
+}
+
+OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
 {
   OperatingBin bin;
-  bin.speed = point.speed > 0.0 ? static_cast<int>(std::floor(std::log2(point.speed))) : -100;
+  bin.speed = point.speed > 0.0 ? stepOf(std::log2(point.speed), 1.0) : -100;
   bin.direction = point.direction > ONE_WAY ? 1 : point.direction < -ONE_WAY ? -1 : 0;
-  bin.load = stepOf(point.load, LOAD_STEP);
+  bin.load = stepOf(point.load, load_step);
   bin.temperature = stepOf(point.temperature, TEMPERATURE_STEP);
   return bin;
 }
@@ -69,7 +75,9 @@ void Reference::add(double value) noexcept
 }
 
 Baseline::Baseline(const Parameters& parameters)
-  : windows_(parameters.indicators.baseline_windows), least_spread_(parameters.indicators.least_spread)
+  : windows_(parameters.indicators.baseline_windows)
+  , least_spread_(parameters.indicators.least_spread)
+  , load_step_(hjt::loadStep(parameters))
 {
   const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
@@ -117,7 +125,7 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
 BaselineState Baseline::take(const SignalIndicators& indicators, Deviations& deviations) noexcept
 {
   deviations.fill({});
-  ReferenceBin* bin = find(binOf(indicators.point));
+  ReferenceBin* bin = find(binOf(indicators.point, load_step_));
   if (bin == nullptr)
   {
     return BaselineState::NO_REFERENCE;

@@ -118,10 +118,6 @@ void checkLife(const Parameters& p, Contradictions& check)
 
 void checkFaults(const Parameters& p, Contradictions& check)
 {
-  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
-                { "bearing.ball_diameter", "bearing.pitch_diameter" },
-                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
-                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
   for (std::size_t i = 0; i < p.faults.size(); ++i)
   {
     const std::string key = faultKey(static_cast<int>(i)) + '.';

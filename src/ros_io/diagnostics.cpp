@@ -117,7 +117,7 @@ void Diagnostics::readSnapshot()
   clamps_.update(twin.torque_clamped + twin.load_clamped, now);
   late_inputs_.update(twin.input.late + twin.faults.late, now);
   timeouts_.update(twin.command_timeouts, now);
-  lost_inputs_.update(twin.input.overflow + twin.faults.no_room + snapshot_.overflow + loop.waiting_overflow, now);
+  lost_inputs_.update(twin.input.overflow + twin.faults.no_room + snapshot_.overflow, now);
   refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort +
                        snapshot_.messages.refused_fault + snapshot_.messages.too_large + twin.faults.refused +
                        loop.far_stamps,
@@ -295,7 +295,7 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Stamp far from the clock, refused", loop.far_stamps);
   status.add("Faults without room", counters.faults.no_room);
   status.add("Too late for their stamp", counters.input.late + counters.faults.late);
-  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow + loop.waiting_overflow);
+  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);
   status.add("Steps with load torque clamped", counters.load_clamped);
   status.add("Command timeouts", counters.command_timeouts);

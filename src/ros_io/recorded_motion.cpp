@@ -15,20 +15,49 @@
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/time.hpp"
+#include "tracking/plausible.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 20.0;        // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;          // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;      // by which the delay of a message may differ from its neighbour's [s]
-constexpr double LARGEST_EFFORT = 1e4;  // current [A] or torque [N.m]
+constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
 
-bool isPlausible(double effort)
+/// Holds the angles and stamps of neighbouring rows against the velocities that the recording gives beside them.
+class VelocityCheck
 {
-  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
-}
+public:
+  /// `velocity`: recorded; NaN: none.
+  void add(double time, double position, double velocity)
+  {
+    const double step = time - time_;
+    const double mean = 0.5 * (velocity + velocity_);
+    if (step > MotionSmoother::SMALLEST_STEP && step < MotionSmoother::LONGEST_GAP && std::abs(mean) > SLOWEST)
+    {
+      products_ += (position - position_) / step * mean;
+      squares_ += mean * mean;
+      ++rows_;
+    }
+    time_ = time;
+    position_ = position;
+    velocity_ = velocity;
+  }
+
+  double ratio() const { return rows_ >= FEWEST_ROWS ? products_ / squares_ : 0.0; }
+
+private:
+  static constexpr double SLOWEST = 0.05;  // [rad/s]
+  static constexpr int FEWEST_ROWS = 50;
+
+  double time_{ -HUGE_VAL };
+  double position_{};
+  double velocity_{};
+  double products_{};
+  double squares_{};
+  int rows_{};
+};
 
 /// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
 /// tells whether it can be true.
@@ -81,6 +110,8 @@ public:
     MotionRow row = held.row;
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
+    check_.add(row.time, row.position, held.velocity);
+    count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -95,6 +126,7 @@ private:
   struct Held
   {
     MotionRow row;
+    double velocity{};  // as recorded; NaN: not at all [rad/s]
     Stamp stamp{};
     Stamp recorded{};
     bool agrees{};  // with a neighbour
@@ -122,11 +154,13 @@ private:
     {
       held.row.current = source_.current_per_motor_torque * message.effort[motor];
     }
-    if (status != TelemetryStatus::FOUND || !isPlausible(held.row.current))
+    if (status != TelemetryStatus::FOUND || !isPlausibleEffort(held.row.current))
     {
       ++count_.corrupt;
       return true;
     }
+    const std::size_t joint = placeOf(message, names_.joint);
+    held.velocity = joint < message.velocity.size() ? message.velocity[joint] : std::nan("");
     held.row.load = load_;
     held.stamp = stamp;
     held.recorded = recorded;
@@ -145,7 +179,7 @@ private:
   void readLoad(const sensor_msgs::JointState& message, Stamp stamp)
   {
     const std::size_t i = placeOf(message, names_.joint);
-    if (i < message.effort.size() && isPlausible(message.effort[i]))
+    if (i < message.effort.size() && isPlausibleEffort(message.effort[i]))
     {
       load_ = message.effort[i];
       if (waiting_ && stamp <= waiting_->stamp)
@@ -159,6 +193,7 @@ private:
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
   MotionCount count_;
+  VelocityCheck check_;
   JointNames names_;
   std::set<std::string> others_;  // joints in messages that do not name this one
   std::optional<Held> waiting_;
@@ -202,12 +237,13 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   return rows.count();
 }
 
-using CsvTable = NumberTable<4>;
+using CsvTable = NumberTable<5>;
 
 CsvTable openCsv(const MotionSource& source)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
-  return CsvTable(source.path, { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n }, 1);
+  return CsvTable(source.path,
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n }, 2);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
@@ -215,7 +251,9 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 {
   CsvTable table = openCsv(source);
   MotionCount count;
-  std::array<double, 4> row{};
+  VelocityCheck check;
+  std::array<double, 5> row{};
+  row[4] = std::nan("");
   while (table.read(row))
   {
     if (count.rows++ == 0)
@@ -226,12 +264,14 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     count.duration = std::max(count.duration, time);
     MotionRow motion{ time, row[1], row[2], row[3] };
     motion.received = time;
+    check.add(time, row[1], row[4]);
     if (!visit(motion))
     {
       break;
     }
   }
   progress(1.0);
+  count.velocity_ratio = check.ratio();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");

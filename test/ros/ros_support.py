@@ -119,8 +119,9 @@ class Diagnostics:
 
 
 def configuration_files(joint="elbow", overlays=()):
-    stages = ["gear", "manufacture", "elements", "joint", "solver", "sensors", "health", "life", "faults", "node"]
-    names = [f"{stage}.yaml" for stage in stages] + [f"joints/{joint}.yaml", *overlays]
+    with open(package_path("config", "stages"), encoding="utf-8") as file:
+        stages = [line.strip() for line in file if not line.startswith("#")]
+    names = [*stages, f"joints/{joint}.yaml", *overlays]
     return [package_path("config", name) for name in names]
 
 

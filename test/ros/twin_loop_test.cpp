@@ -339,8 +339,27 @@ TEST(Inbox, DropsWhatItCannotHoldAndCounts)
   inbox.take(inputs);
   ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
   EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
+  // What has no room there waits in the inbox.
+  inbox.push({ 7, InputKind::BRAKE, 1.0 });
   inbox.take(inputs);
-  EXPECT_TRUE(inputs.empty());
+  ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
+  inputs.erase(inputs.begin() + 1, inputs.end());
+  inbox.take(inputs);
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_EQ(inputs.back().stamp, 7);
+}
+
+/// Inputs that arrived before a reset are forgotten while the twin waits for its first torque.
+TEST_F(LoopFixture, AResetForgetsWhatWaitsForTheStart)
+{
+  start(true);
+  setClock(100 * SECOND);
+  inbox_.push({ 100 * SECOND, InputKind::BRAKE, 1.0 });
+  setClock(101 * SECOND);
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
+  ASSERT_TRUE(loop_->reset());
+  setClock(102 * SECOND);
+  EXPECT_FALSE(loop_->status().outputs.brake_engaged);
 }
 
 TEST(SlotRing, HandsOverInOrderAndRefusesWhenFull)

@@ -22,6 +22,7 @@ void catchInterrupts()
   {
     sigaction(SIGHUP, &action, nullptr);
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
 }
 
 int interruptSignal()

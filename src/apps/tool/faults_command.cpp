@@ -40,6 +40,7 @@ int faults(const CommonOptions& options)
 }
 
 const Subcommand FAULTS{ Subject::JOINT, "faults",
-                         "list the kinds of faults: what severity 1 is, places, where they show", addCommonOptions, faults };
+                         "list the kinds of faults: what severity 1 is, places, where they show", addCommonOptions,
+                         faults };
 }  // namespace
 }  // namespace hjt
