@@ -94,6 +94,8 @@ class FarStamps(unittest.TestCase):
         self.diagnostics.wait_for("Input", "Stamp far from the clock, refused", 3 * len(FAR))
         self.assertEqual(self.diagnostics.level("Input"), WARN)
         self.send(command, rospy.Time(START), effort=[0.2])
+        time.sleep(0.2)
+        self.tick(START + 1)
         self.diagnostics.wait_for("Input", "Accepted", 1)
         self.stop()
 
