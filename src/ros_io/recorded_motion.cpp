@@ -14,6 +14,7 @@
 #include "ros_io/bag_file.hpp"
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
+#include "ros_io/time.hpp"
 
 namespace hjt
 {
