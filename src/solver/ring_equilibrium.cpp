@@ -52,6 +52,7 @@ RingEquilibrium::Equilibrium::Equilibrium(const RingModel& model)
 
 RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters& parameters)
   : model_(model)
+  , model_version_(model.version())
   , parameters_(parameters)
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
   , solver_(model.rest.teeth())
@@ -64,8 +65,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , start_points_(now_.shape.points)
   , scratch_(now_.shape.points)
   , old_space_(now_.shape.space)
-  , factored_meshed_(forces_.meshed)
-  , factored_depth_(forces_.contact_depth)
+  , factored_meshed_(forces_.of<ToothMesh>().meshed)
+  , factored_depth_(forces_.of<WaveGeneratorContact>().depth)
   , guess_(now_.shape.points)
   , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , step_(now_.shape.points)
@@ -132,7 +133,7 @@ SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePos
 /// The round ring about the wave generator's centre, before the insertion.
 void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
 {
-  const Eigen::Vector2d centre = model_.contact.centre(target);
+  const Eigen::Vector2d centre = model_.of<WaveGeneratorContact>().centre(target);
   for (int i = 0; i < now_.shape.teeth(); ++i)
   {
     scratch_.segment<2>(2 * i) = model_.rest.points().segment<2>(2 * i) + centre;
@@ -147,7 +148,8 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.shape.points = points;
   now_.shape.updateGeometry();
   forgetGuess();
-  model_.mesh.pairAtRest(now_.position, now_.shape);
+  model_version_ = model_.version();
+  model_.of<ToothMesh>().pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
@@ -178,6 +180,7 @@ SolveStatus RingEquilibrium::followModel() noexcept
   constexpr char NONE = 8;  // no tooth's contacts: the tangent is no longer that of the model
   std::fill(factored_meshed_.begin(), factored_meshed_.end(), NONE);
   forgetGuess();
+  model_version_ = model_.version();
   updateForces();
   const DrivePosition target = now_.position;
   start_ = now_;
@@ -192,6 +195,11 @@ SolveStatus RingEquilibrium::followModel() noexcept
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
+  if (model_version_ != model_.version())
+  {
+    const SolveStatus status = followModel();
+    return status.ok() ? add(status, moveTo(target)) : status;
+  }
   if (target == now_.position && now_.residual <= parameters_.force_tolerance)
   {
     SolveStatus unmoved;
@@ -233,9 +241,9 @@ SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
     }
     // In equilibrium as paired. Teeth that have been lifted out may be nearer to another space now.
     old_space_ = now_.shape.space;
-    if (model_.meshed)
+    if (model_.meshed())
     {
-      model_.mesh.pairNearest(now_.position, now_.shape);
+      model_.of<ToothMesh>().pairNearest(now_.position, now_.shape);
     }
     if (old_space_ == now_.shape.space)
     {
@@ -401,7 +409,7 @@ void RingEquilibrium::guess(const DrivePosition& target) noexcept
   constexpr double MOST_PITCHES = 1e9;  // counted as an int
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - now_.position.wave_generator_angle) / pitch;
-  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
+  if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
   {
     const int whole = static_cast<int>(pitches);
     if (whole != 0)
@@ -438,9 +446,9 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   const int max_iterations = (descending_ ? DESCENT : 1) * parameters_.max_iterations;
   SolveStatus status;
   predict(target);
-  if (model_.meshed)
+  if (model_.meshed())
   {
-    status.jumps = model_.mesh.pairNearest(now_.position, now_.shape);
+    status.jumps = model_.of<ToothMesh>().pairNearest(now_.position, now_.shape);
   }
   updateForces();
   status.residual = largest(forces_.teeth);
@@ -488,17 +496,18 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 /// Whether a tooth has begun or ceased to touch, or the cup has come to another slope, since the tangent was factored.
 bool RingEquilibrium::slopesChanged() const noexcept
 {
-  if (model_.cup.stiffness(forces_.cup_rotation) != tangent_.cup_stiffness)
+  if (model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) != tangent_.cup_stiffness)
   {
     return true;
   }
-  return forces_.meshed != factored_meshed_ || ring_vectors::signsChanged(forces_.contact_depth, factored_depth_) != 0;
+  return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
+         ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_) != 0;
 }
 
 bool RingEquilibrium::refactor() noexcept
 {
-  factored_meshed_ = forces_.meshed;
-  factored_depth_ = forces_.contact_depth;
+  factored_meshed_ = forces_.of<ToothMesh>().meshed;
+  factored_depth_ = forces_.of<WaveGeneratorContact>().depth;
   model_.tangent(now_.shape, forces_, tangent_);
   rates_known_ = false;
   return solver_.factor(tangent_);

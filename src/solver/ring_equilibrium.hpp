@@ -52,7 +52,8 @@ public:
   /// As `insert`, in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After an edit of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  /// After a change of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  /// `moveTo` does so first if nobody has.
   SolveStatus followModel() noexcept;
 
   /// From the present equilibrium to another position.
@@ -120,6 +121,7 @@ private:
   void updateSensitivities() noexcept;
 
   const RingModel& model_;
+  std::uint64_t model_version_;  // that the present state is of
   SolverParameters parameters_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool descending_{ false };   // down the energy, not by Newton's method alone

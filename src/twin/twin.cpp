@@ -33,8 +33,8 @@ struct Twin::Impl
 {
   Impl(const Parameters& given, const SurfaceSource& surface_source)
     : parameters(given)
-    , model(given)
-    , faults(given, model)
+    , faults(given)
+    , model(faults.model())
     , waiting(given)
     , stepper(given, model)
     , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
@@ -128,8 +128,8 @@ struct Twin::Impl
   LobeLoads lobes() const noexcept;
 
   Parameters parameters;
-  JointModel model;
   JointFaults faults;
+  const JointModel& model;
   FaultList active;
   FaultSchedule waiting;
   FaultList surface_faults;  // that the surface was asked for with
@@ -365,7 +365,8 @@ LobeLoads Twin::Impl::lobes() const noexcept
   if (!dynamics.onSurface())
   {
     const RingForces& forces = dynamics.ring().forces();
-    return lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles, outputs.motor_angle });
+    return lobeLoads({ forces.of<ToothMesh>().flank_force, forces.of<WaveGeneratorContact>().force, tooth_angles,
+                       outputs.motor_angle });
   }
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
@@ -565,10 +566,10 @@ void Twin::toothForces(ToothForces& out) const noexcept
   const RingShape& shape = ring.shape();
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    out.wave_generator_force[i] = ring.forces().contact_force[i];
-    out.rim_tension[i] = model.tension.tension(shape, i);
-    out.bending_force[i] = model.bending.bendingForce(shape, ring.forces(), i);
-    out.mesh_force[i] = ring.forces().flank_force[i];
+    out.wave_generator_force[i] = ring.forces().of<WaveGeneratorContact>().force[i];
+    out.rim_tension[i] = model.of<RimTension>().tension(shape, i);
+    out.bending_force[i] = model.of<RimBending>().bendingForce(shape, ring.forces().of<RimBending>(), i);
+    out.mesh_force[i] = ring.forces().of<ToothMesh>().flank_force[i];
     out.tooth_x[i] = shape.points[2 * i];
     out.tooth_y[i] = shape.points[2 * i + 1];
   }

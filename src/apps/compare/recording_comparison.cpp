@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gear/ratio.hpp"
+#include "params/variants.hpp"
 
 namespace hjt
 {
@@ -14,13 +15,6 @@ namespace
 {
 constexpr double CURRENT_MARGIN = 3.0;    // peaks over the motor's continuous torque [-]
 constexpr double MOST_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
-
-/// The load of a sample holds weight and inertia, which must not be counted twice.
-Parameters withoutWeight(Parameters parameters)
-{
-  parameters.output.gravity_torque = 0.0;
-  return parameters;
-}
 }  // namespace
 
 RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,

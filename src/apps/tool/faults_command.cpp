@@ -18,23 +18,23 @@ int faults(const CommonOptions& options)
   if (options.json)
   {
     nlohmann::ordered_json kinds = nlohmann::ordered_json::array();
-    for (const FaultDescription& kind : faultDescriptions())
+    for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
     {
       kinds.push_back({ { "kind", kind.name },
                         { "severity_1", kind.severity },
                         { "place", placeName(kind.place) },
                         { "first_place", firstPlace(kind.kind) },
                         { "last_place", lastPlace(kind.kind, parameters) },
-                        { "shows", kind.shows } });
+                        { "shows", shownFirst(kind.kind, parameters) } });
     }
     std::cout << kinds.dump(2) << '\n';
     return EXIT_DONE;
   }
   std::cout << "| kind | severity 1 | place | shows first in |\n|---|---|---|---|\n";
-  for (const FaultDescription& kind : faultDescriptions())
+  for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
   {
     std::cout << "| `" << kind.name << "` | " << kind.severity << " | " << placeText(kind.kind, parameters) << " | "
-              << kind.shows << " |\n";
+              << shownFirst(kind.kind, parameters) << " |\n";
   }
   return EXIT_DONE;
 }
