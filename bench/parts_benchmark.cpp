@@ -203,7 +203,7 @@ BENCHMARK(encoders);
 void healthReport(benchmark::State& state)
 {
   Twin twin = runningTwin();
-  if (!twin.health().kinematic_error_valid)
+  if (!twin.health().motion.kinematic_error.valid)
   {
     state.SkipWithError("the report is not complete");
   }

@@ -48,30 +48,30 @@ INTRODUCTION = """# Run time against error
 Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states: every
 tooth's mass, wave generator, circular spline), many solvers; at the end the operating model. **Error**: root mean square over the
 samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the
-processor, of one thread, median of the runs; the solvers take turns, so what slows the machine meets all alike. Down and to the
+processor, of one thread, median of the runs; the solvers take turns, so disturbances of the machine affect all alike. Down and to the
 left is better.
 
 Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank one, which
-would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and factors densely, told that half
+would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and factors densely, using the fact that half
 of the states are the derivatives of the others. *Our linear solver*: the same integrators with the twin's own cyclic solver
 plugged in. All peers call the twin's own forces, vectorised as they are. Their tolerances are absolute, in units of 5 um, 0.1 m/s,
 1 mrad and 10 rad/s; ours is the error of a tooth's position by one step. Teeth and spaces are paired after every step of every solver.
-Ours are `joint_twin dynamics --tolerance`: TR-BDF2, ESDIRK4 and DOP853 with steps of their own choice. The thesis' way, implicit Euler at
+Ours are `joint_twin dynamics --tolerance`: TR-BDF2, ESDIRK4 and DOP853 with adaptive steps. The thesis' method, implicit Euler at
 10 us, is drawn but is neither ours nor a peer.
 
-Where the curves of the forces turn upright, what is left is the vibration of single teeth that start and contact stir up: steps
-that do not follow it, at a fraction of a microsecond, gain nothing by being finer. An upright curve is a limit of the question,
+Where the curves of the forces are vertical, the error is the vibration of single teeth excited by start and contact: steps
+that do not resolve it, at a fraction of a microsecond, gain nothing by being finer. A vertical curve is a limit of the problem,
 not of the solver."""
 OMISSIONS = """
 Not measured here:
 
 - odeint's rosenbrock4: uBLAS factors the 804 x 804 matrix densely; a prototype of this model took 5.5 s a step and did not pass the
   first millisecond.
-- MuJoCo and Simbody: the ring can be told to them as 402 joints with a force callback; a prototype measured 13 (MuJoCo) and 26 to 59 times
+- MuJoCo and Simbody: the ring can be described as 402 joints with a force callback; a prototype measured 13 (MuJoCo) and 26 to 59 times
   (Simbody) the time of a right-hand side for their trees of joints, at steps no longer than those of RK4. MuJoCo's implicit
   integrator does not see the callback's forces.
 - The cup's dry friction in the operating model: it sticks most of the time, in motion too, and a solver of smooth equations can only
-  take it for a slope steeper the closer it is to the law. The leapfrog takes it as it is (`solver/dry_friction`). Where the motor
+  approximate it by a steep slope. The leapfrog solves it exactly (`solver/dry_friction`). Where the motor
   itself turns back, friction jumps: fixed steps meet that instant to within a step, and that may be why the leapfrog shows first
   order only (not isolated); solvers that choose their steps find it.
 - IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the two angles,
@@ -280,8 +280,8 @@ def kinks(references):
     if not exact or not smooth or exact["apart"]["force"] < 10.0 * smooth["apart"]["force"]:
         return []
     return [f"The references of the exact law are {exact['apart']['force']:.1e} apart in the forces where those of the C1 ramp, by the same "
-            f"methods at steps alike, are {smooth['apart']['force']:.1e} apart: it is the kinks, thousands of teeth touching and "
-            "letting go within steps, that keep them from agreeing better.", ""]
+            f"methods at steps alike, are {smooth['apart']['force']:.1e} apart: the kinks, "
+            "thousands of teeth making and losing contact within steps, limit their agreement.", ""]
 
 
 def verdict(sections):

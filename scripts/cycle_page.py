@@ -94,7 +94,7 @@ def main():
     measured = list(rows(options))
     draw(measured, options.docs / "images" / "cycle.png")
     page_section.write(options.docs / "performance.md", "cycle", [
-        *table(measured), "", "![Time of one step in every scene, against what was wanted](images/cycle.png)", "",
+        *table(measured), "", "![Time of one step in every scene, and the target](images/cycle.png)", "",
         f"`scripts/performance`: {options.duration:g} s simulated a scene, twenty times that on the surface; load average before it "
         f"{load:.1f}."])
     print(f"performance: wrote {options.docs / 'performance.md'}", file=sys.stderr)

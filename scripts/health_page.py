@@ -238,7 +238,7 @@ def draw_confusion(kinds, faulty, path):
                       color="white" if count > matrix[row].sum() / 2 else "black")
     axis.set_xticks(range(len(causes)), causes, rotation=60, ha="right")
     axis.set_yticks(range(len(names)), names)
-    axis.set_xlabel("cause said at the first alarm")
+    axis.set_xlabel("cause at the first alarm")
     axis.set_ylabel("fault, all severities and motions")
     figure.savefig(path, dpi=90)
     plt.close(figure)
@@ -296,7 +296,7 @@ def main():
         "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
         "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",
         "![Share of faulty windows beyond a threshold against that of sound ones](images/health/roc.png)", "",
-        "![Fault against the cause said](images/health/confusion.png)", "",
+        "![Fault against the assessed cause](images/health/confusion.png)", "",
         "### Sizes against the noise", "", *size_table(bench.kinds, sound, faulty), "",
         "### Stiffness and loop", "", *loop_table(sound, faulty), "",
         "### Faults that set in on the way", "", *delay_table(bench.kinds, delayed)])

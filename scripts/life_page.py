@@ -106,7 +106,7 @@ def draw_calibration(results, path):
         axes[1, 1].plot(middle, share, colour + "o-")
     axes[1, 0].plot([0, 1], [0, 1], "k:", linewidth=1)
     axes[1, 0].set_title("Calibration over all forecasts", loc="left", fontsize=10)
-    axes[1, 0].set_xlabel("quantile said [-]")
+    axes[1, 0].set_xlabel("stated quantile [-]")
     axes[1, 0].set_ylabel("share of truths below it [-]")
     axes[1, 0].legend(frameon=False)
     axes[1, 1].set_title(f"α–λ: median within {100 * ALPHA:.0f} % of the truth [%]", loc="left", fontsize=10)

@@ -86,18 +86,18 @@ class Torsion:
                 for load, value in self.stiffness.items()]
         return [f"""
 **Torsion.** Motor angle over 101 less output angle, less the same without load, against the motor's torque at the joint less
-{self.friction:.1f} N·m, which is the friction that the twin has at this speed. The blue curve is the catalogue's gear; of the
+{self.friction:.1f} N·m, the twin's friction at this speed. The blue curve is the catalogue's gear; of the
 recording it takes the origin, which the zeros of the encoders leave open. The red one has its compliance times
-{self.scale:.3f} ± {self.width:.3f}, identified on every second {STRIPE:g}° of the sweep and judged on those between.
+{self.scale:.3f} ± {self.width:.3f}, identified on every second {STRIPE:g}° of the sweep and tested on those between.
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["torsion, rms of recording less", "stripes that the fit saw [mrad]", "those between [mrad]"],
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
-*What came out otherwise than hoped:* fitted to the halves of the sweep by themselves, the factor is {self.halves[0]:.2f} at
-negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval says, which
-is therefore too narrow; identified on one half and judged on the other, it does worse there than the catalogue. Left are slow
-waves of the transmission error, which load and mounting change; one sweep cannot tell them from torsion. The catalogue's curve
+*Weakness:* fitted to the halves of the sweep separately, the factor is {self.halves[0]:.2f} at
+negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval, which
+is therefore too narrow; identified on one half and tested on the other, it is worse there than the catalogue. The rest is slow
+waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion. The catalogue's curve
 lies between the two.
 """]
 
@@ -152,20 +152,20 @@ class TransmissionError:
                                        for lines in self.recorded.values()), f"{1e6 * self.lines[line]:.1f}"]
                 for line, name in LINES.items()]
         return [f"""
-**Transmission error without load.** The lines of the published error, each direction by itself, beside the twin's kinematic
+**Transmission error without load.** The lines of the published error, for each direction, and of the twin's kinematic
 error at 5 N·m. Two numbers are fitted: a total cumulative pitch deviation of the circular spline of
 {1e6 * self.pitch['circular_spline']:.1f} µm to the line at 200, one of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm to
 the one at 202, which the scatter of the points nearly hides. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this
-size. The lines at 400 and 404 come out of the same errors. As in the UR5's current the circular spline's line is the large one.
+size. The lines at 400 and 404 result from the same errors. As in the UR5's current, the circular spline's line is the larger one.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 """, *table(["lines a turn [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
-Once a motor turn (101) the twin makes nothing: in it two lobes share the load, and what one leads the other lags. The motor's
-encoder off its axis makes such a line; 11 µrad at the output are 1.1 mrad at the motor. Once and twice a turn of the output the
-recording has 0.6 and 0.35 mrad, more than a gear of this kind may have in all (1 minute of arc): the output's encoder off its
-axis. Neither is the drive's, and neither was fitted.
+The twin has no line once a motor turn (101): two lobes share the load, and the lead of one cancels the lag of the other. An
+eccentric motor encoder makes such a line; 11 µrad at the output are 1.1 mrad at the motor. Once and twice a turn of the output the
+recording has 0.6 and 0.35 mrad, more than the total allowed for such a gear (1 minute of arc): an eccentric output
+encoder. Neither belongs to the drive, and neither was fitted.
 
-*What this recording cannot show:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
+*Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
 the torque is computed from current; the error without load was read off a published figure, whose points scatter by 0.03 mrad.
 """]
 

@@ -273,17 +273,17 @@ def section(runner, telemetry, images):
     print("\n".join(errors))
     return heading + ["""
 CB series, moving for 82 s (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014; 125 Hz). The recording is not part
-of this project. The same motion comes three times: each joint is identified on the first (`joint_twin identify`), and judged on
+of this project. The same motion comes three times: each joint is identified on the first (`joint_twin identify`), and tested on
 the other two. The twin is **motion-driven**: measured angle and the controller's rigid-body torque in, motor current out. The
-controller's position error and target current are no inputs: they would tell what the controller knows, not what the drive does.
+controller's position error and target current are no inputs: they describe the controller, not the drive.
 
 ### Error of the predicted current [A rms]
 
 All rows, and in brackets those that move faster than 0.01 rad/s and those that rest.
 """, *errors, f"""
-The right column is what no model of this motion can go below: one repeat differs from the next by so much. The second and third
-repeat are not unseen: they were looked at again and again while this model was worked on. What is in the
-model was chosen on the first repeat alone, cut into {FOLDS} pieces of which each is predicted by the others:
+The right column is the lower bound for any model of this motion: the difference between repeats. The second and third
+repeat are not unseen data: they were used repeatedly during the development of this model. The model's terms
+were chosen on the first repeat alone, cut into {FOLDS} pieces of which each is predicted by the others:
 """, *left_out_table(results), """
 ### Where the error is
 
@@ -291,57 +291,58 @@ The error without ripple, in the later repeats, 0.8 s after each join left out [
 """, *share_table(results), """
 ![Error over the motion](images/real_robot/residual.png)
 
-*Moving*, the mean over 0.1 s is right within a few percent of the current's range: what friction, load and inertia do is
-understood. That the shoulder's friction grows with its load the twin has from the catalogue, not from this recording: more friction
-of the flanks is looked for and refused. What is left is ripple.
+*Moving*, the mean over 0.1 s is right within a few percent of the current's range: the effects of friction, load and inertia
+are understood. The increase of the shoulder's friction with its load comes from the catalogue, not from this recording:
+the identification finds no further friction of the flanks. The rest is ripple.
 
 *Resting*, stiction holds the joint and the current is the controller's choice within a band: an encoder count of 9.4 µrad is
 a quarter of the presliding angle and so some 0.3 A. The shoulder stands from 20 s on at 0 A in the first repeat and at −0.6 A
 in the others, with the same load and angle: more than its friction explains, so that something else loads it. The elbow creeps
 from 8 to 15 s, and holds 0.4 A more than its friction in motion.
 
-*What came out otherwise than hoped:* half the error of the gain, Coulomb and viscous fit was the aim. No joint reaches it over all
-rows; the base comes to two thirds, the elbow stays where the fit is. Three rows of four rest. To predict those takes a model of
-the controller, whose friction feed-forward (a step with the sign of the target speed) and integrator are plain in the rows. The
-shoulder was at 0.31 A in an earlier version, by an offset of the current of −0.2 A; that offset met the later repeats by chance: on the
-first it makes the joint at rest worse, and this identification refuses it.
+*Missed target:* the aim was half the error of the gain, Coulomb and viscous fit. No joint reaches it over all rows;
+the base reaches two thirds, the elbow equals the fit. Three rows of four are at rest. Their prediction needs a model of
+the controller, whose friction feed-forward (a step with the sign of the target speed) and integrator are visible in the rows. The
+shoulder was at 0.31 A in an earlier version, by an offset of the current of −0.2 A; that offset fitted the later repeats by chance: on the first
+it increases the error at rest, and this identification drops it.
 
 ![Current of the three joints, measured and predicted](images/real_robot/current.png)
 
-### What was identified
+### Identified parameters
 
-With 95 % intervals, widened by the residual's correlation. What this motion cannot tell is refused, with the reason, and stays
-as configured. The overlay serves the motion-driven twin, the torque-driven twin and the node alike: preload, viscosity and inertia are
+With 95 % intervals, widened by the residual's correlation. Parameters that this motion does not identify keep
+their configured value, with the reason in the table. The overlay serves the motion-driven twin, the torque-driven twin and the node
+alike: preload, viscosity and inertia are
 those of the parts. Presliding and ripple are the motion-driven twin's alone; the torque-driven twin has stiction instead, and gets
 ripple from errors of manufacture.
 """, *value_table(results), f"""
-The base has no weight to tell its gain, so it keeps the configured one. The load's resonance on the joint's stiffness would be
-{expected} at the configured inertias, links and bearings taken for rigid.
+The base has no weight that would identify its gain, so it keeps the configured one. The load's resonance on the joint's stiffness would be
+{expected} at the configured inertias, with rigid links and bearings.
 
 ### Ripple
 
-The lines are torques: the drive's kinematic error times its stiffness. Which errors of manufacture make them? A pitch deviation of
+The lines are torques: the drive's kinematic error times its stiffness. Which manufacturing errors cause them? A pitch deviation of
 the circular spline makes the line at 200, one of the flexspline that at 202; both are proportional to the deviation, and the
-table has the total cumulative deviation that base and shoulder ask for. ISO 1328 allows 17 µm in grade 5 and 24 µm in grade 6 at
-this size. The elbow's line at 200 is plain in the figure, but its motion does not tell torque from resonance, so it is refused; the
-elbow has the mean of the other two. Amplitudes in N·m at the joint.
+table has the total cumulative deviation that explains base and shoulder. ISO 1328 allows 17 µm in grade 5 and 24 µm in grade 6 at
+this size. The elbow's line at 200 is visible in the figure, but its motion does not separate torque from resonance, so it is
+not identified; the elbow gets the mean of the other two. Amplitudes in N·m at the joint.
 """, *ripple.table(results), """
 The figure has the current's ripple as recorded and the torque's at the joint, over the gain, of the whole twin turning with these
 errors at the median of the recorded speed, against the median of the load and with the configured inertia; a heavy rotor keeps
-its speed. What is fitted is the deviation; place of the lines, the line at 400 and the resonance are the twin's.
+its speed. Only the deviation is fitted; order of the lines, the line at 400 and the resonance are the twin's.
 
 ![Ripple by order, recorded and the twin's](images/real_robot/spectrum.png)
 
-*What the model does not explain:* at the same speed and angles the base's line is twice as high turning negative, with the arm
+*Not explained by the model:* at the same speed and angles the base's line is twice as high turning negative, with the arm
 stretched out, as turning positive, with the arm upright. One resonance a joint cannot be both; it would take the arm's inertia in
 each pose, which a recording of one joint does not hold, and the controller's speed loop, which answers the ripple of the speed. The
-elbow's line at 200 comes out too small and that at 400 too large: in the twin its resonance is at """ + f"{resonance['elbow']:.0f}" + """ Hz, links and bearings being
+elbow's line at 200 is too small and that at 400 too large: in the twin its resonance is at """ + f"{resonance['elbow']:.0f}" + """ Hz, links and bearings being
 rigid. The shoulder's largest line is not its own: by order of the elbow's angle it stands at 200. The twin knows one joint, so
 that part of the shoulder's error stays.
 
-### What this recording cannot show
+### Limits of this recording
 
 No encoder on the other side of the gear, so no torsion; no temperature; no payload; a rigid-body torque that is the
-controller's, whose errors of mass look like load. Time is a count of 8 ms, put together from three recordings: at the joins a
-jolt of the controller stands in the rows, and counts.
+controller's, whose errors of mass look like load. Time is a count of 8 ms, put together from three recordings: at the joins the rows
+contain a jolt of the controller, which counts.
 """]

@@ -10,7 +10,7 @@ import numpy as np
 
 from cells import DURATION, STEPS, text
 
-ACCURATE, DEGRADED, REFUSED = "accurate", "degraded and said so", "refused with a reason"
+ACCURATE, DEGRADED, REFUSED = "accurate", "degraded, reported", "refused with a reason"
 SILENT, NOT_FINITE, HUNG, CRASHED = "SILENTLY WRONG", "NOT FINITE", "HUNG", "CRASHED"
 GOOD = [ACCURATE, DEGRADED, REFUSED]
 VERDICTS = GOOD + [SILENT, NOT_FINITE, HUNG, CRASHED]
@@ -51,7 +51,7 @@ class Runner:
         self.work = work
 
     def run(self, cell, step, advance=0.0):
-        """(exit code, document or None, what was said on stderr)."""
+        """(exit code, document or None, text on stderr)."""
         rows = ["time,motor_torque,load_torque,brake"] + [",".join(map(repr, row)) for row in cell.drive]
         profile = os.path.join(self.work, f"{os.getpid()}.csv")
         with open(profile, "w", encoding="utf-8") as file:

@@ -19,38 +19,38 @@ COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
 
 HEAD = """# Stability
 
-What the twin does far from where it is meant to run: one factor at a time, two at a time, all at once at random. Every cell below is a
-run of `joint_twin trial`, held against converged runs of the same cell. One command makes them all again:
+Behaviour of the twin far from its usual range: one factor at a time, two at a time, all at once at random. Every cell below is a
+run of `joint_twin trial`, compared with converged runs of the same cell. One command repeats them all:
 
     scripts/stress
 
 It exits 0 only if every cell is one of
 
-- **accurate**: the solver said nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
-- **degraded and said so**: `~health` has `solver_state` DEGRADED or FAILED, and a counter tells why. The result may be good or not;
-- **refused with a reason**: the twin does not start, and a sentence says what is wrong.
+- **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
+- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may be good or not;
+- **refused with a reason**: the twin does not start, and a message states the reason.
 
-Never a number that is none, never a hang (more than {timeout:.0f} s a run), never silently wrong; one such cell, and the exit code is 1.
+Never a NaN, never a hang (more than {timeout:.0f} s a run), never silently wrong; one such cell makes the exit code 1.
 """
 
 MEANING = """The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the output's angle and the
 motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the cup's first slope ends) and the travel (at least the
-{angle:.2f} mrad that belong to it). One per cent is the twin's stated accuracy: it is what the parameters themselves are known to at best,
-and a tenth of what the catalogue lets a gear scatter by. The **converged run** is the same cell at a step that resolves the joint's fastest
-swing 600 times, at most a tenth of the cell's; the **doubt** is how far that run is from one twice as coarse. A new input acts from half a
+{angle:.2f} mrad that belong to it). One per cent is the twin's stated accuracy: the parameters themselves are known no better,
+and the catalogue allows ten times that scatter between gears. The **converged run** is the same cell at a step that resolves a period of the joint's fastest
+natural mode 600 times, at most a tenth of the cell's; the **doubt** is its difference from a run with twice the step. A new input acts from half a
 step before its instant (the leapfrog kicks there), so the profile of the converged run is advanced by the difference of half steps: that
 half step is sampling, not error. The **drift** is the largest energy residual over the work of motor and load.
 
-What the solver says of a step:
+The solver's messages on a step:
 
-| said | when | why there |
+| message | condition | reason |
 |---|---|---|
-| steps too long | the joint's fastest swing (motor against output on the ring's present stiffness) takes more than 0.1 rad of phase in a step | the leapfrog's swing runs ahead by phase²/24; at 0.1 rad that makes 1 % of the swing after four swings |
+| steps too long | the joint's fastest natural mode (motor against output on the ring's present stiffness) advances more than 0.1 rad of phase in a step | the leapfrog's phase error is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
 | steps too long | the speed limit's slope times the step exceeds the motor's inertia | the drive sees the speed once a step and overshoots |
 | with teeth jumping | a tooth changes its space below the tip circle | no tooth can pass a tip unnoticed: ratcheting, or a gear whose teeth do not fit |
-| cut | the ring's equilibrium was only found over a shorter path, or by inserting anew | the state may be on another branch |
+| cut | the ring's equilibrium was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
 | failed | no equilibrium was found | the last good state is held |
-| refused | the swing takes more than 1.5 rad a step, or the insertion finds no equilibrium | the leapfrog is unstable from 2 rad on |
+| refused | the natural mode advances more than 1.5 rad a step, or the insertion finds no equilibrium | the leapfrog is unstable from 2 rad on |
 """
 
 
@@ -63,7 +63,7 @@ def percent(value):
 
 
 def table_of(page, judged):
-    page.table(["cell", "verdict", "error", "doubt", "drift", "Newton iterations, mean / most", "cuts", "said"],
+    page.table(["cell", "verdict", "error", "doubt", "drift", "Newton iterations, mean / most", "cuts", "messages"],
                [[", ".join(short(label) for label in j.cell.labels), j.verdict, percent(j.error), percent(j.doubt),
                  percent(j.drift), "–" if math.isnan(j.iterations) else f"{j.iterations:.1f} / {j.iterations_max}",
                  j.cuts, j.reason.split("\n")[0][:150]] for j in judged])
@@ -117,7 +117,7 @@ def bare(axes):
         spine.set_visible(False)
 
 
-KEY = "blue: accurate; orange: degraded and said so; grey: refused with a reason; red: none of these"
+KEY = "blue: accurate; orange: degraded, reported; grey: refused with a reason; red: none of these"
 MAP_AXES = {
     "map: step and stiffness": ("step [s]", "all stiffness times [-]"),
     "map: step and speed, five teeth missing": ("step [s]", "speed limit [rpm], 12 N·m at the motor"),
@@ -138,7 +138,7 @@ def write_page(settings, judged):
     groups = collections.defaultdict(list)
     for j in judged:
         groups[j.cell.group].append(j)
-    page.heading("What is measured, and what is said")
+    page.heading("Definitions")
     page.text(MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE))
     page.heading("The boundary of what is accurate")
     page.text(boundary(judged))
@@ -183,7 +183,7 @@ def boundary(judged):
         return "No cell is accurate."
     return (f"With the shipped parameters the longest step that is accurate is {steps('step, load steps of 100 N.m')} under load steps and "
             f"{steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four times what it can give. "
-            f"Over all {len(quiet)} cells in which the solver said nothing the largest error is "
+            f"Over all {len(quiet)} cells in which the solver reported nothing the largest error is "
             f"{percent(max(j.error for j in quiet))}, the largest energy drift {percent(max(j.drift for j in quiet))}, and a step took "
             f"at most {phase:.2f} rad of the swing. Of the {len(flagged)} degraded cells {still} were within the accuracy all the same: the "
             f"solver warns early rather than late.")

@@ -94,9 +94,9 @@ def hysteresis(page):
     loop = page.tool(*sweep)
     flanks = page.tool(*sweep, "--set", "cup.friction_torque=0.0")
     page.text(f"""
-Wave generator locked, load swept slowly to and fro over the rated torque. The width comes from dry friction: of the
-tooth flanks ({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and beside the cup's spring (the rest). The latter is set by
-a real drive, see *Real drives*; the catalogue gives a limit.
+Wave generator locked, load cycled slowly over the rated torque. The width comes from dry friction: of the
+tooth flanks ({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and in parallel with the cup's spring (the rest). The latter is
+set by a real drive, see *Real drives*; the catalogue gives a limit.
 """)
     page.check("catalogue.hysteresis", "hysteresis", "catalogue", AtMost(1.0), loop["hysteresis"] / ARCMIN, "arcmin",
                "the maker's promise for every drive")
@@ -223,8 +223,8 @@ def temperature(page):
     page.heading("Friction against temperature")
     page.text("""
 The grease thins as oils do (Ubbelohde-Walther), and the bearing's speed part goes with the viscosity to the power of
-2/3 (Palmgren). The range is that of the grease SK-1A, 0 to 80 °C. At 80 °C what is left is the part that does not
-know speed.
+2/3 (Palmgren). The range is that of the grease SK-1A, 0 to 80 °C. At 80 °C only the part that does not depend on speed
+remains.
 """)
     bearing = page.tool("parameters")["bearing"]
     degrees = (0.0, 20.0, 40.0, 80.0)
@@ -258,11 +258,11 @@ know speed.
 
 
 def dials(page):
-    page.heading("What was fitted, and how it compares")
+    page.heading("Fitted parameters, and a comparison")
     bearing, cup = (page.tool("parameters")[section] for section in ("bearing", "cup"))
     page.text("""
-Two dials for five figures of friction, one for the torsion loop, and the cup's law, which takes as many numbers as
-the catalogue's curve gives.
+Two fitted parameters for five figures of friction, one for the torsion loop, and the cup's law, with as many numbers
+as the catalogue's curve.
 """)
     page.table(["dial", "value", "set by", "order of size without it"],
                [["`bearing.viscosity`", f"{number(1e6 * bearing['viscosity'])} mm²/s at 25 °C", "no-load running torque",
@@ -283,9 +283,9 @@ the catalogue's curve gives.
     percent = {key: 100.0 * error(key)[0] / error(key)[1] for key in ("no_load", "starting", "back_driving")}
     torsion = max(abs(100.0 * error(f"torsion.{torque:g}")[0] / error(f"torsion.{torque:g}")[1]) for torque in TORQUES)
     page.text("""
-Beside it, the worst errors over four sizes that
+In comparison, the worst errors over four sizes that
 [zhulu248/harmonic-drive-twin](https://github.com/zhulu248/harmonic-drive-twin), the best public static twin found,
-reaches with three dials. It does more sizes; size 14 of this twin is judged below.
+reaches with three fitted parameters. It covers more sizes; size 14 of this twin is judged below.
 """)
     page.table(["quantity", "this twin, size 25", "zhulu248/harmonic-drive-twin, worst of four sizes"],
                [["efficiency at rated load", f"{points:.1f} points", OTHER_TWIN["efficiency"]],

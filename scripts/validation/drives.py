@@ -113,7 +113,7 @@ the controller's rigid-body model, in bins of speed. Again one viscosity for thr
         page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error, "N·m",
                    f"a seventh of the friction at the slowest; within a bin the recording scatters by {maps[name][:, 3].mean():.1f} N·m")
     page.text("""
-*What this recording cannot show:* the rigid-body torque is the controller's, so errors of its masses and of the
+*Limits of this recording:* the rigid-body torque is the controller's, so errors of its masses and of the
 payload look like friction (the shoulder has the largest weight and the largest residual); no temperature; no encoder
 at the motor, so no torsion and no kinematic error apart from ripples of the current.
 """)
@@ -182,9 +182,9 @@ of the encoders leaves open, is taken out. Only the part at constant speed is us
                Within(1e3 * DIRECTION_GAP, relative=0.2), 1e3 * loop["hysteresis"], "mrad",
                "fitted (`cup.friction_torque`); read from a published figure")
     page.text("""
-*What this recording cannot show:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s
+*Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s
 long; the torque is computed from current. It shows no soft beginning at small load; whether the drive has none or the
-sweep hides it among its transmission error (up to 1.4 mrad), one sweep does not tell.
+sweep hides it in its transmission error (up to 1.4 mrad), one sweep cannot decide.
 """)
 
     def draw(figure):

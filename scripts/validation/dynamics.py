@@ -82,7 +82,7 @@ With real masses the ring swings by {real['force_max_highest'] - real['force_max
 thesis by {reference['force_max_highest'] - reference['force_max_lowest']:.0f} N: fifty times the mass holds fifty
 times the kinetic energy at the same speed of growth, and the same dashpots need fifty times as long to take it out
 (m/c = 0.95 s instead of 19 ms). The factor is not as harmless as section 5.1 has it; it stayed unseen because the
-solver damped what it stirred up.
+solver damped the vibration.
 """)
     cost_table(page, settled, reference)
     page.figure("insertion_transient", "Largest force of the wave generator on a tooth. Left: band between lowest and highest "
@@ -98,9 +98,9 @@ def numerical_damping(page):
     page.check("dynamics.numerical_damping", "share of the damping that is implicit Euler's own, 10 µs", "energy ledger",
                Between(0.99, 1.0), share, "", "nearly all; the rest is Table 6.1's dashpots")
     fine = transient(page, "esdirk4", 5e-6, NORMAL)
-    page.check("dynamics.energy", "energy the ledger does not find again over energy supplied, ESDIRK 4 at 5 µs",
+    page.check("dynamics.energy", "energy residual over energy supplied, ESDIRK 4 at 5 µs",
                "conservation of energy", AtMost(1e-4), abs(fine["energy_lost"]) / fine["energy_supplied"], "",
-               "the method's own damping of what its step does not resolve")
+               "the method's numerical damping of unresolved vibration")
     page.text(f"""
 Of {1e3 * (euler['energy_lost'] + euler['energy_dissipated']):.2f} mJ of vibration, implicit Euler at 10 µs takes out
 {1e3 * euler['energy_lost']:.2f} mJ by itself; the dashpots take {1e3 * euler['energy_dissipated']:.3f} mJ. (Contact
@@ -193,7 +193,7 @@ def turning(page, speed, load, *more, mass=REAL_MASS, settle=0.02, duration=0.01
 def full_speed(page):
     page.heading("Turning under load")
     page.text("""
-Wave generator at constant speed, circular spline a free body under a constant load, real masses unless said. Forces,
+Wave generator at constant speed, circular spline a free body under a constant load, real masses unless noted. Forces,
 torques and tooth points are compared with the ring in equilibrium at the same two angles, which is what the twin
 computes; the torsion with that of the equilibrium under the same load at the same motor angle. Errors are root mean
 squares over teeth and time, relative to that of the quantity itself (tooth points: of the displacement). The start is
@@ -271,7 +271,7 @@ more than 1 % on the flanks, {above}. This ripple is far beyond what motor, outp
 positions, torsion and mean torque keep to the claim at every speed. Dashpots of rim and contact with 1 % of critical
 (those of Table 6.1 have less than 0.1 %) hardly change it ({percent(damped, 'mesh_force')} %): more than half of that
 mode's energy is in teeth and cup, which have no dashpot here. So at such speeds a single tooth's force is known to
-some per cent and no better; what the joint shows outside is not touched.
+some per cent and no better; the joint's outputs are not affected.
 """)
     page.figure("quasi_static_error", "Error of the quasi-static ring over the speed of the motor, real masses, rms. Left: 20 N·m. "
                 "Right: flank force with both loads.", lambda fig: draw_sweep(fig, runs), size=(8.0, 3.4))

@@ -33,9 +33,9 @@ def build(page):
 
 def energy(page, parameters):
     page.heading("Energy ledger")
-    page.text("Random motions of half a second: another motor torque every 10 to 50 ms, now and then another load or the brake. What went "
-              "in, less what is stored, dissipated and given out, is booked at every step; its largest value on the way is "
-              "held against the sum of all work that went through.")
+    page.text("Random motions of half a second: another motor torque every 10 to 50 ms, sometimes another load or the "
+              "brake. The residual (energy supplied minus energy stored, dissipated and delivered) is computed at "
+              "every step; its largest value is compared with the sum of all work done.")
     motions = {"gentle": MOTIONS["gentle"]} if page.fast else MOTIONS
     rates = RATES[:2] if page.fast else RATES
     runs = {(name, seed): ledger(page, *motions[name], seed, rates) for name in motions
@@ -59,7 +59,8 @@ def energy(page, parameters):
                "quadrature of a force with kinks", Within(2.0, absolute=0.25), -statistics.mean(orders), "",
                "a tooth that touches inside a step leaves an error of step² and random sign: single motions scatter by "
                f"{statistics.stdev(orders):.2f}, their mean by {statistics.stdev(orders) / math.sqrt(len(orders)):.2f}")
-    page.text("It vanishes with the square of the step, so what is left at 10 kHz is the quadrature of the tooth forces and no leak. The "
+    page.text("It vanishes with the square of the step, so the residual at 10 kHz is the quadrature error of the tooth "
+              "forces and no leak. The "
               "order holds down to one or two steps a tooth pitch.")
 
     def draw(figure):
@@ -133,7 +134,7 @@ def states(page, parameters):
 
     page.heading("Symmetry and shift")
     page.text(f"The ring in equilibrium, wave generator at 0.3 rad, loads of {', '.join(f'{load:g}' for load in LOADS)} N·m; rows give the "
-              "worst load. Two states that ought to be the same may differ by what is left of the forces, "
+              "worst load. Two states that should be equal may differ by the residual forces, "
               f"{max(row['residual'] for row in rows):.0e} N, and their rounding, {rounding:.0e} N, on all teeth, over the softest "
               f"eigenvalue of the ring's tangent, {min(row['softest_stiffness'] for row in rows):.1e} N/m; forces by that times the "
               "contact's stiffness. The shifted state is found by an insertion of its own from the round ring, not from the first.")
@@ -166,8 +167,9 @@ def potential(page, parameters, document, rows):
     gear = parameters["gear"]
     terms = 2.0 * gear["teeth_flexspline"]
     energy = max(row["energy"] for row in rows)
-    page.text("Each derivative is a central difference between equilibria solved anew. Where a tooth changes contact inside the step, the step is too "
-              "long to say anything; rows take, for each load, the step that serves best (figure), and give the worst load.")
+    page.text("Each derivative is a central difference between separately solved equilibria. Where a tooth changes "
+              "contact inside the step, the step is too long; rows use, for each load, the best step (figure), and "
+              "give the worst load.")
     for key, symbol, step in (("wave_generator", "θ", 1e-5), ("output", "φ", 1e-7)):
         page.check(f"invariants.torque_of_{key}", f"torque on the {key.replace('_', ' ')} + dU/d{symbol}", "potential",
                    Within(0.0, absolute=terms * HALF_ULP * energy / step), best_step(by_load, lambda row, k=key: row[k + "_difference"]),
@@ -240,14 +242,14 @@ def frame(page, parameters):
                "exact but for rounding: energy that is not there")
     factor = rows[-1]["absolute_force"] / middle["curvature_force"]
     page.check("invariants.frame_absolute_force", "law absolute: its force at 0.5 rad over the bending force there really is",
-               "fails by design", AtLeast(1000.0), factor, "", "says that the test above can fail")
+               "fails by design", AtLeast(1000.0), factor, "", "shows that the test above can fail")
     milliradian = bending * 1e-3 / pitch
     fixed = page.tool("invariants", "state", "--loads", "150.0", "--set", "ring.bending_law=absolute")["states"][0]
     lost = abs(fixed["wave_generator_torque"] + fixed["output_torque"] + fixed["cup_torque"])
     page.text(f"The thesis' absolute law (eq. 5.47–5.53) takes a turn of the whole for a deformation: {milliradian:.0f} N on every segment for each "
               f"milliradian, where bending the rim takes {middle['curvature_force']:.0f} N at most. Under load the rim turns with the cup; with that law "
-              f"in operation, {lost:.0f} of 150 N·m on the output would reach neither wave generator nor housing, held by nothing. So it serves "
-              "the insertion, where nothing turns, and operation takes the law on curvature.")
+              f"in operation, {lost:.0f} of 150 N·m on the output would have no reaction on wave generator or housing. "
+              f"So it serves the insertion, where nothing turns, and operation uses the law on curvature.")
 
     def draw(figure):
         axes = figure.subplots()
@@ -278,13 +280,14 @@ def small_wave(page, parameters):
     page.text(
         f"The ring after the insertion, no circular spline, wave amplitude w from {1e3 * amplitude:g} mm down to 0.1 µm. For a thin ring that does not "
         "stretch, to first order in w and counter-clockwise positive: radial w cos 2ψ, tangential −(w/2) sin 2ψ, tilt "
-        "+(3w/2R) sin 2ψ. Three things keep the twin from it, and are told apart here:\n\n"
+        "+(3w/2R) sin 2ψ. Three effects separate the twin from it:\n\n"
         "- **first order, the ring as it is**: chords instead of arcs, tan(p/2)/tan p for ½ with the tooth pitch p = 2π/200; stretch by the "
         "hoop force of the bending moment, 3 k_F/(k R²); the contact's yielding. Constants, independent of w.\n"
         "- **second order in w**: the ellipse, −(5/8)(w²/R) sin² 2ψ along the radius and +(1/16)(w²/R) sin 4ψ across; the perimeter, longer "
         "by the strain (w/2R)², whose tension presses the ring into the contact. So the relative error to the first order must fall with w to the "
         "power 1, from the factors 5/8, 1/8 and 7/8 times w/R.\n"
-        "- **lift-off**: what bends the rim falls with w, what presses it on the wave generator is that tension and falls with w². Below "
+        "- **lift-off**: the bending moment decreases with w, the tension that presses the rim on the wave generator "
+        "with w². Below "
         "w = 36 k_F/(k R), contact's yielding included, the rim stands off at the minor axis and the closed form is not its shape any more, "
         "however small w. For the limit, bending is therefore taken in proportion to w (`--hold`): the ring touches all round.")
     keys = ("radial", "tangential", "tilt")

@@ -18,31 +18,31 @@ LOAD = 5.0  # [N.m], holds the teeth on one flank
 
 LEAD = """
 The *kinematic error* is the output's angle less the motor's over the ratio. Taken over one whole turn of the joint, 101
-of the motor, its lines tell which part is at fault. The two lobes press in what lies under them: errors fixed to the
+of the motor, its lines identify the part with the error. The two lobes load the teeth under them: errors fixed to the
 **flexspline** stand still and are met twice a motor turn, **202** lines a joint turn; those fixed to the **circular
-spline** move on with the output and are met **200** times. None of these lines is put in. Pitch errors shift single
-teeth and spaces, errors of centre and roundness shift spaces or the ellipse, and the output goes where the contacts
-hold it in equilibrium.
+spline** move on with the output and are met **200** times. None of these lines is imposed. Pitch errors shift single
+teeth and spaces, errors of centre and roundness shift spaces or the ellipse, and the contacts determine the output's
+equilibrium.
 
 Pitch errors here are seeded: a spectrum of amplitudes 1/k with the phases of a random generator, scaled to a stated
 total cumulative pitch deviation *Fp* (ISO 1328-1). `config/as_built.yaml` has figures for a good gear.
 """
 
 UR5 = """
-**What a UR5's 200.1 ± 0.3 means.** The line in the current of the recorded joints sits at 200.1 ± 0.3 a joint turn.
-The flexspline's 202 is six times that uncertainty away, so what those joints show is fixed to the circular spline or to
-what turns with it: its pitch errors, its roundness, its bearing. The gear as built has the larger errors there for that
-reason. The log holds a motor current and no angle, so it says where the line is and not how many seconds of arc it has.
-Those come from other drives with both encoders, whose readings do not tell 200 from 202.
+**A UR5's line at 200.1 ± 0.3.** The line in the current of the recorded joints sits at 200.1 ± 0.3 a joint turn.
+The flexspline's 202 is six times that uncertainty away, so the errors of those joints are fixed to the circular spline
+or to parts that turn with it: its pitch errors, its roundness, its bearing. The gear as built has the larger errors there for that
+reason. The log holds a motor current and no angle, so it gives the order of the line and not its amplitude in
+seconds of arc. Amplitudes come from other drives with both encoders, whose readings do not separate 200 from 202.
 """
 
 ECCENTRIC = """
-**What an eccentricity makes.** Errors of the wave generator alone make no line below the tooth pass: one tooth pitch on,
+**Effect of an eccentricity.** Errors of the wave generator alone make no line below the tooth pass: one tooth pitch on,
 the gear is the same again, turned and renumbered. A circular spline off centre moves the teeth of one lobe ahead and
 those of the other back. Their mean does not move, and a line at 200 appears only with the square of the eccentricity, as
 long as both lobes carry. A second error that loads the lobes unequally changes that: the output follows the lobe that
 carries more, and *odd* orders appear. The twin holds the wave generator on the motor's axis. The Oldham coupling of a
-real one lets it centre itself, so an eccentricity here is what the coupling leaves of it.
+real one lets it centre itself, so an eccentricity here is the remainder after the coupling.
 """
 
 
@@ -186,7 +186,7 @@ def pitch_errors(page):
         axes[2, 1].set_xlabel("lines a joint turn")
 
     page.figure("manufacture_pitch",
-                "Pitch errors of Fp = 8 µm. Left: what order 2 of the motor leaves in the output over a joint turn, "
+                "Pitch errors of Fp = 8 µm. Left: order 2 of the motor in the output over a joint turn, "
                 "with its envelope; right: its lines. Flexspline 202, circular spline 200, both: the beat.", draw,
                 (8.0, 5.4))
 
@@ -254,8 +254,8 @@ def as_built(page):
                   ylim=(0, 14))
 
     page.figure("manufacture_as_built",
-                "The gear of config/as_built.yaml: kinematic error over one joint turn, and its lines beside those of "
-                "drives with both encoders (orders 100k/101 and k are drawn side by side).", draw)
+                "The gear of config/as_built.yaml: kinematic error over one joint turn, and its lines compared with "
+                "those of drives with both encoders (orders 100k/101 and k are drawn side by side).", draw)
 
 
 def eccentricities(page):

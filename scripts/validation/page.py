@@ -85,7 +85,8 @@ class Page:
             done = subprocess.run(line, capture_output=True, text=True, cwd=self.settings.work, check=False)
             if done.returncode:
                 raise ToolError(f"joint_twin {' '.join(line[1:])}: exit code {done.returncode}\n{done.stderr.strip()}")
-            self.commands.append("joint_twin " + " ".join(line[1:]))
+            # As a reader would call it, in a folder of his own.
+            self.commands.append(" ".join(["joint_twin", *line[1:]]).replace(str(self.settings.work), "$PWD"))
             self.results[command] = done.stdout
         return self.results[command]
 

@@ -67,14 +67,14 @@ def jump(page):
 
     page.text(f"""
 The catalogue lets the teeth of a CSF-25-100 jump at {CATALOGUE_JUMP:.0f} N·m. The twin's output is driven against a
-locked wave generator until the torque falls (`joint_twin ratchet`); where the ring snaps, it goes downhill in energy
-to its next equilibrium. Friction is left out; sliding outwards at {mesh["friction_static"]:.2f} on the flanks it
+locked wave generator until the torque falls (`joint_twin ratchet`); where the ring snaps, it descends in energy
+to its next equilibrium. Friction is neglected; sliding outwards at {mesh["friction_static"]:.2f} on the flanks it
 would divide the radial force by {friction_relief(mesh):.1f}, and so raise a jump.
 
 **As shipped nothing jumps** below {rigid["peak"]["torque"] / 1e3:.0f} kN·m. The simple estimate: at 500 N·m each lobe
 carries {500 / radius / 2e3:.1f} kN, flanks of {math.degrees(mesh["flank_angle"]):.0f}° push it in with
 {radial / 1e3:.2f} kN, and to lose the depth of {1e3 * depth:.2f} mm to that force its radial stiffness would have to
-be {radial / depth:.1e} N/m. This is **not** what makes the teeth jump. With the wave amplitude as an unknown on
+be {radial / depth:.1e} N/m. This is **not** the cause of the jump. With the wave amplitude as an unknown on
 springs of that size, or of almost none ({softest['torque']:.0f} N·m at 1e5 N/m a lobe), no tooth jumps: the amplitude
 ends at {1e3 * softest['wave_amplitude']:.2f} mm. The ring is inextensible, so a smaller wave also moves the teeth
 around by −(w/2) sin 2ψ. At 500 N·m the flanks press on the amplitude with {parts['radial'] / 1e3:.2f} kN a lobe
@@ -82,7 +82,7 @@ radially but pull with {parts['around'] / 1e3:.2f} kN around; as the amplitude f
 from the axis, until the two balance. Ovalisation of the circular spline is the same mode: its ring (42.5 / 33.5 mm,
 13 mm wide, thin-ring formula) has {circular_spline_stiffness():.1e} N/m a lobe, and does not matter either.
 
-**What gives way is the local support.** The loaded side of the ring is in tension and presses into the wave
+**The local support yields.** The loaded side of the ring is in tension and presses into the wave
 generator, the other side is slack and lifts off; the last tooth of the loaded side leaves its space and hands its
 load to the next. That happens at a torque nearly proportional to the wave generator's stiffness per tooth, and
 {CATALOGUE_JUMP:.0f} N·m belong to {needed:.2g} N/m. The thesis sets 1e8 N/m for each tooth and holds the forces

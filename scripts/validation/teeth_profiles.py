@@ -118,15 +118,15 @@ def clearance_at_rest(page, rows, path):
     steep = next(drop for drop, angle in zip(path["drop"], path["angle"]) if angle > mesh["tangent_angle"])
     steep_angle = 0.5 * math.degrees(math.acos(1.0 - steep / gear["wave_amplitude"]))
     page.text(f"""
-Flanks made for rigid gears, straight or involute, are hardly to be told apart at this size and stand off by up to
+Flanks made for rigid gears, straight or involute, hardly differ at this size and have a gap of up to
 {max(gaps["involute"]):.0f} µm on their way. The cycloid stays within {max(abs(gap) for gap in gaps["cycloid"]):.1f}
-µm all the way; what it lacks is the ring's own elasticity. The double arc touches near full engagement; from about
-{steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows the path at a gap of a
+µm all the way; the difference from conjugate motion is the ring's own elasticity. The double arc touches near full
+engagement; from about {steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows the path at a gap of a
 few micrometres, which its own concave root has cut at full engagement.
 """)
     page.check("teeth.cycloid_conjugate", "cycloid: largest less smallest gap along the mesh at no load", "conjugate on the ideal ring",
                AtMost(3.0), max(gaps["cycloid"]) - min(gaps["cycloid"]), "µm",
-               "what the elastic ring differs from the ideal one; a tenth of the straight flank's gap")
+               "difference of the elastic ring from the ideal one; a tenth of the straight flank's gap")
     for name in ("trapezoid", "involute", "double_arc"):
         page.check(f"teeth.no_interference_{name}", f"{PROFILES[name][0]}: smallest gap at no load beyond 10° from the major axis",
                    "no interference of a sound profile (thesis, 3.2.2)", AtLeast(0.0),

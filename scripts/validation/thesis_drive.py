@@ -51,8 +51,9 @@ gives each tooth the whole cup's stiffness against its own angle; the twin lets 
     per_tooth = first * wave
     page.figure(
         "thesis_torsion",
-        "Thesis 7.1, fig. 7.1. Left: angle of each tooth from rest; the load moves the whole curve. Middle: what the "
-        "load adds; nearly the same on every tooth, most at the lobes (teeth 0 and 100), where the mesh pulls. Right: "
+        "Thesis 7.1, fig. 7.1. Left: angle of each tooth from rest; the load moves the whole curve. Middle: increase "
+        "by the load; nearly the same on every tooth, most at the lobes (teeth 0 and 100), where the mesh pulls. "
+        "Right: "
         "torque of the cup over the mean rotation, dots: runs, line: Table 7.1.",
         lambda figure: draw_torsion(figure, rows, rings, cup),
         size=(8.8, 2.9))
@@ -114,7 +115,7 @@ The ellipse turns, the teeth stay: each is pushed out and let in twice a turn. T
     back = np.max(np.hypot(rings[-1].x - start.x, rings[-1].y - start.y))
     page.check("thesis.rotation_return", "largest distance of a tooth from where it was, half a turn later",
                "thesis 7.2: teeth oscillate", AtMost(1e-12), back, "m",
-               "rounding; solved from the round ring anew at each angle, the cup holds the mean")
+               "rounding; solved from the round ring at each angle, the cup holds the mean")
 
 
 def draw_torsion(figure, rows, rings, cup):
@@ -180,8 +181,9 @@ makes the speed settle.
     left = run["motor_torque"] - run["wave_generator_torque"] - run["friction_torque"]
     page.figure(
         "thesis_equilibrium",
-        "Thesis 7.3, eq. 7.29. Left: the first 80 ms, instant by instant; the joint swings on the torsion of the cup, "
-        "and what the flexspline takes and gives is the motor's to accelerate. Right: the whole run-up in means over "
+        "Thesis 7.3, eq. 7.29. Left: the first 80 ms, instant by instant; the joint oscillates on the torsion of the "
+        "cup, and the torque exchanged with the flexspline accelerates the motor. Right: the whole run-up in means "
+        "over "
         "50 ms, stacked; dotted: speed.",
         lambda figure: draw_equilibrium(figure, run, inertia * acceleration, step),
         size=(8.8, 3.0))
@@ -256,7 +258,7 @@ def engagement(page):
     page.text(f"""
 Eq. 7.35 calls a tooth engaged when its tip passes the circular spline's base circle. At the twin's flank angle of
 {math.degrees(twin_angle):.0f}° every tooth passes it, those on the minor axis too: from {math.degrees(steepest):.1f}°
-upwards the condition says nothing. In the twin a tooth engages when its flank touches.
+upwards the condition is always true. In the twin a tooth engages when its flank touches.
 """)
     page.figure(
         "thesis_engagement",

@@ -145,7 +145,7 @@ def chapter_5(page):
         ],
         [
             "5.11", "(a cos ψ, b sin ψ) as the point on the ray",
-            f"lies up to {1e3 * ray_distance(ring):.3f} mm beside it; overlap wrong by up to {1e6 * off:.2f} µm, "
+            f"lies up to {1e3 * ray_distance(ring):.3f} mm off it; overlap wrong by up to {1e6 * off:.2f} µm, "
             f"{off * ring.contact_stiffness:.0f} N, among teeth in contact",
             "foot of the normal; polar law kept for chapter 6"
         ],
@@ -321,10 +321,10 @@ def chapter_7(page):
 
 
 def build(page):
-    page.heading("What the thesis gets wrong")
+    page.heading("Errors in the thesis")
     page.text("""
-None of this is copied. Each entry has a number, worked out from the runs above or from the thesis' own tables, that
-shows it. That the run of chapter 6 settles within 0.05 s is taken up under
+The twin repeats none of these. Each entry has a number as evidence, computed from the runs above or from the thesis'
+own tables. The claim that the run of chapter 6 settles within 0.05 s is discussed under
 [the quasi-static claim](#the-quasi-static-claim).
 """)
     entries = chapter_3(page) + chapter_5(page) + chapter_6(page) + chapter_7(page)

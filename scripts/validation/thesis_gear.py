@@ -147,8 +147,8 @@ def cracks(page):
     ratio = gear["rim_thickness"] / gear["tooth_height_flexspline"]
     page.heading("Chapter 3: where a crack goes, and what fails (3.4)")
     page.text(f"""
-Backup ratio b_R = rim thickness / tooth height (eq. 3.20). By the tests the thesis cites a crack at the tooth root runs
-into the tooth above 1, either way between 0.4 and 1, through the rim below 0.4; 1.3 is advised. This gear: b_R =
+Backup ratio b_R = rim thickness / tooth height (eq. 3.20). According to tests cited in the thesis a crack at the tooth
+root runs into the tooth above 1, either way between 0.4 and 1, through the rim below 0.4; 1.3 is advised. This gear: b_R =
 {number(ratio)}, so {crack_direction(ratio)}.
 """)
     page.check("thesis.backup_ratio", "backup ratio of the configured gear", "thesis eq. 3.21",
@@ -163,8 +163,8 @@ into the tooth above 1, either way between 0.4 and 1, through the rim below 0.4;
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "fmeca.csv"), encoding="utf-8") as file:
         modes = list(csv.DictReader(file))
     page.text(
-        "The thesis' FMECA (Table 3.7): severity, occurrence, detection and their product; the last column says where "
-        "the twin has the quantity that such a fault changes.")
+        "The thesis' FMECA (Table 3.7): severity, occurrence, detection and their product; the last column gives the "
+        "quantity of the twin that such a fault changes.")
     page.table(["failure", "effects", "S", "O", "D", "RPN printed", "S·O·D", "in the twin"], [[
         mode["mode"], mode["effects"], mode["severity"], mode["occurrence"], mode["detection"], mode["rpn"],
         product(mode), mode["in_the_twin"]

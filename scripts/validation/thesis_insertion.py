@@ -169,10 +169,10 @@ def force_figures(page, ring):
         [[number(w0), number(literature), f"{tooth:.1f}", f"{ball:.0f}"]
          for (w0, literature), tooth, ball in zip(LITERATURE, per_tooth, per_ball)])
     page.text(f"""
-Table 6.3 sets 506.8 N from the literature beside the thesis' 538.8 N. The first is the force on a **ball**, the second
+Table 6.3 compares 506.8 N from the literature with the thesis' 538.8 N. The first is the force on a **ball**, the second
 on a **tooth**, and {TEETH_FS / MEASURED.balls:.1f} teeth share a ball: like for like the thesis' model gives
-{per_ball[0]:.0f} N on the most loaded ball, {per_ball[0] / LITERATURE[0][1]:.0f} times the literature. What can be
-compared is the growth with w0: both are nearly proportional.
+{per_ball[0]:.0f} N on the most loaded ball, {per_ball[0] / LITERATURE[0][1]:.0f} times the literature. Only the
+growth with w0 can be compared: both are nearly proportional.
 """)
     spread = per_tooth / np.array([w0 for w0, _ in LITERATURE])
     page.check("thesis.growth", "force by w0: at 0.8 mm against 0.35 mm", "thesis 6.2: *direct proportionality*",
@@ -207,7 +207,7 @@ def rim_figures(page, ring):
         "thesis.bending_axes", "bending force at the axes by its largest", "thesis 6.4: *nil*", AtMost(0.05),
         max(abs(ring.bending[i]) + abs(ring.bending[i - 1])
             for i in (0, 50, 100, 150)) / 2 / np.max(np.abs(ring.bending)), "",
-        "segments lie half a pitch beside the axes")
+        "segments lie half a pitch off the axes")
     ellipse = 2.0 * math.pi * math.sqrt((31.0**2 + 30.4**2) / 2.0)
     page.check("thesis.perimeter", "growth of the perimeter, sum of the distances", PROTOTYPES,
                Within(0.113, absolute=5e-4), 100.0 * perimeter_growth(ring), "%", DIGITS)

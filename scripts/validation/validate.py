@@ -25,13 +25,13 @@ SECTIONS = {
 
 HEAD = """# Validation
 
-What the twin says, beside what it should say: the thesis it grew from, exact invariants, the gear maker's catalogue, recordings of real
-drives. Every number and figure below comes from runs of `joint_twin`; one command makes them all again:
+Results of the twin compared with the thesis it grew from, exact invariants, the gear maker's catalogue and recordings of real
+drives. Every number and figure below comes from runs of `joint_twin`; one command recomputes them all:
 
     scripts/validate
 
 It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate --set
-contact.stiffness=1.1e+8` shows what a wrong parameter does (the page is then written to the folder of `--out`, never over this one).
+contact.stiffness=1.1e+8` shows the effect of a wrong parameter (the page is then written to the folder of `--out`, never over this one).
 """
 
 

@@ -4,30 +4,31 @@
 
 #include <exception>
 #include <iostream>
+#include <optional>
 
+#include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/sweep/sweep_runner.hpp"
-#include "apps/tool/commands.hpp"
 
 namespace
 {
 int sweepAs(int rank, int ranks, int argc, char** argv)
 {
-  CLI::App app("One rank after the other takes a run of the plan.", "joint_twin_sweep_mpi");
+  hjt::CommandLine line("joint_twin_sweep_mpi", "One rank after the other takes a run of the plan.");
   hjt::SweepArguments arguments;
-  hjt::addSweepOptions(app, arguments);
+  hjt::Command root = line.root();
+  hjt::addSweepOptions(root, arguments);
   try
   {
-    app.parse(argc, argv);
+    if (const std::optional<int> ended = line.parse(argc, argv, rank == 0))
+    {
+      return *ended;
+    }
     arguments.shard = static_cast<std::uint64_t>(rank);
     arguments.shards = static_cast<std::uint64_t>(ranks);
     arguments.quiet = rank > 0;
     return hjt::sweep(arguments);
-  }
-  catch (const CLI::ParseError& error)
-  {
-    return (rank == 0 ? app.exit(error) : error.get_exit_code()) == 0 ? hjt::EXIT_DONE : hjt::EXIT_USAGE;
   }
   catch (const std::exception& error)
   {

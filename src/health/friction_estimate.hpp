@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "health/indicator.hpp"
+#include "harmonic_joint_twin/health/indicator.hpp"
 #include "health/running_regression.hpp"
 
 namespace hjt

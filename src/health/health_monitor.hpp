@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
-#include "health/indicator.hpp"
 #include "health/stiffness_estimate.hpp"
 #include "health/turn_window.hpp"
 
@@ -21,16 +21,6 @@ struct HealthSample
   double output_velocity{};  ///< [rad/s]
   double motor_torque{};     ///< applied [N.m]
   double joint_torque{};     ///< of the mesh on the circular spline [N.m]
-};
-
-/// Indicators that follow from the motion; those of the single teeth come from `lobeLoads`.
-struct MotionIndicators
-{
-  Indicator transmission_ratio;   ///< over the last motor turn [-]
-  double torsion{};               ///< motor angle / nominal ratio - output angle [rad]
-  Indicator torsional_stiffness;  ///< [N.m/rad]
-  Indicator efficiency;           ///< [-]
-  Indicator kinematic_error;      ///< peak to peak over the last motor turn [rad]
 };
 
 /// Watches the joint's motion step by step, in fixed memory. Allocates only at construction.

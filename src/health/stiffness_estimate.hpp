@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/forgetting.hpp"
-#include "health/indicator.hpp"
 #include "health/recent_span.hpp"
 
 namespace hjt

@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/indicator.hpp"
 #include "health/running_regression.hpp"
 
 namespace hjt

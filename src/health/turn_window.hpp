@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/indicator.hpp"
 
 namespace hjt
 {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 
+#include "base/edit_distance.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
@@ -18,25 +18,6 @@ namespace hjt
 {
 namespace
 {
-/// Single edits (insert, delete, replace) between two texts (Levenshtein).
-std::size_t editDistance(const std::string& from, const std::string& to)
-{
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{ 0 });
-  for (std::size_t i = 1; i <= from.size(); ++i)
-  {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j)
-    {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({ replaced, row[j] + 1, row[j - 1] + 1 });
-    }
-  }
-  return row.back();
-}
-
 std::string withoutSection(const std::string& key)
 {
   return key.substr(key.find('.') + 1);

@@ -50,15 +50,15 @@ void BagRecorder::record(Twin& twin)
       bag_.write(prefix_ + topics::ENCODERS, stamp, encoders_);
     }
   }
-  if (schedule_.isDue(Output::CONTACT_FORCES, stamp))
+  if (schedule_.isDue(Output::CONTACT_FORCES, stamp) && twin.toothForces(tooth_forces_))
   {
-    twin.toothForces(tooth_forces_);
     fillContactForces(outputs, tooth_forces_, contact_forces_);
     bag_.write(prefix_ + topics::CONTACT_FORCES, stamp, contact_forces_);
   }
   if (schedule_.isDue(Output::HEALTH, stamp))
   {
-    fillHealth(outputs, twin.health(), health_);
+    fillHealth(twin, health_since_, health_);
+    health_since_ = stamp;
     bag_.write(prefix_ + topics::HEALTH, stamp, health_);
   }
   if (twin.watchesSignals() && schedule_.isDue(Output::INDICATORS, stamp))

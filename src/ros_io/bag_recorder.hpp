@@ -31,6 +31,7 @@ private:
   harmonic_joint_twin::Encoders encoders_;
   harmonic_joint_twin::ContactForces contact_forces_;
   harmonic_joint_twin::Health health_;
+  Stamp health_since_{};  // stamp of the last one [ns]
   harmonic_joint_twin::Indicators indicators_;
   harmonic_joint_twin::Assessment assessment_;
 };

@@ -196,31 +196,33 @@ harmonic_joint_twin::Health makeHealth(const JointNames& names)
   return message;
 }
 
-void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmonic_joint_twin::Health& message) noexcept
+void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept
 {
+  const JointOutputs& outputs = twin.outputs();
+  const HealthReport report = twin.health(since);
   message.header.stamp = toRosTime(outputs.stamp);
-  message.transmission_ratio_valid = report.transmission_ratio_valid;
-  message.transmission_ratio = report.transmission_ratio;
-  message.torsion = report.torsion;
-  message.torsional_stiffness_valid = report.torsional_stiffness_valid;
-  message.torsional_stiffness = report.torsional_stiffness;
-  message.torsional_stiffness_model = report.torsional_stiffness_model;
-  message.teeth_loaded = report.teeth_loaded;
-  std::copy(report.lobe_mesh_force.begin(), report.lobe_mesh_force.end(), message.lobe_mesh_force.begin());
-  message.lobe_asymmetry = report.lobe_asymmetry;
-  message.wave_generator_load = report.wave_generator_load;
-  message.friction_torque = report.friction_torque;
-  message.efficiency_valid = report.efficiency_valid;
-  message.efficiency = report.efficiency;
-  message.kinematic_error_valid = report.kinematic_error_valid;
-  message.kinematic_error = report.kinematic_error;
-  message.motor_torque = report.motor_torque;
-  message.joint_torque = report.joint_torque;
-  message.energy_residual = report.energy_residual;
+  message.transmission_ratio_valid = report.motion.transmission_ratio.valid;
+  message.transmission_ratio = report.motion.transmission_ratio.value;
+  message.torsion = report.motion.torsion;
+  message.torsional_stiffness_valid = report.motion.torsional_stiffness.valid;
+  message.torsional_stiffness = report.motion.torsional_stiffness.value;
+  message.torsional_stiffness_model = outputs.torsional_stiffness;
+  message.teeth_loaded = static_cast<std::uint32_t>(report.lobes.teeth_loaded);
+  std::copy(report.lobes.mesh_force.begin(), report.lobes.mesh_force.end(), message.lobe_mesh_force.begin());
+  message.lobe_asymmetry = report.lobes.asymmetry;
+  message.wave_generator_load = report.lobes.wave_generator_force;
+  message.friction_torque = outputs.friction_torque;
+  message.efficiency_valid = report.motion.efficiency.valid;
+  message.efficiency = report.motion.efficiency.value;
+  message.kinematic_error_valid = report.motion.kinematic_error.valid;
+  message.kinematic_error = report.motion.kinematic_error.value;
+  message.motor_torque = outputs.motor_torque;
+  message.joint_torque = outputs.joint_torque;
+  message.energy_residual = outputs.energy_residual;
   message.solver_state = static_cast<std::uint8_t>(report.solver_state);
-  message.solver_iterations = report.solver_iterations;
-  message.solver_residual = report.solver_residual;
-  message.solver_failures = report.solver_failures;
+  message.solver_iterations = outputs.iterations;
+  message.solver_residual = outputs.residual;
+  message.solver_failures = twin.counters().solver_failures;
 }
 
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept

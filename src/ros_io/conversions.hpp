@@ -44,7 +44,8 @@ void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
                        harmonic_joint_twin::ContactForces& message) noexcept;
 
 harmonic_joint_twin::Health makeHealth(const JointNames& names);
-void fillHealth(const JointOutputs& outputs, const HealthReport& report, harmonic_joint_twin::Health& message) noexcept;
+/// The solver's state of the steps after `since` [ns].
+void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const JointNames& names);
 void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;

@@ -74,18 +74,18 @@ void OutputPublishers::offer(Twin& twin) noexcept
       encoders_.write([&](auto& message) { fillEncoders(outputs, readings, message); });
     }
   }
-  if (isWanted(Output::CONTACT_FORCES, contact_forces_.isHeard(), outputs.stamp))
+  if (isWanted(Output::CONTACT_FORCES, contact_forces_.isHeard(), outputs.stamp) && twin.toothForces(tooth_forces_))
   {
-    contact_forces_.write(
-        [&](auto& message)
-        {
-          twin.toothForces(tooth_forces_);
-          fillContactForces(outputs, tooth_forces_, message);
-        });
+    contact_forces_.write([&](auto& message) { fillContactForces(outputs, tooth_forces_, message); });
   }
   if (isWanted(Output::HEALTH, health_.isHeard(), outputs.stamp))
   {
-    health_.write([&](auto& message) { fillHealth(outputs, twin.health(), message); });
+    health_.write(
+        [&](auto& message)
+        {
+          fillHealth(twin, health_since_, message);
+          health_since_ = outputs.stamp;
+        });
   }
   if (isWanted(Output::INDICATORS, indicators_.isHeard(), outputs.stamp))
   {

@@ -50,6 +50,7 @@ private:
 
   OutputSchedule schedule_;
   ToothForces tooth_forces_;
+  Stamp health_since_{};  // stamp of the last health message [ns]
   OutputChannel<sensor_msgs::JointState> joint_states_;
   OutputChannel<harmonic_joint_twin::Encoders> encoders_;
   OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;

@@ -85,9 +85,10 @@ SolveStatus JointDynamics::followModel() noexcept
   return result;
 }
 
+/// From where the full ring was left to the surface's present angles.
 SolveStatus JointDynamics::bringRing() noexcept
 {
-  return ring_.moveTo({ motor_angle_, output_angle_, model_.ring.gear.wave_amplitude });
+  return ring_.moveTo(position());
 }
 
 /// The full ring's equilibrium is the present one.

@@ -35,8 +35,8 @@ public:
   bool onSurface() const noexcept { return on_surface_; }
   const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< while there
 
-  /// Where the surface is in use, the full ring is elsewhere: this brings it to the present angles.
-  SolveStatus bringRing() noexcept;
+  /// Of the present equilibrium. While the surface is in use the full ring is elsewhere.
+  DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_.ring.gear.wave_amplitude }; }
 
   /// Ring in equilibrium at these angles. On failure the last good ring stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
@@ -63,6 +63,7 @@ public:
   SolveStatus status;  ///< worst since it was last cleared by its reader
 
 private:
+  SolveStatus bringRing() noexcept;
   SolveStatus placeRing(double motor_angle, double output_angle) noexcept;
   void takeRing() noexcept;
   bool surfaceAgrees() const noexcept;

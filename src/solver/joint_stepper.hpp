@@ -42,7 +42,6 @@ public:
     rest_steps_ = 0;
     dynamics_.useSurface(surface);
   }
-  SolveStatus bringRing() noexcept { return dynamics_.onSurface() ? dynamics_.bringRing() : SolveStatus{}; }
 
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]

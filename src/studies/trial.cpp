@@ -42,7 +42,6 @@ TrialResult runTrial(Twin& twin, Stamp end, Stamp sample_period, const std::func
     result.wave_generator_turn_max = std::max(result.wave_generator_turn_max, std::abs(turn));
     result.throughput +=
         std::abs(now.motor_torque * turn) + std::abs(now.load_torque * (now.output_angle - last.output_angle));
-    result.state = std::max(result.state, twin.health().solver_state);
     if ((now.stamp - begin) % sample_period == 0)
     {
       result.samples.push_back({ 1e-9 * static_cast<double>(now.stamp - begin), now.motor_angle, now.output_angle,
@@ -51,6 +50,7 @@ TrialResult runTrial(Twin& twin, Stamp end, Stamp sample_period, const std::func
     last = now;
   }
   result.counters = twin.counters();
+  result.state = twin.health().solver_state;
   result.iterations_mean = iterations / std::max<double>(1.0, static_cast<double>(result.counters.steps));
   return result;
 }

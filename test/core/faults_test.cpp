@@ -268,7 +268,7 @@ double roughness(const Parameters& parameters)
   for (Stamp t = MILLISECOND; t < 100 * MILLISECOND; t += MILLISECOND)
   {
     advance(twin, t);
-    const double load = twin.health().wave_generator_load;
+    const double load = twin.health().lobes.wave_generator_force;
     low = std::min(low, load);
     high = std::max(high, load);
   }

@@ -279,8 +279,8 @@ TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
     load += forces.wave_generator_force[i];
     teeth += forces.mesh_force[i] != 0.0 ? 1 : 0;
   }
-  EXPECT_NEAR(load, health.wave_generator_load, 1e-3 * load);
-  EXPECT_NEAR(teeth, static_cast<int>(health.teeth_loaded), 2);
+  EXPECT_NEAR(load, health.lobes.wave_generator_force, 1e-3 * load);
+  EXPECT_NEAR(teeth, health.lobes.teeth_loaded, 2);
   EXPECT_TRUE(twin.onSurface());
 }
 

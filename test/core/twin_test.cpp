@@ -290,7 +290,7 @@ TEST(TwinLoop, DoesNotAllocate)
   {
     twin.toothForces(teeth);
     counts += twin.encoders().motor_count;
-    counts += twin.health().teeth_loaded;
+    counts += twin.health().lobes.teeth_loaded;
   }
   twin.reset(SECOND);
   EXPECT_EQ(allocationCount(), before);
@@ -306,17 +306,17 @@ TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
   {
   }
   const HealthReport health = twin.health();
-  ASSERT_TRUE(health.transmission_ratio_valid);
+  ASSERT_TRUE(health.motion.transmission_ratio.valid);
   // Over one turn, with the torsion that is left of the start swinging by some 1e-5 of a turn.
-  EXPECT_NEAR(health.transmission_ratio, 101.0, 0.1);
+  EXPECT_NEAR(health.motion.transmission_ratio.value, 101.0, 0.1);
   EXPECT_NEAR(twin.outputs().motor_angle / twin.outputs().output_angle, 101.0, 1.0);
   EXPECT_EQ(health.solver_state, SolverState::OK);
-  EXPECT_GT(health.teeth_loaded, 4U);
-  EXPECT_GT(health.lobe_mesh_force[0], 0.0);
-  EXPECT_LT(health.lobe_asymmetry, 0.01);
-  EXPECT_GT(health.wave_generator_load, 900.0);
-  EXPECT_GT(health.friction_torque, twin.parameters().motor.coulomb_torque);
-  EXPECT_NEAR(health.torsional_stiffness_model, 50e3, 5e3);
+  EXPECT_GT(health.lobes.teeth_loaded, 4);
+  EXPECT_GT(health.lobes.mesh_force[0], 0.0);
+  EXPECT_LT(health.lobes.asymmetry, 0.01);
+  EXPECT_GT(health.lobes.wave_generator_force, 900.0);
+  EXPECT_GT(twin.outputs().friction_torque, twin.parameters().motor.coulomb_torque);
+  EXPECT_NEAR(twin.outputs().torsional_stiffness, 50e3, 5e3);
   const EncoderReadings encoders = twin.encoders();
   const double motor_count = TWO_PI / 4320.0;
   EXPECT_NEAR(encoders.motor_angle, twin.outputs().motor_angle, motor_count);

@@ -1,44 +1,124 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names and likely faults by clang-tidy (.clang-tidy) in every source of src/ that the build compiles.
+"""Names and likely faults by clang-tidy (.clang-tidy) in every source of src/, test/ and bench/ that the build compiles.
 
 usage: clang_tidy.py BUILD_FOLDER
+
+A file without findings is remembered in ${XDG_CACHE_HOME:-~/.cache}/harmonic_joint_twin/clang_tidy and checked again only
+after a change of the file, of a header that it includes, of the compiler's options, of .clang-tidy or of the tool.
 """
 import concurrent.futures
+import functools
+import hashlib
 import json
 import os
+import re
+import shlex
+import shutil
 import subprocess
 import sys
+import tempfile
+import time
 
 import project
 
+FOLDERS = ("src", "test", "bench")
+# The first that is installed. From 22 on, declarations of system headers are skipped: half the time.
+TOOLS = ("clang-tidy-22", "clang-tidy")
+KEPT_DAYS = 60  # what no run has asked for since then is removed
 
-def sources(build, root):
+
+def text_hash(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+@functools.lru_cache(maxsize=None)
+def file_hash(path):
+    with open(path, "rb") as file:
+        return text_hash(file.read())
+
+
+def output(command, folder=None):
+    return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False).stdout
+
+
+def cache_folder():
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    folder = os.path.join(home, "harmonic_joint_twin", "clang_tidy")
+    os.makedirs(folder, exist_ok=True)
+    for entry in os.scandir(folder):
+        if entry.stat().st_mtime < time.time() - KEPT_DAYS * 86400:
+            os.remove(entry.path)
+    return folder
+
+
+def commands(build, root):
+    """Compile commands by source, one each, without the precompiled header: a source must include what it uses."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
-        compiled = {os.path.normpath(os.path.join(entry["directory"], entry["file"])) for entry in json.load(file)}
-    folder = os.path.join(root, "src") + os.sep
-    return sorted(path for path in compiled if path.startswith(folder))
+        entries = json.load(file)
+    found = {}
+    for entry in entries:
+        path = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
+        if os.path.relpath(path, root).split(os.sep)[0] not in FOLDERS:
+            continue
+        arguments = entry.get("arguments") or shlex.split(entry["command"])
+        for index in reversed([i for i, word in enumerate(arguments) if word.endswith("cmake_pch.hxx")]):
+            del arguments[index - 1:index + 1]
+        arguments = [word for word in arguments if word != "-Winvalid-pch"]
+        found[path] = {"directory": entry["directory"], "file": path, "arguments": arguments}
+    return dict(sorted(found.items()))
 
 
-def findings(build, path):
-    """Pair of the exit code and what clang-tidy said of one file."""
-    result = subprocess.run(["clang-tidy", "--quiet", "-p", build, path], stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, universal_newlines=True, check=False)
-    said = result.stdout if result.stdout.strip() or not result.returncode else result.stderr
-    return result.returncode, said.strip()
+def key(entry, common, root):
+    """Of what a verdict depends on: the tool and its configuration, the options, all files read. None if it does not compile."""
+    arguments = [word for word in entry["arguments"] if word != "-c"]
+    if "-o" in arguments:
+        del arguments[arguments.index("-o"):][:2]
+    options = [word.replace(root, "") for word in arguments]
+    rule = output(arguments + ["-M"], entry["directory"]).decode()
+    files = re.sub(r"\\\n", " ", rule).split()[1:]
+    if not files:
+        return None
+    parts = [common, *options, *(file_hash(os.path.join(entry["directory"], path)) for path in files)]
+    return text_hash("\n".join(parts).encode())
 
 
 def check(build, root=project.ROOT):
-    paths = sources(build, root)
-    problems = [] if paths else ["src: no compiled sources found"]
-    with concurrent.futures.ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        for path, (code, said) in zip(paths, pool.map(lambda one: findings(build, one), paths)):
-            print(f"{os.path.relpath(path, root)}: {'ok' if not code else 'FAULTS'}", flush=True)
-            if code:
-                problems.append(said)
+    tool = next(filter(shutil.which, TOOLS))
+    file_hash.cache_clear()
+    entries = commands(build, root)
+    common = text_hash(output([tool, "--version"])) + file_hash(os.path.join(root, ".clang-tidy"))
+    cache = cache_folder()
+
+    def findings(path):
+        """None if the file is known to be clean, else what clang-tidy reports; empty if there is nothing."""
+        name = key(entries[path], common, root)
+        mark = os.path.join(cache, name) if name else None
+        if mark and os.path.exists(mark):
+            os.utime(mark)
+            return None
+        result = subprocess.run([tool, "--quiet", "-p", database, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                universal_newlines=True, check=False)
+        if result.returncode:
+            return (result.stdout.strip() or result.stderr.strip()) or f"{path}: {tool} failed"
+        if mark:
+            with open(mark, "w", encoding="utf-8"):
+                pass
+        return ""
+
+    problems = [] if entries else ["src: no compiled sources found"]
+    with tempfile.TemporaryDirectory() as database, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
+            json.dump(list(entries.values()), file)
+        for path, found in zip(entries, pool.map(findings, entries)):
+            state = "known to be clean" if found is None else "FAULTS" if found else "clean"
+            print(f"{os.path.relpath(path, root)}: {state}", flush=True)
+            if found:
+                problems.append(found)
     return problems
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit(__doc__)
+    os.nice(10)  # other tests run beside it
     project.run(lambda root: check(sys.argv[1], root))

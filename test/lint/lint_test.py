@@ -4,19 +4,22 @@ import contextlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import catkin_lint
 import clang_tidy
 import config_files
+import doc_tables
 import launch_docs
 import layering
+import links
 import message_comments
 import project
-import readme_tables
 import spdx
 import type_names
 
@@ -163,38 +166,66 @@ class LaunchDocs(Tree):
         self.assert_fault(launch_docs.check, "'bag'")
 
 
-class ReadmeTables(Tree):
+class DocTables(Tree):
     TABLE = ["| parameter | unit |", "|---|---|", "| `gear.teeth` | - |", "| `motor.torque_limit` | N.m |"]
 
     def check(self, root):
-        return readme_tables.check_parameters(root, self.TABLE)
+        return doc_tables.check_parameters(root, self.TABLE)
 
-    def readme(self, rows):
-        self.write("README.md", "\n".join(["# A", readme_tables.PARAMETERS_BEGIN, *rows, readme_tables.PARAMETERS_END]))
+    def page(self, rows):
+        self.write(doc_tables.PARAMETERS, "\n".join(["# A", doc_tables.PARAMETERS_BEGIN, *rows, doc_tables.PARAMETERS_END]))
 
     def test_same_table(self):
-        self.readme(self.TABLE)
+        self.page(self.TABLE)
         self.assert_clean(self.check)
 
     def test_missing_surplus_and_order(self):
-        self.readme(self.TABLE[:3])
+        self.page(self.TABLE[:3])
         self.assert_fault(self.check, "missing", "motor.torque_limit")
-        self.readme(self.TABLE + ["| `motor.colour` | - |"])
+        self.page(self.TABLE + ["| `motor.colour` | - |"])
         self.assert_fault(self.check, "motor.colour")
-        self.readme(self.TABLE[:2] + self.TABLE[:1:-1])
+        self.page(self.TABLE[:2] + self.TABLE[:1:-1])
         self.assert_fault(self.check, "order")
 
     def test_write(self):
-        self.readme([])
-        readme_tables.write_parameters(self.root, self.TABLE)
+        self.page([])
+        doc_tables.write_parameters(self.root, self.TABLE)
         self.assert_clean(self.check)
 
     def test_names_and_types(self):
-        readme = ("### Services\n\n| service | type |\n|---|---|\n| `~reset` | std_srvs/Trigger | x |\n\n"
-                  "## Next\n| `~a` | b/C |")
-        self.assertEqual(readme_tables.names_and_types(readme, "Services"), {"~reset": "std_srvs/Trigger"})
+        page = ("### Services\n\n| service | type |\n|---|---|\n| `~reset` | std_srvs/Trigger | x |\n\n"
+                "## Next\n| `~a` | b/C |")
+        self.assertEqual(doc_tables.names_and_types(page, "Services"), {"~reset": "std_srvs/Trigger"})
         with self.assertRaises(ValueError):
-            readme_tables.names_and_types(readme, "Topics")
+            doc_tables.names_and_types(page, "Topics")
+
+
+class Links(Tree):
+    def test_targets_that_exist(self):
+        self.write("docs/b.md", "# Two words, `code`\n\n## Same\n\n## Same\n")
+        self.write("docs/images/a.png", "")
+        self.write("README.md", "[b](docs/b.md), [head](docs/b.md#two-words-code), [again](docs/b.md#same-1), [own](#own)\n"
+                                "[![a](docs/images/a.png)](docs/b.md) [web](https://example.org/x) <img src='docs/images/a.png'>\n"
+                                "# Own\n\n```\n[none](none.md)\n```\nand `[none](none.md)`\n")
+        self.assert_clean(links.check)
+
+    def test_targets_that_do_not(self):
+        self.write("docs/b.md", "# Head\n")
+        for text, word in [("[b](b.md)", "b.md"), ("![a](docs/a.png)", "docs/a.png"), ("[b](docs/b.md#tail)", "#tail"),
+                           ("[own](#tail)", "#tail"), ("[![a](docs/a.png)](docs/b.md)", "docs/a.png"),
+                           ('<img src="a.png">', "a.png"), ("[root](/etc/hostname)", "/etc/hostname"),
+                           ("[up](../README.md)", "../README.md")]:
+            with self.subTest(text=text):
+                self.write("README.md", f"\n{text}\n")
+                self.assert_fault(links.check, "README.md:2", word)
+
+
+class TemporaryPaths(Tree):
+    def test_pages_hold_none(self):
+        self.write("docs/a.md", "joint_twin insert --csv insertion.csv, mnt/tmp/x\n")
+        self.assert_clean(links.check)
+        self.write("docs/a.md", "# A\njoint_twin insert --csv /tmp/validate.x/insertion.csv\n")
+        self.assert_fault(links.check, "docs/a.md:2", "/tmp/")
 
 
 class Format(Tree):
@@ -212,13 +243,27 @@ class Format(Tree):
 
 
 class ClangTidy(Tree):
-    def problems(self, content):
+    def setUp(self):
+        super().setUp()
+        self.root = os.path.realpath(self.root)
+        self.said = io.StringIO()
+        environment = unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME=os.path.join(self.root, "cache"))
+        environment.start()
+        self.addCleanup(environment.stop)
+        shutil.copy(os.path.join(project.ROOT, ".clang-tidy"), self.root)
+
+    def problems(self, content, options=()):
         path = self.write("src/one.cpp", content)
-        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", "-c", path]}
+        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", *options, "-c", path]}
         self.write("build/compile_commands.json", json.dumps([entry]))
-        os.symlink(os.path.join(project.ROOT, ".clang-tidy"), os.path.join(self.root, ".clang-tidy"))
-        with contextlib.redirect_stdout(io.StringIO()):
-            return clang_tidy.check(os.path.join(self.root, "build"), os.path.realpath(self.root))
+        self.said = io.StringIO()
+        with contextlib.redirect_stdout(self.said):
+            return clang_tidy.check(os.path.join(self.root, "build"), self.root)
+
+    def assert_checked(self, checked, *arguments):
+        """The file is clean; `checked`: the tool had to run to find that out."""
+        self.assertEqual(self.problems(*arguments), [])
+        self.assertEqual(self.said.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
 
     def test_house_names(self):
         self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
@@ -228,8 +273,35 @@ class ClangTidy(Tree):
         for content in ["class rim_tension\n{\n};\n", "class A\n{\n  int value = 0;\n};\n", "int Read();\n",
                         "constexpr int kTeeth = 200;\n"]:
             with self.subTest(content=content):
-                self.setUp()
                 self.assertIn("naming", "".join(self.problems(content)))
+
+    def test_clean_file_is_checked_once(self):
+        content = '#include "one.hpp"\nint readValue();\n'
+        self.write("src/one.hpp", "constexpr int TEETH = 200;\n")
+        self.assert_checked(True, content)
+        self.assert_checked(False, content)
+        changes = {
+            "header": lambda: self.write("src/one.hpp", "constexpr int TEETH = 160;  // NOLINT\n"),
+            "rules": lambda: self.write(".clang-tidy", project.text(self.root, ".clang-tidy") + "# another\n"),
+        }
+        for name, change in changes.items():
+            with self.subTest(changed=name):
+                change()
+                self.assert_checked(True, content)
+                self.assert_checked(False, content)
+        self.assert_checked(True, content + "// longer\n")
+        self.assert_checked(True, content, ["-DANOTHER=1"])
+
+    def test_finding_is_never_remembered(self):
+        for _ in range(2):
+            self.assertIn("naming", "".join(self.problems("int Read();\n")))
+        self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
+
+    def test_precompiled_header_hides_nothing(self):
+        prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
+        options = ["-Winvalid-pch", "-include", prefix]
+        self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
+        self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
 
 
 class CatkinLint(Tree):

@@ -15,7 +15,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 PACKAGE = "harmonic_joint_twin"
-PATIENCE = 30.0  # [s]
+PATIENCE = 30.0 * float(os.environ.get("HJT_PATIENCE", "1"))  # [s]
 OK, WARN, ERROR, STALE = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
 

@@ -77,6 +77,18 @@ class Replay(tool.ToolTest):
         self.replay("in.bag", "again.bag")
         self.assertEqual(tool.read_bytes(self.path("out.bag")), tool.read_bytes(self.path("again.bag")))
 
+    def test_shipped_files_of_a_recorded_load_do_not_degrade_the_solver(self):
+        # recorded_load.yaml leaves little inertia at the output; the step must resolve its swing on the stiffest slope too.
+        for joint, name in [("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"), ("elbow", "elbow_joint")]:
+            for load in (5.0, 140.0):
+                with self.subTest(joint=joint, load=load):
+                    tool.write_recording(self.path("in.bag"), joint=name, load=load)
+                    done = self.replay("in.bag", "out.bag", "--force", "--config", f"joints/{joint}.yaml", "--config",
+                                       "recorded_load.yaml")
+                    self.assertNotIn("too long", done.stdout + done.stderr)
+                    health = [message for _, message in tool.series(self.path("out.bag"), "/joint_twin/health")]
+                    self.assertEqual({message.solver_state for message in health}, {0})
+
     def test_torques_that_are_not_finite_are_refused_and_counted(self):
         tool.write_recording(self.path("in.bag"), duration=0.1)
         with rosbag.Bag(self.path("in.bag"), "a") as bag:

@@ -7,6 +7,9 @@ import tempfile
 import unittest
 
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(CHECKOUT, "scripts", "validation"))
+import page as validation_page  # noqa: E402
+
 RECORDINGS = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(CHECKOUT, "..", "shared", "telemetry"))
 
 
@@ -71,6 +74,12 @@ class Validate(unittest.TestCase):
         code, _, said = validate("--section", "catalogue", "--set", "gear.wings=2")
         self.assertEqual(code, 1, said)
         self.assertIn("gear.wings", said)
+
+    def test_printed_commands_hold_no_temporary_path(self):
+        with tempfile.TemporaryDirectory() as work:
+            page = validation_page.Page("any", validation_page.Settings(tool="/bin/true", out=work, work=work, telemetry=""))
+            page.run("manufacture", "--flexspline-csv", page.scratch("flexspline.csv"))
+        self.assertEqual(page.commands, ["joint_twin manufacture --flexspline-csv $PWD/flexspline.csv"])
 
 
 if __name__ == "__main__":

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/model/faults/fault_list.hpp"
+#include "harmonic_joint_twin/model/lobe_loads.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/sensors/encoder_readings.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
@@ -59,31 +61,12 @@ enum class SolverState : std::uint8_t
   FAILED = 2
 };
 
-/// Health indicators; fields as in Health.msg.
+/// Health indicators beside those in `JointOutputs`; as in Health.msg.
 struct HealthReport
 {
-  bool transmission_ratio_valid{};
-  double transmission_ratio{};
-  double torsion{};
-  bool torsional_stiffness_valid{};
-  double torsional_stiffness{};
-  double torsional_stiffness_model{};
-  std::uint32_t teeth_loaded{};
-  std::array<double, 2> lobe_mesh_force{};
-  double lobe_asymmetry{};
-  double wave_generator_load{};
-  double friction_torque{};
-  bool efficiency_valid{};
-  double efficiency{};
-  bool kinematic_error_valid{};
-  double kinematic_error{};
-  double motor_torque{};
-  double joint_torque{};
-  double energy_residual{};
+  MotionIndicators motion;
+  LobeLoads lobes;
   SolverState solver_state{};
-  std::uint32_t solver_iterations{};
-  double solver_residual{};
-  std::uint64_t solver_failures{};
 };
 
 /// Counters since reset, for diagnostics.
@@ -106,7 +89,8 @@ struct TwinCounters
 ///
 /// Time is the time of the messages: instants are whole multiples of the solver step, so that the same stamped inputs
 /// give the same numbers live, replayed and offline, in one go or in chunks.
-/// After construction no member throws or allocates except where said.
+/// After construction no member throws or allocates except where said. No question asked of the twin changes a bit of its
+/// run.
 class Twin
 {
 public:
@@ -151,9 +135,12 @@ public:
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 
   ToothForces makeToothForces() const;  ///< allocates: call once
-  /// Fills the arrays at the current instant. On the response surface this solves the full ring, once.
-  void toothForces(ToothForces& forces) const noexcept;
-  HealthReport health() noexcept;  ///< at the current instant; clears "since last report" states
+  /// Fills the arrays at the current instant; on the response surface this solves a full ring of its own. False: that
+  /// found no equilibrium and the arrays stay as they were.
+  bool toothForces(ToothForces& forces) noexcept;
+  /// At the current instant. The solver's state is that of the steps after `since` [ns]; of all since the reset if `since`
+  /// is not before the current instant.
+  HealthReport health(Stamp since = std::numeric_limits<Stamp>::min()) const noexcept;
 
   /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with
   /// `reset`.

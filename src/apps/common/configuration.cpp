@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -56,36 +57,45 @@ fs::path packageDirectory()
   return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
 }
 
-void addFaultOption(CLI::App& command, CommonOptions& options)
+void addFaultOption(Command& command, CommonOptions& options)
 {
   command
-      .add_option("--fault", options.faults,
-                  "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
-      ->type_name("KIND:SEVERITY[:PLACE[:ONSET]]")
-      ->allow_extra_args(false);
+      .add("--fault", options.faults,
+           "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
+      .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 
-void addConfigurationOptions(CLI::App& command, CommonOptions& options)
+void addConfigurationOptions(Command& command, CommonOptions& options)
 {
-  command
-      .add_option("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group(GROUP);
-  command.add_option("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
-      ->type_name("section.key=value")
-      ->allow_extra_args(false)
-      ->group(GROUP);
-  command.add_option("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
-      ->type_name("DIR")
-      ->group(GROUP);
+  command.add("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+      .type("FILE")
+      .group(GROUP);
+  command.add("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
+      .type("section.key=value")
+      .group(GROUP);
+  command.add("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
+      .type("DIR")
+      .group(GROUP);
 }
 
-void addCommonOptions(CLI::App& command, CommonOptions& options)
+void addCommonOptions(Command& command, CommonOptions& options)
 {
   addConfigurationOptions(command, options);
-  command.add_flag("--json", options.json, "one JSON document on stdout and nothing else there")->group(GROUP);
-  command.add_flag("--force", options.force, "overwrite existing output files")->group(GROUP);
+  command.flag("--json", options.json, "one JSON document on stdout and nothing else there").group(GROUP);
+  command.flag("--force", options.force, "overwrite existing output files").group(GROUP);
+}
+
+void addNamespaceOption(Command& command, std::string& joint_namespace)
+{
+  command.add("--joint-namespace", joint_namespace, "of the twin's topics")
+      .type("NAME")
+      .check(
+          [](const std::string& name)
+          {
+            return std::regex_match(name, std::regex("(/[A-Za-z][A-Za-z0-9_]*)+")) ?
+                       std::string() :
+                       "'" + name + "' is not a global ROS name such as /joint_twin";
+          });
 }
 
 ParameterMap loadParameterMap(const CommonOptions& options)

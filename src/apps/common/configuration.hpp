@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "apps/common/command.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
+/// Of the node when nothing else is said.
+constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
+
 /// What every subcommand of the tool takes.
 struct CommonOptions
 {
@@ -26,12 +29,14 @@ struct CommonOptions
 std::filesystem::path packageDirectory();
 
 /// `--fault`, for the commands that march the joint.
-void addFaultOption(CLI::App& command, CommonOptions& options);
+void addFaultOption(Command& command, CommonOptions& options);
 
 /// Those about the configuration alone.
-void addConfigurationOptions(CLI::App& command, CommonOptions& options);
+void addConfigurationOptions(Command& command, CommonOptions& options);
 
-void addCommonOptions(CLI::App& command, CommonOptions& options);
+void addCommonOptions(Command& command, CommonOptions& options);
+
+void addNamespaceOption(Command& command, std::string& joint_namespace);
 
 /// The default configuration with the overlays and assignments over it. @throws ParameterError.
 ParameterMap loadParameterMap(const CommonOptions& options);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/motion_options.hpp"
 
-#include <algorithm>
 #include <array>
 #include <iostream>
 #include <optional>
 
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
-#include "apps/common/validators.hpp"
 
 #include "ros_io/topics.hpp"
 
@@ -23,8 +21,19 @@ constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shou
                                                                  { "wrist_1", "wrist_1_joint" },
                                                                  { "wrist_2", "wrist_2_joint" },
                                                                  { "wrist_3", "wrist_3_joint" } } };
-
 }  // namespace
+
+std::optional<UrJoint> findUrJoint(const std::string& name)
+{
+  for (std::size_t i = 0; i < UR_JOINTS.size(); ++i)
+  {
+    if (name == UR_JOINTS[i][0] || name == UR_JOINTS[i][1] || name == std::to_string(i))
+    {
+      return UrJoint{ static_cast<int>(i), UR_JOINTS[i][1] };
+    }
+  }
+  return std::nullopt;
+}
 
 MotionSource motionSource(const MotionOptions& options)
 {
@@ -33,29 +42,24 @@ MotionSource motionSource(const MotionOptions& options)
   source.topic = options.topic;
   source.load_topic = options.joint_namespace + "/" + topics::LOAD;
   source.joint = options.joint;
-  const auto* known =
-      std::find_if(UR_JOINTS.begin(), UR_JOINTS.end(),
-                   [&](const auto& names) { return names[0] == options.joint || names[1] == options.joint; });
-  if (known != UR_JOINTS.end())
+  if (const std::optional<UrJoint> known = findUrJoint(options.joint))
   {
-    source.joint = (*known)[1];
-    source.csv_joint = static_cast<int>(known - UR_JOINTS.begin());
+    source.joint = known->name;
+    source.csv_joint = known->number;
   }
   return source;
 }
 
-void addMotionOptions(CLI::App& command, MotionOptions& options)
+void addMotionOptions(Command& command, MotionOptions& options)
 {
   options.joint_namespace = DEFAULT_NAMESPACE;
   options.topic = "/joint_states";
-  command.add_option("recording", options.recording, "a bag, or a UR controller's CSV recording")
-      ->required()
-      ->type_name("IN.bag|IN.csv")
-      ->check(BAG_OR_CSV);
-  command.add_option("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., or its name in the messages")
-      ->required();
-  command.add_option("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A")
-      ->capture_default_str();
+  command.add("recording", options.recording, "a bag, or a UR controller's CSV recording")
+      .required()
+      .type("IN.bag|IN.csv")
+      .bagOrCsv();
+  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages").required();
+  command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
   addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
 }

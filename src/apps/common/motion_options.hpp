@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "apps/common/configuration.hpp"
@@ -19,7 +20,17 @@ struct MotionOptions : CommonOptions
   std::string topic;
 };
 
-void addMotionOptions(CLI::App& command, MotionOptions& options);
+/// A joint of UR's robots: its place in the columns of a controller's recording.
+struct UrJoint
+{
+  int number{};      ///< 0 ... 5
+  std::string name;  ///< in the messages of UR's driver
+};
+
+/// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
+std::optional<UrJoint> findUrJoint(const std::string& name);
+
+void addMotionOptions(Command& command, MotionOptions& options);
 
 /// The recording and joint they name.
 MotionSource motionSource(const MotionOptions& options);

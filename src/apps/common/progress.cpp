@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <utility>
 
 namespace hjt
@@ -61,5 +62,10 @@ void Progress::show(double done, double elapsed)
                left);
   std::fflush(stderr);
   bar_shown_ = true;
+}
+
+std::function<void(double)> showProgress(const std::string& what)
+{
+  return [progress = std::make_shared<Progress>(what)](double done) { progress->update(done); };
 }
 }  // namespace hjt

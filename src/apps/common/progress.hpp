@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 namespace hjt
@@ -30,4 +31,7 @@ private:
   unsigned calls_{};
   bool bar_shown_{};
 };
+
+/// A progress that lasts as long as the function: `result = analyse(..., showProgress("turning"));`
+std::function<void(double)> showProgress(const std::string& what);
 }  // namespace hjt

@@ -3,11 +3,9 @@
 
 #include <iostream>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/text_table.hpp"
+#include "apps/common/report.hpp"
 
 #include "ros_io/time.hpp"
 
@@ -45,38 +43,27 @@ int RunSummary::report(const Twin& twin, bool json) const
   const double simulated = toSeconds(twin.stamp() - begin);
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   warnOf(counters);
-  if (json)
+  printReport(json, { { "output", "", output },
+                      { "simulated_time", "simulated", simulated, "s" },
+                      { "run_time", "in", took, "s" },
+                      { "steps", "", counters.steps },
+                      { "motor_angle", "motor angle", outputs.motor_angle, "rad" },
+                      { "motor_velocity", "motor velocity", outputs.motor_velocity, "rad/s" },
+                      { "output_angle", "output angle", outputs.output_angle, "rad" },
+                      { "output_velocity", "output velocity", outputs.output_velocity, "rad/s" },
+                      { "energy_residual", "energy residual", outputs.energy_residual, "J" },
+                      { "inputs_accepted", "", counters.input.accepted },
+                      { "inputs_not_finite", "", counters.input.not_finite },
+                      { "torque_clamped", "", counters.torque_clamped },
+                      { "load_clamped", "", counters.load_clamped },
+                      { "speed_limited", "", counters.speed_limited },
+                      { "command_timeouts", "", counters.command_timeouts },
+                      { "step_cuts", "", counters.step_cuts },
+                      { "jumps", "", counters.jumps },
+                      { "coarse_steps", "", counters.coarse_steps },
+                      { "solver_failures", "", counters.solver_failures } });
+  if (!json)
   {
-    const nlohmann::ordered_json summary{ { "output", output },
-                                          { "simulated_time", simulated },
-                                          { "run_time", took },
-                                          { "steps", counters.steps },
-                                          { "motor_angle", outputs.motor_angle },
-                                          { "motor_velocity", outputs.motor_velocity },
-                                          { "output_angle", outputs.output_angle },
-                                          { "output_velocity", outputs.output_velocity },
-                                          { "energy_residual", outputs.energy_residual },
-                                          { "inputs_accepted", counters.input.accepted },
-                                          { "inputs_not_finite", counters.input.not_finite },
-                                          { "torque_clamped", counters.torque_clamped },
-                                          { "load_clamped", counters.load_clamped },
-                                          { "speed_limited", counters.speed_limited },
-                                          { "command_timeouts", counters.command_timeouts },
-                                          { "step_cuts", counters.step_cuts },
-                                          { "jumps", counters.jumps },
-                                          { "coarse_steps", counters.coarse_steps },
-                                          { "solver_failures", counters.solver_failures } };
-    std::cout << summary.dump(2) << '\n';
-  }
-  else
-  {
-    printValues({ { "simulated", shortNumber(simulated), "s" },
-                  { "in", shortNumber(took), "s" },
-                  { "motor angle", shortNumber(outputs.motor_angle), "rad" },
-                  { "motor velocity", shortNumber(outputs.motor_velocity), "rad/s" },
-                  { "output angle", shortNumber(outputs.output_angle), "rad" },
-                  { "output velocity", shortNumber(outputs.output_velocity), "rad/s" },
-                  { "energy residual", shortNumber(outputs.energy_residual), "J" } });
     std::cout << "written: " << output << '\n';
   }
   if (interruptSignal() != 0)

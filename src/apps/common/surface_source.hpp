@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "surface/surface_cache.hpp"
+#include "harmonic_joint_twin/surface/surface_source.hpp"
 
 namespace hjt
 {

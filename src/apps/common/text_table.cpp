@@ -32,7 +32,23 @@ void printValues(const std::vector<NamedValue>& values)
   }
 }
 
-void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<double>>& rows)
+void printWrapped(const std::string& text, std::size_t indent)
+{
+  constexpr std::size_t WIDTH = 100;
+  std::string margin(indent, ' ');
+  for (std::size_t begin = 0; begin < text.size();)
+  {
+    const std::size_t room = WIDTH - margin.size();
+    const std::size_t blank = text.size() - begin > room ? text.rfind(' ', begin + room) : text.size();
+    // A word longer than the line stays whole.
+    const std::size_t end = blank == std::string::npos || blank <= begin ? text.find(' ', begin) : blank;
+    std::cout << margin << text.substr(begin, end - begin) << '\n';
+    begin = end == std::string::npos ? text.size() : end + 1;
+    margin.assign(indent + 2, ' ');
+  }
+}
+
+void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows)
 {
   constexpr int NUMBER_WIDTH = 14;
   const auto width = [&](std::size_t column)
@@ -46,7 +62,7 @@ void printTable(const std::vector<std::string>& headings, const std::vector<std:
   {
     for (std::size_t column = 0; column < row.size(); ++column)
     {
-      std::cout << std::setw(width(column)) << shortNumber(row[column]);
+      std::cout << std::setw(width(column)) << row[column];
     }
     std::cout << '\n';
   }

@@ -18,6 +18,9 @@ struct NamedValue
 };
 void printValues(const std::vector<NamedValue>& values);
 
+/// Prints a text in lines of at most 100 columns, those after the first indented by `indent` more than it.
+void printWrapped(const std::string& text, std::size_t indent);
+
 /// Prints rows under headings ("torque [N.m]"), columns aligned.
-void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<double>>& rows);
+void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows);
 }  // namespace hjt

@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
-#include <nlohmann/json.hpp>
+#include "apps/common/report.hpp"
 
-#include "apps/common/output_file.hpp"
-
-#include "harmonic_joint_twin/base/errors.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
@@ -21,36 +18,35 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
-Json numberOrNull(double value)
-{
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 void writeCourse(const std::string& path, const RecordingComparison& comparison)
 {
-  CsvWriter csv(path, { "time", "position", "velocity", "load", "current_measured", "current_predicted", "current_band",
-                        "friction_torque" });
-  for (const ComparedRow& row : comparison.course().rows())
-  {
-    const MotionSample& m = row.measured;
-    csv.writeRow({ m.time, m.position, m.velocity, m.load, m.current, row.predicted.current, row.predicted.band,
-                   row.predicted.friction_torque });
-  }
-  csv.close();
+  const std::vector<Column<ComparedRow>> columns{
+    { "time", [](const ComparedRow& row) { return row.measured.time; } },
+    { "position", [](const ComparedRow& row) { return row.measured.position; } },
+    { "velocity", [](const ComparedRow& row) { return row.measured.velocity; } },
+    { "load", [](const ComparedRow& row) { return row.measured.load; } },
+    { "current_measured", [](const ComparedRow& row) { return row.measured.current; } },
+    { "current_predicted", [](const ComparedRow& row) { return row.predicted.current; } },
+    { "current_band", [](const ComparedRow& row) { return row.predicted.band; } },
+    { "friction_torque", [](const ComparedRow& row) { return row.predicted.friction_torque; } }
+  };
+  writeTable(path, columns, comparison.course().rows());
 }
 
 void writeFriction(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
 {
-  CsvWriter csv(directory + "/friction.csv", { "speed", "measured", "deviation", "twin", "rows" });
+  const std::vector<Column<FrictionPoint>> columns{ { "speed", &FrictionPoint::speed },
+                                                    { "measured", &FrictionPoint::measured },
+                                                    { "deviation", &FrictionPoint::deviation },
+                                                    { "twin", &FrictionPoint::twin },
+                                                    { "rows", &FrictionPoint::rows } };
+  const std::vector<FrictionPoint> points = comparison.friction().points();
+  writeTable(directory + "/friction.csv", columns, points);
   double fastest = 1.0;
-  for (const FrictionPoint& point : comparison.friction().points())
+  for (const FrictionPoint& point : points)
   {
-    csv.writeRow({ point.speed, point.measured, point.deviation, point.twin, static_cast<double>(point.rows) });
     fastest = std::max(fastest, std::abs(point.speed));
   }
-  csv.close();
   constexpr int STEPS = 100;
   const FrictionMap map(parameters);
   const double ratio = comparison.ratio();
@@ -67,12 +63,10 @@ void writeFriction(const std::string& directory, const RecordingComparison& comp
 
 void writeSpectrum(const std::string& path, const RecordingComparison& comparison)
 {
-  CsvWriter csv(path, { "order", "forward", "backward" });
-  for (const SpectrumLine& line : comparison.spectrum().lines())
-  {
-    csv.writeRow({ line.order, line.forward, line.backward });
-  }
-  csv.close();
+  const std::vector<Column<SpectrumLine>> columns{ { "order", &SpectrumLine::order },
+                                                   { "forward", &SpectrumLine::forward },
+                                                   { "backward", &SpectrumLine::backward } };
+  writeTable(path, columns, comparison.spectrum().lines());
 }
 
 void writeTorsion(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
@@ -81,23 +75,22 @@ void writeTorsion(const std::string& directory, const RecordingComparison& compa
   {
     return;
   }
-  CsvWriter csv(directory + "/torsion.csv", { "torque", "forward", "backward" });
+  const std::vector<Column<TorsionMean>> columns{ { "torque", &TorsionMean::torque },
+                                                  { "forward", &TorsionMean::forward },
+                                                  { "backward", &TorsionMean::backward } };
+  const std::vector<TorsionMean> means = comparison.torsion().means();
+  writeTable(directory + "/torsion.csv", columns, means);
   double largest = 0.0;
-  for (const TorsionMean& mean : comparison.torsion().means())
+  for (const TorsionMean& mean : means)
   {
-    csv.writeRow({ mean.torque, mean.forward, mean.backward });
     largest = std::max(largest, std::abs(mean.torque));
   }
-  csv.close();
   constexpr int STEPS = 60;
   const double lost_motion = parameters.indicators.lost_motion_torque;
   const TorsionLoop loop = analyseTorsionLoop(parameters, std::max(largest, 2.0 * lost_motion), lost_motion, STEPS);
-  CsvWriter twin(directory + "/torsion_twin.csv", { "torque", "torsion" });
-  for (const TorsionPoint& point : loop.points)
-  {
-    twin.writeRow({ point.torque, point.output_angle });
-  }
-  twin.close();
+  const std::vector<Column<TorsionPoint>> curve{ { "torque", &TorsionPoint::torque },
+                                                 { "torsion", &TorsionPoint::output_angle } };
+  writeTable(directory + "/torsion_twin.csv", curve, loop.points);
 }
 
 /// Every tooth of the twin's ring under the recording's typical and largest load.
@@ -122,68 +115,74 @@ void writeTwinStates(const std::string& path, const Thinned<TwinState>& states)
   {
     return;
   }
-  CsvWriter csv(path, { "time", "position", "velocity", "motor_current" });
-  for (const TwinState& state : states.rows())
-  {
-    csv.writeRow({ state.time, state.position, state.velocity, state.motor_current });
-  }
-  csv.close();
+  const std::vector<Column<TwinState>> columns{ { "time", &TwinState::time },
+                                                { "position", &TwinState::position },
+                                                { "velocity", &TwinState::velocity },
+                                                { "motor_current", &TwinState::motor_current } };
+  writeTable(path, columns, states.rows());
 }
+
+/// One indicator of the window that was judged worst.
+struct HealthRow
+{
+  std::size_t indicator{};
+  double value{};
+  Deviation deviation;
+};
 
 Json healthJson(const RecordingComparison& comparison)
 {
-  Json table = Json::array();
-  if (!comparison.worst())
+  std::vector<HealthRow> rows;
+  for (std::size_t i = 0; comparison.worst() && i < INDICATOR_COUNT; ++i)
   {
-    return table;
-  }
-  const JudgedWindow& window = *comparison.worst();
-  const double threshold = comparison.assessor().baseline().threshold();
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    const Deviation& deviation = window.deviations[i];
-    if (std::isfinite(window.indicators.values[i]) && std::isfinite(deviation.score))
+    const JudgedWindow& window = *comparison.worst();
+    if (std::isfinite(window.indicators.values[i]) && std::isfinite(window.deviations[i].score))
     {
-      table.push_back({ { "indicator", indicatorName(i) },
-                        { "unit", indicatorUnit(i) },
-                        { "value", window.indicators.values[i] },
-                        { "reference", numberOrNull(deviation.expected) },
-                        { "spread", numberOrNull(deviation.spread) },
-                        { "score", deviation.score },
-                        { "threshold", threshold } });
+      rows.push_back({ i, window.indicators.values[i], window.deviations[i] });
     }
   }
-  return table;
+  const double threshold = comparison.assessor().baseline().threshold();
+  const std::vector<Column<HealthRow>> columns{
+    { "indicator", [](const HealthRow& row) { return indicatorName(row.indicator); } },
+    { "unit", [](const HealthRow& row) { return indicatorUnit(row.indicator); } },
+    { "value", &HealthRow::value },
+    { "reference", [](const HealthRow& row) { return row.deviation.expected; } },
+    { "spread", [](const HealthRow& row) { return row.deviation.spread; } },
+    { "score", [](const HealthRow& row) { return row.deviation.score; } },
+    { "threshold", [threshold](const HealthRow&) { return threshold; } }
+  };
+  return Table(columns, rows).rows();
 }
 
 Json contentsJson(const RecordingContents& contents)
 {
-  Json lines = Json::array();
-  for (const ContentLine& line : contents.lines)
-  {
-    lines.push_back(
-        { { "name", line.name }, { "gives", line.gives }, { "found", line.found }, { "messages", line.messages } });
-  }
-  return { { "topics", lines }, { "joints", contents.joints }, { "not_used", contents.other_topics } };
+  const std::vector<Column<ContentLine>> columns{ { "name", &ContentLine::name },
+                                                  { "gives", &ContentLine::gives },
+                                                  { "found", &ContentLine::found },
+                                                  { "messages", &ContentLine::messages } };
+  return { { "topics", Table(columns, contents.lines).rows() },
+           { "joints", contents.joints },
+           { "not_used", contents.other_topics } };
 }
 
 Json verdictJson(const Verdict& verdict)
 {
-  Json findings = Json::array();
-  for (const Finding& finding : verdict.findings)
-  {
-    Json causes = Json::array();
-    for (const Cause cause : finding.causes)
-    {
-      causes.push_back(causeName(cause));
-    }
-    findings.push_back({ { "title", finding.title },
-                         { "level", finding.judged ? levelName(finding.level) : "NOT JUDGED" },
-                         { "text", finding.text },
-                         { "causes", causes } });
-  }
-  return { { "level", verdict.judged ? levelName(verdict.level) : "NOT JUDGED" },
-           { "findings", findings },
+  const auto level = [](const auto& judged) { return judged.judged ? levelName(judged.level) : "NOT JUDGED"; };
+  const std::vector<Column<Finding>> columns{ { "title", &Finding::title },
+                                              { "level", level },
+                                              { "text", &Finding::text },
+                                              { "causes",
+                                                [](const Finding& finding)
+                                                {
+                                                  std::vector<std::string> names;
+                                                  for (const Cause cause : finding.causes)
+                                                  {
+                                                    names.emplace_back(causeName(cause));
+                                                  }
+                                                  return Json(names);
+                                                } } };
+  return { { "level", level(verdict) },
+           { "findings", Table(columns, verdict.findings).rows() },
            { "cannot_show", verdict.cannot_show } };
 }
 }  // namespace
@@ -191,19 +190,9 @@ Json verdictJson(const Verdict& verdict)
 SoundJoint readSoundJoint(const std::string& directory)
 {
   SoundJoint sound;
-  const std::string path = directory + "/" + COMPARISON_FILE;
-  try
-  {
-    std::ifstream file(path);
-    const Json record = Json::parse(file);
-    const auto number = [&](const char* name)
-    { return record.at(name).is_null() ? std::nan("") : record.at(name).get<double>(); };
-    sound.own = { number("friction_ratio"), number("compliance_ratio") };
-  }
-  catch (const Json::exception& error)
-  {
-    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
-  }
+  const std::vector<double> ratios =
+      readJsonNumbers(directory + "/" + COMPARISON_FILE, { "friction_ratio", "compliance_ratio" });
+  sound.own = { ratios[0], ratios[1] };
   const std::string baseline = directory + "/" + BASELINE_FILE;
   if (std::filesystem::exists(baseline))
   {
@@ -256,19 +245,12 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                       { "largest_load", comparison.largestLoad() } } },
                   { "current",
                     { { "measured_rms", comparison.currentRms() }, { "residual_rms", comparison.residualRms() } } },
-                  { "friction_ratio", numberOrNull(comparison.friction().ratio()) },
-                  { "compliance_ratio", numberOrNull(comparison.torsion().compliance()) },
+                  { "friction_ratio", comparison.friction().ratio() },
+                  { "compliance_ratio", comparison.torsion().compliance() },
                   { "line_orders", orders },
                   { "highest_order", record.verdict.highest_order },
                   { "windows_assessed", comparison.assessedWindows() },
                   { "health", healthJson(comparison) } };
-  const std::string path = directory + "/" + COMPARISON_FILE;
-  std::ofstream file(path);
-  file << all.dump(2) << '\n';
-  file.close();
-  if (!file)
-  {
-    throw InputError(path + " cannot be written");
-  }
+  writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
 }
 }  // namespace hjt

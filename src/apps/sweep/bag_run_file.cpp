@@ -9,7 +9,7 @@
 #include <std_msgs/String.h>
 
 #include "apps/common/run_summary.hpp"
-#include "apps/common/validators.hpp"
+#include "apps/common/configuration.hpp"
 
 #include "base/whole_file.hpp"
 

@@ -13,6 +13,7 @@
 #include "apps/common/text_table.hpp"
 #include "apps/sweep/run_file.hpp"
 #include "apps/sweep/sweep.hpp"
+#include "surface/surface_cache.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -92,19 +93,15 @@ void printExpectation(const Plan& plan, const SweepArguments& arguments)
 }
 }  // namespace
 
-void addSweepOptions(CLI::App& command, SweepArguments& arguments)
+void addSweepOptions(Command& command, SweepArguments& arguments)
 {
-  command.add_option("plan", arguments.plan, "what to run and record (docs/datasets.md)")
-      ->required()
-      ->type_name("PLAN.yaml");
-  command.add_option("--out", arguments.out, "directory of runs and index; runs that stand there finished are kept")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--jobs", arguments.jobs, "runs at the same time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 4096));
-  command.add_flag("--dry-run", arguments.dry_run, "check every run, tell time and size to expect, run nothing");
-  command.add_flag("--list", arguments.list, "print the index with every run of the plan, run nothing");
+  command.add("plan", arguments.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
+  command.add("--out", arguments.out, "directory of runs and index; runs that stand there finished are kept")
+      .required()
+      .type("DIR");
+  command.add("--jobs", arguments.jobs, "runs at the same time").range(1, 4096);
+  command.flag("--dry-run", arguments.dry_run, "check every run, tell time and size to expect, run nothing");
+  command.flag("--list", arguments.list, "print the index with every run of the plan, run nothing");
   addConfigurationOptions(command, arguments);
 }
 

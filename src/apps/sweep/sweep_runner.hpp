@@ -22,7 +22,7 @@ struct SweepArguments : CommonOptions
 };
 
 /// Options and arguments that every way of running a sweep takes.
-void addSweepOptions(CLI::App& command, SweepArguments& arguments);
+void addSweepOptions(Command& command, SweepArguments& arguments);
 
 /// Works off the plan, or its part. @returns the process' exit code. @throws InputError.
 int sweep(const SweepArguments& arguments);

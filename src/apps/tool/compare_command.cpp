@@ -8,21 +8,17 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
-#include "apps/common/text_table.hpp"
+#include "apps/common/report.hpp"
 #include "apps/compare/comparison_files.hpp"
 #include "apps/compare/recording_comparison.hpp"
 #include "apps/compare/verdict.hpp"
-#include "apps/tool/commands.hpp"
 
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -44,6 +40,16 @@ struct CompareOptions : MotionOptions
 {
   std::string report;
   std::string reference;
+};
+
+const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
+  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
+  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
+  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
+  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
+  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
+  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
+  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
 };
 
 void prepareDirectory(const CompareOptions& options)
@@ -103,10 +109,10 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
               << finding.text << '\n';
   }
   std::cout << '\n';
-  printValues({ { "rows", std::to_string(comparison.reach().rows), "" },
-                { "duration", shortNumber(record.found.duration), "s" },
-                { "current, rms", shortNumber(comparison.currentRms()), "A" },
-                { "measured less predicted current, rms", shortNumber(comparison.residualRms()), "A" } });
+  printReport(false, { { "", "rows", comparison.reach().rows },
+                       { "", "duration", record.found.duration, "s" },
+                       { "", "current, rms", comparison.currentRms(), "A" },
+                       { "", "measured less predicted current, rms", comparison.residualRms(), "A" } });
 }
 
 int compare(const CompareOptions& options)
@@ -118,17 +124,9 @@ int compare(const CompareOptions& options)
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
   const std::string twin_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
 
-  CsvWriter windows((fs::path(options.report) / "windows.csv").string(),
-                    { "time", "speed", "load", "level", "cause", "confidence", "largest_score" });
-  RecordingComparison comparison(
-      parameters, sound.baseline,
-      [&](const JudgedWindow& window)
-      {
-        const Assessment& a = window.assessment;
-        windows.writeRow({ 1e-9 * static_cast<double>(window.indicators.stamp), window.indicators.point.speed,
-                           window.indicators.point.load, static_cast<double>(a.level), static_cast<double>(a.cause),
-                           a.confidence, a.largest_score });
-      });
+  TableFile<JudgedWindow> windows((fs::path(options.report) / "windows.csv").string(), WINDOW_COLUMNS);
+  RecordingComparison comparison(parameters, sound.baseline,
+                                 [&](const JudgedWindow& window) { windows.write(window); });
   const MotionFindings found =
       visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.take(sample); });
   windows.close();
@@ -159,22 +157,19 @@ int compare(const CompareOptions& options)
   }
   return EXIT_DONE;
 }
-}  // namespace
 
-void addCompareCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, CompareOptions& options)
 {
-  const auto options = std::make_shared<CompareOptions>();
-  auto* command =
-      app.add_subcommand("compare", "a recorded joint beside the twin: verdict, figures and data as a page");
-  addMotionOptions(*command, *options);
-  command->add_option("--report", options->report, "directory of the page, its figures and data")
-      ->required()
-      ->type_name("DIR");
+  addMotionOptions(command, options);
+  command.add("--report", options.report, "directory of the page, its figures and data").required().type("DIR");
   command
-      ->add_option("--reference", options->reference,
-                   "the report of this joint when it was sound: what it is held against, beside the twin")
-      ->type_name("DIR")
-      ->check(CLI::ExistingDirectory);
-  command->callback([options, &exit_code] { exit_code = compare(*options); });
+      .add("--reference", options.reference,
+           "the report of this joint when it was sound: what it is held against, beside the twin")
+      .type("DIR")
+      .existingDirectory();
 }
+
+const Subcommand COMPARE{ Subject::RECORDING, "compare",
+                          "a recorded joint beside the twin: verdict, figures and data as a page", declare, compare };
+}  // namespace
 }  // namespace hjt

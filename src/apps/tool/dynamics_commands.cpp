@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "studies/quasi_static_check.hpp"
@@ -23,8 +19,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 const std::map<std::string, RingMethod> METHODS{ { "rk4", RingMethod::RUNGE_KUTTA4 },
                                                  { "dop853", RingMethod::DORMAND_PRINCE8 },
                                                  { "implicit_euler", RingMethod::IMPLICIT_EULER },
@@ -47,59 +41,55 @@ void requireEstimate(const std::string& method, double tolerance)
   }
 }
 
-void addMethodOptions(CLI::App& command, std::string& method, double& step, double& tolerance)
+void declareMethod(Command& command, std::string& method, double& step, double& tolerance)
 {
+  std::vector<std::string> names;
+  for (const auto& [name, known] : METHODS)
+  {
+    names.push_back(name);
+  }
   command
-      .add_option("--method", method,
-                  "rk4, dop853: explicit of order 4 (Boost.odeint), 8; implicit_euler, tr_bdf2, esdirk4: implicit of "
-                  "order 1, 2, 4")
-      ->check(CLI::IsMember(METHODS))
-      ->capture_default_str();
-  command.add_option("--step", step, "of time [s]")->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str();
+      .add("--method", method,
+           "rk4, dop853: explicit of order 4 (Boost.odeint), 8; implicit_euler, tr_bdf2, esdirk4: implicit of order 1, "
+           "2, 4")
+      .choice(names);
+  command.add("--step", step, "of time [s]").positive();
   command
-      .add_option("--tolerance", tolerance,
-                  "error of a tooth's position by one step [m]: the steps are chosen by it, --step is the longest")
-      ->check(FINITE)
-      ->check(CLI::PositiveNumber);
+      .add("--tolerance", tolerance,
+           "error of a tooth's position by one step [m]: the steps are chosen by it, --step is the longest")
+      .positive();
 }
 
 struct TransientOptions : CommonOptions
 {
+  TransientOptions()
+  {
+    setup.step = 5e-6;
+    setup.duration = 0.05;
+    setup.growth_time = 5e-3;
+    setup.window_start = 0.03;
+    setup.sample_period = 5e-5;
+  }
+
   std::string method{ "esdirk4" };
-  TransientSetup setup{ RingMethod::ESDIRK4, 5e-6, 0.05, 5e-3, 0.03, 5e-5 };
+  TransientSetup setup;
   std::string csv;
 };
 
-const std::vector<std::string> TRANSIENT_COLUMNS{ "time",           "force_max",         "force_lowest",
-                                                  "force_highest",  "radius_major_axis", "stored_energy",
-                                                  "kinetic_energy", "supplied_energy",   "dissipated_energy" };
+const std::vector<Column<TransientRow>> TRANSIENT_COLUMNS{ { "time", &TransientRow::time },
+                                                           { "force_max", &TransientRow::force_max },
+                                                           { "force_lowest", &TransientRow::force_lowest },
+                                                           { "force_highest", &TransientRow::force_highest },
+                                                           { "radius_major_axis", &TransientRow::radius_major_axis },
+                                                           { "stored_energy", &TransientRow::stored },
+                                                           { "kinetic_energy", &TransientRow::kinetic },
+                                                           { "supplied_energy", &TransientRow::supplied },
+                                                           { "dissipated_energy", &TransientRow::dissipated } };
 
-std::vector<double> valuesOf(const TransientRow& row)
-{
-  return { row.time,   row.force_max, row.force_lowest, row.force_highest, row.radius_major_axis,
-           row.stored, row.kinetic,   row.supplied,     row.dissipated };
-}
-
-/// Rows as one array per column.
-Json columnsOf(const std::vector<TransientRow>& rows)
-{
-  Json json;
-  for (std::size_t column = 0; column < TRANSIENT_COLUMNS.size(); ++column)
-  {
-    Json values = Json::array();
-    for (const TransientRow& row : rows)
-    {
-      values.push_back(valuesOf(row)[column]);
-    }
-    json[TRANSIENT_COLUMNS[column]] = values;
-  }
-  return json;
-}
-
-int transient(TransientOptions options)
+int transient(const TransientOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  TransientSetup& setup = options.setup;
+  TransientSetup setup = options.setup;
   setup.method = METHODS.at(options.method);
   requireEstimate(options.method, setup.tolerance);
   if (setup.window_start >= setup.duration)
@@ -111,94 +101,105 @@ int transient(TransientOptions options)
   {
     requireWritable(options.csv, options.force);
   }
-  TransientResult result;
-  {
-    Progress progress("inserting");
-    result = analyseTransient(parameters, setup, [&](double done) { progress.update(done); });
-  }
+  const TransientResult result = analyseTransient(parameters, setup, showProgress("inserting"));
   if (!result.finished)
   {
     return stopped(result.stopped_at);
   }
   if (!options.csv.empty())
   {
-    CsvWriter csv(options.csv, TRANSIENT_COLUMNS);
-    for (const TransientRow& row : result.rows)
-    {
-      csv.writeRow(valuesOf(row));
-    }
-    csv.close();
+    writeTable(options.csv, TRANSIENT_COLUMNS, result.rows);
   }
   const TransientRow& end = result.rows.back();
   const double numerical = end.supplied - end.dissipated - end.stored - end.kinetic;
-  if (options.json)
-  {
-    const Json json{ { "method", options.method },
-                     { "step", setup.step },
-                     { "tolerance", setup.tolerance },
-                     { "window_start", setup.window_start },
-                     { "force_max_lowest", result.window_lowest },
-                     { "force_max_highest", result.window_highest },
-                     { "force_max_mean", result.window_mean },
-                     { "energy_supplied", end.supplied },
-                     { "energy_stored", end.stored },
-                     { "energy_kinetic", end.kinetic },
-                     { "energy_dissipated", end.dissipated },
-                     { "energy_lost", numerical },
-                     { "steps", result.counts.steps },
-                     { "force_evaluations", result.counts.force_evaluations },
-                     { "factorisations", result.counts.factorisations },
-                     { "halvings", result.counts.halvings },
-                     { "rejections", result.counts.rejections },
-                     { "solve_time", result.solve_time },
-                     { "series", columnsOf(result.rows) },
-                     { "tooth_x", result.tooth_x },
-                     { "tooth_y", result.tooth_y } };
-    std::cout << json.dump() << '\n';
-    return EXIT_DONE;
-  }
-  printValues({ { "largest wave generator force, lowest", shortNumber(result.window_lowest), "N" },
-                { "largest wave generator force, highest", shortNumber(result.window_highest), "N" },
-                { "largest wave generator force, mean", shortNumber(result.window_mean), "N" },
-                { "energy supplied", shortNumber(end.supplied), "J" },
-                { "energy stored", shortNumber(end.stored), "J" },
-                { "energy kinetic", shortNumber(end.kinetic), "J" },
-                { "energy dissipated by dashpots", shortNumber(end.dissipated), "J" },
-                { "energy lost by method and contact law", shortNumber(numerical), "J" },
-                { "steps", std::to_string(result.counts.steps), "" },
-                { "force evaluations", std::to_string(result.counts.force_evaluations), "" },
-                { "factorisations", std::to_string(result.counts.factorisations), "" },
-                { "steps halved", std::to_string(result.counts.halvings), "" },
-                { "steps rejected", std::to_string(result.counts.rejections), "" },
-                { "solve time", shortNumber(result.solve_time), "s" } });
+  printReport(options.json, { { "method", "", options.method },
+                              { "step", "", setup.step },
+                              { "tolerance", "", setup.tolerance },
+                              { "window_start", "", setup.window_start },
+                              { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
+                              { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
+                              { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
+                              { "energy_supplied", "energy supplied", end.supplied, "J" },
+                              { "energy_stored", "energy stored", end.stored, "J" },
+                              { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
+                              { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
+                              { "energy_lost", "energy lost by method and contact law", numerical, "J" },
+                              { "steps", "steps", result.counts.steps },
+                              { "force_evaluations", "force evaluations", result.counts.force_evaluations },
+                              { "factorisations", "factorisations", result.counts.factorisations },
+                              { "halvings", "steps halved", result.counts.halvings },
+                              { "rejections", "steps rejected", result.counts.rejections },
+                              { "solve_time", "solve time", result.solve_time, "s" },
+                              { "series", "", Table(TRANSIENT_COLUMNS, result.rows).columns() },
+                              { "tooth_x", "", result.tooth_x },
+                              { "tooth_y", "", result.tooth_y } });
   return EXIT_DONE;
 }
 
-struct DynamicsOptions : CommonOptions
+void declareTransient(Command& command, TransientOptions& options)
 {
-  std::string method{ "tr_bdf2" };
-  QuasiStaticSetup setup{ RingMethod::TR_BDF2, 317.0, 20.0, 2e-6, 5e-3, 5e-3, 37e-6 };
-};
-
-Json errorJson(const DynamicError& error)
-{
-  return { { "size", error.size },
-           { "error_rms", error.rms },
-           { "error_max", error.max },
-           { "relative_rms", error.rms / error.size },
-           { "relative_max", error.max / error.size } };
+  TransientSetup& setup = options.setup;
+  declareMethod(command, options.method, setup.step, setup.tolerance);
+  command.add("--duration", setup.duration, "simulated time [s]").positive();
+  command.add("--growth", setup.growth_time, "time in which the amplitude grows [s]").positive();
+  command.add("--window", setup.window_start, "from here to the end the largest force is summed up [s]").positive();
+  command.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
+  command.add("--csv", options.csv, "write the series").type("FILE");
+  addCommonOptions(command, options);
 }
 
-int dynamics(DynamicsOptions options)
+const Subcommand TRANSIENT{ Subject::STUDY, "transient",
+                            "insertion of the wave generator as motion, every tooth a mass: the amplitude grows at "
+                            "constant speed, then stays; circular spline left out",
+                            declareTransient, transient };
+
+struct DynamicsOptions : CommonOptions
+{
+  DynamicsOptions()
+  {
+    setup.speed = 317.0;
+    setup.load = 20.0;
+    setup.step = 2e-6;
+    setup.settle_time = 5e-3;
+    setup.duration = 5e-3;
+    setup.compare_period = 37e-6;
+  }
+
+  std::string method{ "tr_bdf2" };
+  QuasiStaticSetup setup;
+};
+
+const std::vector<Column<QuasiStaticRow>> DYNAMICS_COLUMNS{
+  { "time", &QuasiStaticRow::time },
+  { "torsion", &QuasiStaticRow::torsion_dynamic },
+  { "torsion_quasi_static", &QuasiStaticRow::torsion_quasi_static },
+  { "wave_generator_torque", &QuasiStaticRow::wave_generator_torque_dynamic },
+  { "wave_generator_torque_quasi_static", &QuasiStaticRow::wave_generator_torque_quasi_static },
+  { "contact_error_rms", &QuasiStaticRow::contact_error_rms },
+  { "mesh_error_rms", &QuasiStaticRow::mesh_error_rms }
+};
+
+struct ComparedQuantity
+{
+  std::string name;
+  DynamicError QuasiStaticResult::*error;
+  const char* unit;
+};
+const std::array<ComparedQuantity, 6> COMPARED{ { { "contact_force", &QuasiStaticResult::contact_force, "N" },
+                                                  { "mesh_force", &QuasiStaticResult::mesh_force, "N" },
+                                                  { "position", &QuasiStaticResult::position, "m" },
+                                                  { "wave_generator_torque", &QuasiStaticResult::wave_generator_torque,
+                                                    "N.m" },
+                                                  { "output_torque", &QuasiStaticResult::output_torque, "N.m" },
+                                                  { "torsion", &QuasiStaticResult::torsion, "rad" } } };
+
+int dynamics(const DynamicsOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  options.setup.method = METHODS.at(options.method);
-  requireEstimate(options.method, options.setup.tolerance);
-  QuasiStaticResult result;
-  {
-    Progress progress("turning");
-    result = checkQuasiStatic(parameters, options.setup, [&](double done) { progress.update(done); });
-  }
+  QuasiStaticSetup setup = options.setup;
+  setup.method = METHODS.at(options.method);
+  requireEstimate(options.method, setup.tolerance);
+  const QuasiStaticResult result = checkQuasiStatic(parameters, setup, showProgress("turning"));
   if (result.outcome == QuasiStaticOutcome::NO_EQUILIBRIUM)
   {
     std::cerr << "joint_twin: no equilibrium found to compare with at " << result.stopped_at
@@ -209,95 +210,45 @@ int dynamics(DynamicsOptions options)
   {
     return stopped(result.stopped_at);
   }
-  const std::vector<std::pair<std::string, const DynamicError*>> errors{
-    { "contact_force", &result.contact_force }, { "mesh_force", &result.mesh_force },
-    { "position", &result.position },           { "wave_generator_torque", &result.wave_generator_torque },
-    { "output_torque", &result.output_torque }, { "torsion", &result.torsion }
-  };
-  if (options.json)
+  std::vector<ReportLine> lines{ { "speed", "", setup.speed },
+                                 { "load", "", setup.load },
+                                 { "mass", "", parameters.ring.mass } };
+  for (const auto& [name, member, unit] : COMPARED)
   {
-    Json json{ { "speed", options.setup.speed }, { "load", options.setup.load }, { "mass", parameters.ring.mass } };
-    for (const auto& [name, error] : errors)
-    {
-      json[name] = errorJson(*error);
-    }
-    json["force_evaluations"] = result.force_evaluations;
-    json["solve_time"] = result.solve_time;
-    Json series{ { "time", Json::array() } };
-    for (const QuasiStaticRow& row : result.rows)
-    {
-      series["time"].push_back(row.time);
-      series["torsion"].push_back(row.torsion_dynamic);
-      series["torsion_quasi_static"].push_back(row.torsion_quasi_static);
-      series["wave_generator_torque"].push_back(row.wave_generator_torque_dynamic);
-      series["wave_generator_torque_quasi_static"].push_back(row.wave_generator_torque_quasi_static);
-      series["contact_error_rms"].push_back(row.contact_error_rms);
-      series["mesh_error_rms"].push_back(row.mesh_error_rms);
-    }
-    json["series"] = series;
-    json["teeth"] = { { "time", result.last.time },
-                      { "contact_force", result.last.contact_dynamic },
-                      { "contact_force_quasi_static", result.last.contact_quasi_static },
-                      { "mesh_force", result.last.mesh_dynamic },
-                      { "mesh_force_quasi_static", result.last.mesh_quasi_static } };
-    std::cout << json.dump() << '\n';
-    return EXIT_DONE;
+    const DynamicError& error = result.*member;
+    lines.push_back({ name + ".size", name + ", quasi-static rms", error.size, unit });
+    lines.push_back({ name + ".error_rms", name + ", error rms", error.rms, unit });
+    lines.push_back({ name + ".error_max", name + ", error max", error.max, unit });
+    lines.push_back({ name + ".relative_rms", "", error.rms / error.size });
+    lines.push_back({ name + ".relative_max", "", error.max / error.size });
   }
-  const char* units[] = { "N", "N", "m", "N.m", "N.m", "rad" };
-  std::vector<NamedValue> lines;
-  for (std::size_t i = 0; i < errors.size(); ++i)
-  {
-    const DynamicError& error = *errors[i].second;
-    lines.push_back({ errors[i].first + ", quasi-static rms", shortNumber(error.size), units[i] });
-    lines.push_back({ errors[i].first + ", error rms", shortNumber(error.rms), units[i] });
-    lines.push_back({ errors[i].first + ", error max", shortNumber(error.max), units[i] });
-  }
-  lines.push_back({ "solve time", shortNumber(result.solve_time), "s" });
-  printValues(lines);
+  lines.insert(lines.end(), { { "force_evaluations", "", result.force_evaluations },
+                              { "solve_time", "solve time", result.solve_time, "s" },
+                              { "series", "", Table(DYNAMICS_COLUMNS, result.rows).columns() },
+                              { "teeth.time", "", result.last.time },
+                              { "teeth.contact_force", "", result.last.contact_dynamic },
+                              { "teeth.contact_force_quasi_static", "", result.last.contact_quasi_static },
+                              { "teeth.mesh_force", "", result.last.mesh_dynamic },
+                              { "teeth.mesh_force_quasi_static", "", result.last.mesh_quasi_static } });
+  printReport(options.json, lines);
   return EXIT_DONE;
 }
+
+void declareDynamics(Command& command, DynamicsOptions& options)
+{
+  QuasiStaticSetup& setup = options.setup;
+  command.add("--speed", setup.speed, "of the wave generator [rad/s]");
+  command.add("--load", setup.load, "on the circular spline [N.m]");
+  declareMethod(command, options.method, setup.step, setup.tolerance);
+  command.add("--settle", setup.settle_time, "time before the comparison starts [s]").atLeast(0.0);
+  command.add("--duration", setup.duration, "time over which is compared [s]").positive();
+  command.add("--every", setup.compare_period, "time between two comparisons [s]").positive();
+  addCommonOptions(command, options);
+}
+
+const Subcommand DYNAMICS{ Subject::STUDY, "dynamics",
+                           "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
+                           "constant speed, constant load, dry friction left out",
+                           declareDynamics, dynamics };
 }  // namespace
-
-void addTransientCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<TransientOptions>();
-  auto* command = app.add_subcommand("transient",
-                                     "insertion of the wave generator as motion, every tooth a mass: the amplitude "
-                                     "grows at constant speed, then stays; circular spline left out");
-  addMethodOptions(*command, options->method, options->setup.step, options->setup.tolerance);
-  const auto time = [&](const char* name, double& value, const char* meaning)
-  { command->add_option(name, value, meaning)->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str(); };
-  time("--duration", options->setup.duration, "simulated time [s]");
-  time("--growth", options->setup.growth_time, "time in which the amplitude grows [s]");
-  time("--window", options->setup.window_start, "from here to the end the largest force is summed up [s]");
-  time("--sample", options->setup.sample_period, "time between two rows of the series [s]");
-  command->add_option("--csv", options->csv, "write the series")->type_name("FILE");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = transient(*options); });
-}
-
-void addDynamicsCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<DynamicsOptions>();
-  auto* command = app.add_subcommand("dynamics",
-                                     "turning with a mass at every tooth, held against the ring in equilibrium; wave "
-                                     "generator at constant speed, constant load, dry friction left out");
-  command->add_option("--speed", options->setup.speed, "of the wave generator [rad/s]")
-      ->check(FINITE)
-      ->capture_default_str();
-  command->add_option("--load", options->setup.load, "on the circular spline [N.m]")
-      ->check(FINITE)
-      ->capture_default_str();
-  addMethodOptions(*command, options->method, options->setup.step, options->setup.tolerance);
-  const auto time = [&](const char* name, double& value, const char* meaning)
-  { command->add_option(name, value, meaning)->check(FINITE)->check(CLI::PositiveNumber)->capture_default_str(); };
-  command->add_option("--settle", options->setup.settle_time, "time before the comparison starts [s]")
-      ->check(FINITE)
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  time("--duration", options->setup.duration, "time over which is compared [s]");
-  time("--every", options->setup.compare_period, "time between two comparisons [s]");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = dynamics(*options); });
-}
 }  // namespace hjt

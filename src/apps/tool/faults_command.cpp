@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
-#include <memory>
-
-#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
 
 namespace hjt
 {
@@ -15,36 +16,31 @@ namespace
 int faults(const CommonOptions& options)
 {
   const Parameters parameters = loadParameters(options);
+  const std::vector<Column<FaultDescription>> columns{
+    { "kind", [](const FaultDescription& kind) { return kind.name; } },
+    { "severity_1", [](const FaultDescription& kind) { return kind.severity; } },
+    { "place", [](const FaultDescription& kind) { return placeName(kind.place); } },
+    { "first_place", [](const FaultDescription& kind) { return firstPlace(kind.kind); } },
+    { "last_place", [&](const FaultDescription& kind) { return lastPlace(kind.kind, parameters); } },
+    { "shows", [&](const FaultDescription& kind) { return shownFirst(kind.kind, parameters); } }
+  };
   if (options.json)
   {
-    nlohmann::ordered_json kinds = nlohmann::ordered_json::array();
-    for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
-    {
-      kinds.push_back({ { "kind", kind.name },
-                        { "severity_1", kind.severity },
-                        { "place", placeName(kind.place) },
-                        { "first_place", firstPlace(kind.kind) },
-                        { "last_place", lastPlace(kind.kind, parameters) },
-                        { "shows", shownFirst(kind.kind, parameters) } });
-    }
-    std::cout << kinds.dump(2) << '\n';
+    std::cout << Table(columns, FAULT_DESCRIPTIONS).rows().dump() << '\n';
     return EXIT_DONE;
   }
-  std::cout << "| kind | severity 1 | place | shows first in |\n|---|---|---|---|\n";
   for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
   {
-    std::cout << "| `" << kind.name << "` | " << kind.severity << " | " << placeText(kind.kind, parameters) << " | "
-              << shownFirst(kind.kind, parameters) << " |\n";
+    std::cout << kind.name << '\n';
+    printWrapped("severity 1: " + std::string(kind.severity), 2);
+    printWrapped("place:      " + placeText(kind.kind, parameters), 2);
+    printWrapped("shows in:   " + shownFirst(kind.kind, parameters), 2);
   }
   return EXIT_DONE;
 }
-}  // namespace
 
-void addFaultsCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<CommonOptions>();
-  auto* command = app.add_subcommand("faults", "list the kinds of faults: what severity 1 is, places, where they show");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = faults(*options); });
-}
+const Subcommand FAULTS{ Subject::JOINT, "faults",
+                         "list the kinds of faults: what severity 1 is, places, where they show", addCommonOptions,
+                         faults };
+}  // namespace
 }  // namespace hjt

@@ -2,23 +2,19 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <iostream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/report.hpp"
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
-#include "apps/tool/commands.hpp"
 
 #include "tracking/companion.hpp"
 
@@ -36,55 +32,29 @@ struct FollowOptions : MotionOptions
   std::string out;
 };
 
-/// Columns as the fields of Comparison.msg.
-const std::vector<std::string>& columns()
-{
-  static const std::vector<std::string> NAMES{ "time",
-                                               "position_measured",
-                                               "position_predicted",
-                                               "position_residual",
-                                               "position_band",
-                                               "velocity_measured",
-                                               "velocity_predicted",
-                                               "velocity_residual",
-                                               "current_measured",
-                                               "current_predicted",
-                                               "current_residual",
-                                               "current_band",
-                                               "residual_torque",
-                                               "joint_torque",
-                                               "friction_torque",
-                                               "load_torque",
-                                               "load_told",
-                                               "sticking",
-                                               "after_gap",
-                                               "outside_band" };
-  return NAMES;
-}
-
-std::vector<double> values(const Comparison& now)
-{
-  return { now.time,
-           now.position.measured,
-           now.position.predicted,
-           now.position.residual(),
-           now.position.band,
-           now.velocity.measured,
-           now.velocity.predicted,
-           now.velocity.residual(),
-           now.current.measured,
-           now.current.predicted,
-           now.current.residual(),
-           now.current.band,
-           now.residual_torque,
-           now.joint_torque,
-           now.friction_torque,
-           now.load_torque,
-           now.load_told ? 1.0 : 0.0,
-           now.sticking ? 1.0 : 0.0,
-           now.after_gap ? 1.0 : 0.0,
-           now.isOutside() ? 1.0 : 0.0 };
-}
+/// As the fields of Comparison.msg.
+const std::vector<Column<Comparison>> COLUMNS{
+  { "time", &Comparison::time },
+  { "position_measured", [](const Comparison& now) { return now.position.measured; } },
+  { "position_predicted", [](const Comparison& now) { return now.position.predicted; } },
+  { "position_residual", [](const Comparison& now) { return now.position.residual(); } },
+  { "position_band", [](const Comparison& now) { return now.position.band; } },
+  { "velocity_measured", [](const Comparison& now) { return now.velocity.measured; } },
+  { "velocity_predicted", [](const Comparison& now) { return now.velocity.predicted; } },
+  { "velocity_residual", [](const Comparison& now) { return now.velocity.residual(); } },
+  { "current_measured", [](const Comparison& now) { return now.current.measured; } },
+  { "current_predicted", [](const Comparison& now) { return now.current.predicted; } },
+  { "current_residual", [](const Comparison& now) { return now.current.residual(); } },
+  { "current_band", [](const Comparison& now) { return now.current.band; } },
+  { "residual_torque", &Comparison::residual_torque },
+  { "joint_torque", &Comparison::joint_torque },
+  { "friction_torque", &Comparison::friction_torque },
+  { "load_torque", &Comparison::load_torque },
+  { "load_told", &Comparison::load_told },
+  { "sticking", &Comparison::sticking },
+  { "after_gap", &Comparison::after_gap },
+  { "outside_band", &Comparison::isOutside }
+};
 
 /// Root mean square of what is added.
 class Rms
@@ -150,56 +120,38 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
   return summary;
 }
 
-void print(const FollowSummary& summary)
+void print(const FollowSummary& summary, bool json)
 {
-  printValues(
-      { { "rows", std::to_string(summary.count.rows), "" },
-        { "duration", shortNumber(summary.count.duration), "s" },
-        { "messages unreadable", std::to_string(summary.count.corrupt), "" },
-        { "rows refused: repeated, out of order, beyond what can be", std::to_string(summary.counters.refused), "" },
-        { "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
-          std::to_string(summary.timing.missing), "" },
-        { "gaps that cut the recording", std::to_string(summary.counters.gaps), "" },
-        { "reception less stamp", shortNumber(summary.timing.offset), "s" },
-        { "jitter of the reception, 95 %", shortNumber(summary.timing.jitter), "s" },
-        { "measured after predicted", summary.lag ? shortNumber(*summary.lag) : "not told", summary.lag ? "s" : "" },
-        { "rows without a told load", std::to_string(summary.counters.without_load), "" },
-        { "measured less predicted current, rms", shortNumber(summary.current.value()), "A" },
-        { "measured less predicted velocity, rms", shortNumber(summary.velocity.value()), "rad/s" },
-        { "measured less predicted position, rms", shortNumber(summary.position.value()), "rad" },
-        { "rows outside the band of the current", std::to_string(summary.counters.outside), "" } });
-}
-
-void printJson(const FollowSummary& summary)
-{
-  std::cout << nlohmann::ordered_json{
-    { "rows", summary.count.rows },
-    { "unreadable", summary.count.corrupt },
-    { "refused", summary.counters.refused },
-    { "missing", summary.timing.missing },
-    { "period", summary.timing.period },
-    { "gaps", summary.counters.gaps },
-    { "reception_offset", summary.timing.offset },
-    { "reception_jitter", summary.timing.jitter },
-    { "lag", summary.lag ? nlohmann::ordered_json(*summary.lag) : nlohmann::ordered_json() },
-    { "without_load", summary.counters.without_load },
-    { "duration", summary.count.duration },
-    { "current_residual_rms", summary.current.value() },
-    { "velocity_residual_rms", summary.velocity.value() },
-    { "position_residual_rms", summary.position.value() },
-    { "outside", summary.counters.outside },
-    { "solver_failures", summary.counters.solver_failures }
-  }.dump(2) << '\n';
+  printReport(
+      json,
+      { { "rows", "rows", summary.count.rows },
+        { "duration", "duration", summary.count.duration, "s" },
+        { "unreadable", "messages unreadable", summary.count.corrupt },
+        { "refused", "rows refused: repeated, out of order, beyond what can be", summary.counters.refused },
+        { "missing", "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
+          summary.timing.missing },
+        { "period", "", summary.timing.period },
+        { "gaps", "gaps that cut the recording", summary.counters.gaps },
+        { "reception_offset", "reception less stamp", summary.timing.offset, "s" },
+        { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
+        { "lag", "", summary.lag },
+        { "", "measured after predicted", summary.lag ? Json(*summary.lag) : "not told", summary.lag ? "s" : "" },
+        { "without_load", "rows without a told load", summary.counters.without_load },
+        { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
+        { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
+        { "position_residual_rms", "measured less predicted position, rms", summary.position.value(), "rad" },
+        { "outside", "rows outside the band of the current", summary.counters.outside },
+        { "solver_failures", "", summary.counters.solver_failures } });
 }
 
 int follow(const FollowOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  std::optional<CsvWriter> csv;
+  std::optional<TableFile<Comparison>> csv;
   if (!options.out.empty())
   {
     requireWritable(options.out, options.force, options.recording);
-    csv.emplace(options.out, columns());
+    csv.emplace(options.out, COLUMNS);
   }
   Companion companion(parameters, MODES.at(options.mode), surfaceSource());
   const FollowSummary summary = compare(options, companion,
@@ -207,29 +159,28 @@ int follow(const FollowOptions& options)
                                         {
                                           if (csv)
                                           {
-                                            csv->writeRow(values(now));
+                                            csv->write(now);
                                           }
                                         });
   if (csv)
   {
     csv->close();
   }
-  options.json ? printJson(summary) : print(summary);
+  print(summary, options.json);
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }
-}  // namespace
 
-void addFollowCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, FollowOptions& options)
 {
-  const auto options = std::make_shared<FollowOptions>();
-  auto* command =
-      app.add_subcommand("follow", "a healthy joint beside a recorded one: measured and predicted motion and current");
-  addMotionOptions(*command, *options);
-  options->mode = "motion";
-  command->add_option("--mode", options->mode, "what drives the twin: the recorded current, motion, or both")
-      ->check(CLI::IsMember(MODES))
-      ->capture_default_str();
-  command->add_option("--out", options->out, "every row, measured beside predicted")->type_name("FILE.csv");
-  command->callback([options, &exit_code] { exit_code = follow(*options); });
+  addMotionOptions(command, options);
+  options.mode = "motion";
+  command.add("--mode", options.mode, "what drives the twin: the recorded current, motion, or both")
+      .choice({ "motion", "observer", "torque" });
+  command.add("--out", options.out, "every row, measured beside predicted").type("FILE.csv");
 }
+
+const Subcommand FOLLOW{ Subject::RECORDING, "follow",
+                         "a healthy joint beside a recorded one: measured and predicted motion and current", declare,
+                         follow };
+}  // namespace
 }  // namespace hjt

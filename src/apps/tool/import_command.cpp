@@ -4,21 +4,17 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
-#include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
+#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/report.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
 
 #include <sensor_msgs/JointState.h>
 
@@ -32,9 +28,6 @@ namespace hjt
 namespace
 {
 constexpr int JOINTS = 6;
-/// In the order of the recording; as the UR driver names them.
-const std::array<std::string, JOINTS> JOINT_NAMES{ "shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
-                                                   "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint" };
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
 /// Torque at the joint per motor current, of the size 3 joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
@@ -42,7 +35,7 @@ constexpr double DEFAULT_GAIN = 10.7;
 struct ImportOptions : CommonOptions
 {
   std::string csv;
-  int joint{};
+  std::string joint;
   std::string out;
   double gain{ DEFAULT_GAIN };
   std::optional<double> ratio;
@@ -85,18 +78,21 @@ NumberTable<COLUMNS>::Names columnNames()
 class RowWriter
 {
 public:
-  RowWriter(const ImportOptions& options, double ratio, BagWriter& bag)
+  RowWriter(const ImportOptions& options, const UrJoint& joint, double ratio, BagWriter& bag)
     : bag_(bag)
-    , joint_(options.joint)
+    , joint_(joint.number)
     , torque_per_current_(options.gain / ratio)
     , start_(static_cast<Stamp>(std::llround(options.start_time * 1e9)))
     , prefix_(options.joint_namespace + "/")
   {
-    telemetry_.name.assign(JOINT_NAMES.begin(), JOINT_NAMES.end());
+    for (int i = 0; i < JOINTS; ++i)
+    {
+      telemetry_.name.push_back(findUrJoint(std::to_string(i))->name);
+    }
     telemetry_.position.resize(JOINTS);
     telemetry_.velocity.resize(JOINTS);
     telemetry_.effort.resize(JOINTS);
-    command_.name = { JOINT_NAMES[static_cast<std::size_t>(joint_)] };
+    command_.name = { joint.name };
     command_.effort.resize(1);
     load_ = command_;
   }
@@ -142,9 +138,10 @@ double countLines(const std::string& path)
 }
 
 /// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
-std::uint64_t importRows(const ImportOptions& options, double ratio, NumberTable<COLUMNS>& table, BagWriter& bag)
+std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
+                         NumberTable<COLUMNS>& table, BagWriter& bag)
 {
-  RowWriter writer(options, ratio, bag);
+  RowWriter writer(options, joint, ratio, bag);
   Progress progress("importing");
   const double lines = countLines(options.csv);
   Row row{};
@@ -181,26 +178,22 @@ std::uint64_t importRows(const ImportOptions& options, double ratio, NumberTable
 int import(const ImportOptions& options)
 {
   const Parameters parameters = loadParameters(options);
+  const UrJoint joint = *findUrJoint(options.joint);
   const double ratio = options.ratio.value_or(nominalRatio(parameters.gear));
   requireWritable(options.out, options.force, options.csv);
   NumberTable<COLUMNS> table(options.csv, columnNames());
   BagWriter bag(options.out);
-  const std::uint64_t rows = importRows(options, ratio, table, bag);
+  const std::uint64_t rows = importRows(options, joint, ratio, table, bag);
   if (rows == 0)
   {
     throw InputError(options.csv + " has no rows; nothing was written");
   }
-  const std::string& joint = JOINT_NAMES[static_cast<std::size_t>(options.joint)];
-  if (options.json)
+  printReport(options.json, { { "output", "", options.out },
+                              { "joint", "joint", joint.name },
+                              { "rows", "rows", rows },
+                              { "messages", "", bag.messages() } });
+  if (!options.json)
   {
-    const nlohmann::ordered_json summary{
-      { "output", options.out }, { "joint", joint }, { "rows", rows }, { "messages", bag.messages() }
-    };
-    std::cout << summary.dump(2) << '\n';
-  }
-  else
-  {
-    printValues({ { "joint", joint, "" }, { "rows", std::to_string(rows), "" } });
     std::cout << "written: " << options.out << '\n';
   }
   if (interruptSignal() != 0)
@@ -210,30 +203,32 @@ int import(const ImportOptions& options)
   }
   return EXIT_DONE;
 }
-}  // namespace
 
-void addImportCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, ImportOptions& options)
 {
-  const auto options = std::make_shared<ImportOptions>();
-  auto* command = app.add_subcommand("import",
-                                     "turn a UR controller's CSV recording (columns timestamp, actual_q_N, "
-                                     "actual_qd_N, actual_current_N, target_moment_N) into a bag for replay");
-  command->add_option("csv", options->csv, "the recording")->required()->type_name("FILE.csv");
-  command->add_option("--joint", options->joint, "0 ... 5: base, shoulder, elbow, wrists")
-      ->required()
-      ->check(CLI::Range(0, JOINTS - 1));
-  command->add_option("--out", options->out, "the bag")->required()->type_name("FILE.bag")->check(BAG);
-  command->add_option("--gain", options->gain, "torque at the joint per current [N.m/A]")
-      ->capture_default_str()
-      ->check(FINITE);
-  command->add_option("--ratio", options->ratio, "of the recorded gear [-]; default: that of the configured one")
-      ->check(FINITE)
-      ->check(CLI::PositiveNumber);
-  command->add_option("--start-time", options->start_time, "ROS time of timestamp 0 [s]")
-      ->check(FINITE)
-      ->check(CLI::Range(0.0, 4e9));
-  addNamespaceOption(*command, options->joint_namespace);
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = import(*options); });
+  command.add("csv", options.csv, "the recording").required().type("FILE.csv");
+  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., or its number from 0")
+      .required()
+      .check(
+          [](const std::string& name)
+          {
+            return findUrJoint(name) ? std::string() :
+                                       "'" + name + "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
+                                                    "0 ... 5";
+          });
+  command.add("--out", options.out, "the bag").required().type("FILE.bag").bag();
+  command.add("--gain", options.gain, "torque at the joint per current [N.m/A]");
+  command.add("--ratio", options.ratio, "of the recorded gear [-]; default: that of the configured one").positive();
+  command.add("--start-time", options.start_time, "ROS time of timestamp 0 [s]").range(0.0, 4e9);
+  addNamespaceOption(command, options.joint_namespace);
+  addCommonOptions(command, options);
 }
+
+const Subcommand IMPORT{
+  Subject::RECORDING, "import",
+  "turn a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, actual_current_N, target_moment_N) "
+  "into a bag for replay",
+  declare, import
+};
+}  // namespace
 }  // namespace hjt

@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <nlohmann/json.hpp>
 
-#include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
+#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
+#include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
 #include "apps/tool/recorded_signals.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
+#include "gear/ratio.hpp"
+#include "ros_io/bag_file.hpp"
 #include "ros_io/conversions.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
@@ -31,8 +30,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 struct IndicatorsOptions : CommonOptions
 {
   std::vector<std::string> recordings;
@@ -41,9 +38,11 @@ struct IndicatorsOptions : CommonOptions
   std::string save_baseline;
   std::string out;
   std::string joint_namespace{ DEFAULT_NAMESPACE };
+  std::string joint;
   bool windows{};  ///< the recordings hold the windows' indicators, not the signals
   std::optional<std::string> states_topic;
   std::optional<std::string> load_topic;
+  std::optional<double> torque_scale;
   SignalSource source;
 };
 
@@ -72,11 +71,6 @@ const char* stateName(AssessmentState state)
   return "waiting";
 }
 
-Json numberOrNull(double value)
-{
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// All windows of a recording of signals.
 std::vector<SignalIndicators> readWindows(const std::string& path, const SignalSource& source,
                                           const Parameters& parameters, std::uint64_t& refused)
@@ -100,14 +94,7 @@ std::vector<SignalIndicators> readWindows(const std::string& path, const SignalS
 std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
 {
   rosbag::Bag bag;
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const std::exception& error)
-  {
-    throw InputError(path + " cannot be read as a bag: " + error.what());
-  }
+  openForReading(bag, path);
   std::vector<SignalIndicators> windows;
   for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
   {
@@ -122,71 +109,81 @@ std::vector<SignalIndicators> readPublishedWindows(const std::string& path, cons
 
 Json toJson(const Assessment& assessment)
 {
-  Json evidence = Json::array();
-  for (std::size_t i = 0; i < assessment.evidence_count; ++i)
-  {
-    const Evidence& item = assessment.evidence[i];
-    evidence.push_back({ { "indicator", indicatorName(item.indicator) },
-                         { "value", numberOrNull(item.value) },
-                         { "expected", numberOrNull(item.expected) },
-                         { "score", numberOrNull(item.score) } });
-  }
+  const std::vector<Column<Evidence>> columns{ { "indicator",
+                                                 [](const Evidence& item) { return indicatorName(item.indicator); } },
+                                               { "value", &Evidence::value },
+                                               { "expected", &Evidence::expected },
+                                               { "score", &Evidence::score } };
+  const std::vector<Evidence> evidence(
+      assessment.evidence.begin(),
+      assessment.evidence.begin() + static_cast<std::ptrdiff_t>(assessment.evidence_count));
   return { { "state", stateName(assessment.state) },      { "level", levelName(assessment.level) },
            { "cause", causeName(assessment.cause) },      { "confidence", assessment.confidence },
-           { "largest_score", assessment.largest_score }, { "evidence", evidence } };
+           { "largest_score", assessment.largest_score }, { "evidence", Table(columns, evidence).rows() } };
 }
 
-Json toJson(const WindowResult& window)
+/// Of a window, for documents and files alike.
+const std::vector<Column<WindowResult>> POINT_COLUMNS{
+  { "time", [](const WindowResult& window) { return toSeconds(window.indicators.stamp); } },
+  { "turns", [](const WindowResult& window) { return window.indicators.turns; } },
+  { "speed", [](const WindowResult& window) { return window.indicators.point.speed; } },
+  { "direction", [](const WindowResult& window) { return window.indicators.point.direction; } },
+  { "load", [](const WindowResult& window) { return window.indicators.point.load; } },
+  { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
+};
+
+std::vector<Column<WindowResult>> documentColumns()
 {
-  Json values;
-  Json scores;
-  Json features;
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    values[indicatorName(i)] = numberOrNull(window.indicators.values[i]);
-    scores[indicatorName(i)] = numberOrNull(window.deviations[i].score);
-  }
-  const FeatureScores found = featureScores(window.deviations);
-  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
-  {
-    features[featureName(static_cast<Feature>(i))] = found[i].compared ? Json(found[i].score) : Json(nullptr);
-  }
-  const OperatingPoint& point = window.indicators.point;
-  return { { "recording", window.recording },
-           { "time", toSeconds(window.indicators.stamp) },
-           { "turns", window.indicators.turns },
-           { "speed", point.speed },
-           { "direction", point.direction },
-           { "load", numberOrNull(point.load) },
-           { "temperature", numberOrNull(point.temperature) },
-           { "indicators", values },
-           { "scores", scores },
-           { "features", features },
-           { "assessment", toJson(window.assessment) } };
+  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
+  columns.insert(columns.begin(), { "recording", &WindowResult::recording });
+  columns.push_back({ "indicators",
+                      [](const WindowResult& window)
+                      {
+                        Json values;
+                        for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+                        {
+                          values[indicatorName(i)] = window.indicators.values[i];
+                        }
+                        return values;
+                      } });
+  columns.push_back({ "scores",
+                      [](const WindowResult& window)
+                      {
+                        Json scores;
+                        for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+                        {
+                          scores[indicatorName(i)] = window.deviations[i].score;
+                        }
+                        return scores;
+                      } });
+  columns.push_back({ "features",
+                      [](const WindowResult& window)
+                      {
+                        Json features;
+                        const FeatureScores found = featureScores(window.deviations);
+                        for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
+                        {
+                          features[featureName(static_cast<Feature>(i))] =
+                              found[i].compared ? Json(found[i].score) : Json();
+                        }
+                        return features;
+                      } });
+  columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
+  return columns;
 }
 
-void writeWindows(const std::string& path, const std::vector<WindowResult>& windows)
+std::vector<Column<WindowResult>> fileColumns()
 {
-  std::vector<std::string> columns{ "time", "turns", "speed", "direction", "load", "temperature" };
+  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    columns.emplace_back(indicatorName(i));
+    columns.push_back({ indicatorName(i), [i](const WindowResult& window) { return window.indicators.values[i]; } });
   }
-  columns.insert(columns.end(), { "level", "cause", "confidence", "largest_score" });
-  CsvWriter csv(path, columns);
-  for (const WindowResult& window : windows)
-  {
-    const SignalIndicators& indicators = window.indicators;
-    const OperatingPoint& point = indicators.point;
-    std::vector<double> row{
-      toSeconds(indicators.stamp), indicators.turns, point.speed, point.direction, point.load, point.temperature
-    };
-    row.insert(row.end(), indicators.values.begin(), indicators.values.end());
-    row.insert(row.end(), { static_cast<double>(window.assessment.level), static_cast<double>(window.assessment.cause),
-                            window.assessment.confidence, window.assessment.largest_score });
-    csv.writeRow(row);
-  }
-  csv.close();
+  columns.push_back({ "level", [](const WindowResult& window) { return static_cast<int>(window.assessment.level); } });
+  columns.push_back({ "cause", [](const WindowResult& window) { return static_cast<int>(window.assessment.cause); } });
+  columns.push_back({ "confidence", [](const WindowResult& window) { return window.assessment.confidence; } });
+  columns.push_back({ "largest_score", [](const WindowResult& window) { return window.assessment.largest_score; } });
+  return columns;
 }
 
 void printTable(const WindowResult& window)
@@ -214,17 +211,18 @@ void printSummary(const std::vector<WindowResult>& windows)
   const WindowResult& last = windows.back();
   printTable(last);
   const Assessment& assessment = last.assessment;
-  std::vector<NamedValue> lines{ { "windows", std::to_string(windows.size()), "" },
-                                 { "turns in the last", shortNumber(last.indicators.turns), "" },
-                                 { "motor speed in it", shortNumber(last.indicators.point.speed), "rad/s" },
-                                 { "state", stateName(assessment.state), "" },
-                                 { "level", levelName(assessment.level), "" } };
+  const bool judged = assessment.state == AssessmentState::ASSESSED;
+  std::vector<ReportLine> lines{ { "", "windows", windows.size() },
+                                 { "", "turns in the last", last.indicators.turns },
+                                 { "", "motor speed in it", last.indicators.point.speed, "rad/s" },
+                                 { "", "state", stateName(assessment.state) },
+                                 { "", "level", judged ? levelName(assessment.level) : "not judged" } };
   if (assessment.level != HealthLevel::OK)
   {
-    lines.push_back({ "most likely cause", causeName(assessment.cause), "" });
-    lines.push_back({ "confidence", shortNumber(assessment.confidence), "" });
+    lines.push_back({ "", "most likely cause", causeName(assessment.cause) });
+    lines.push_back({ "", "confidence", assessment.confidence });
   }
-  printValues(lines);
+  printReport(false, lines);
 }
 
 /// All windows of a recording, less those of the model if there is one.
@@ -256,12 +254,26 @@ std::vector<SignalIndicators> readRecording(const std::string& path, const Indic
   return measured;
 }
 
-int run(IndicatorsOptions options)
+/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+SignalSource signalSource(const IndicatorsOptions& options, const Parameters& parameters)
 {
+  const bool robot = !options.joint.empty();
+  const std::optional<UrJoint> known = findUrJoint(options.joint);
+  SignalSource source = options.source;
+  source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
+  source.states_topic =
+      options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
+  source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  source.torque_scale = options.torque_scale.value_or(
+      robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
+  return source;
+}
+
+int run(const IndicatorsOptions& given)
+{
+  IndicatorsOptions options = given;
   const Parameters parameters = loadParameters(options);
-  options.source.joint = parameters.joint.name;
-  options.source.states_topic = options.states_topic.value_or(options.joint_namespace + "/" + topics::JOINT_STATES);
-  options.source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  options.source = signalSource(options, parameters);
   for (const std::string& file : { options.out, options.save_baseline })
   {
     if (!file.empty())
@@ -300,7 +312,7 @@ int run(IndicatorsOptions options)
   }
   if (!options.out.empty())
   {
-    writeWindows(options.out, windows);
+    writeTable(options.out, fileColumns(), windows);
   }
   if (!options.save_baseline.empty())
   {
@@ -308,16 +320,9 @@ int run(IndicatorsOptions options)
   }
   if (options.json)
   {
-    Json list = Json::array();
-    for (const WindowResult& window : windows)
-    {
-      list.push_back(toJson(window));
-    }
-    std::cout << Json{
-      { "threshold", assessor.baseline().threshold() },
-      { "windows", list },
-      { "assessment", toJson(windows.back().assessment) }
-    }.dump(2) << '\n';
+    printReport(true, { { "threshold", "", assessor.baseline().threshold() },
+                        { "windows", "", Table(documentColumns(), windows).rows() },
+                        { "assessment", "", toJson(windows.back().assessment) } });
   }
   else
   {
@@ -326,11 +331,27 @@ int run(IndicatorsOptions options)
   return interruptSignal() != 0 ? EXIT_BY_SIGNAL + interruptSignal() : static_cast<int>(EXIT_DONE);
 }
 
-void addSourceOptions(CLI::App& command, IndicatorsOptions& options)
+void declare(Command& command, IndicatorsOptions& options)
 {
+  command.add("recordings", options.recordings, "one recording, or several of the same joint")
+      .required()
+      .type("IN.csv|IN.bag")
+      .bagOrCsv();
+  command.add("--model", options.model, "the twin's own recording of the same run: its indicators are taken off")
+      .type("FILE.csv|FILE.bag")
+      .bagOrCsv();
+  command.flag("--windows", options.windows,
+               "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
+  command.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
+      .type("FILE.yaml");
+  command.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
+  command.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
+  command.add("--joint", options.joint,
+              "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
+              "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
   SignalSource& source = options.source;
   const auto column = [&command](const char* name, std::string& field, const char* meaning)
-  { command.add_option(name, field, meaning)->type_name("COLUMN")->capture_default_str(); };
+  { command.add(name, field, meaning).type("COLUMN"); };
   column("--time", source.time, "CSV: time [s]");
   column("--motor-torque", source.motor_torque, "CSV: motor torque, or current with --torque-scale");
   column("--motor-angle", source.motor_angle, "CSV: motor encoder [rad]");
@@ -338,43 +359,21 @@ void addSourceOptions(CLI::App& command, IndicatorsOptions& options)
   column("--motor-velocity", source.motor_velocity, "CSV: motor speed [rad/s]; else differences of the angle");
   column("--load-torque", source.load_torque, "CSV: load torque at the output, > 0 resists positive motion [N.m]");
   column("--temperature", source.temperature, "CSV: temperature [degC]");
+  command.add("--torque-scale", options.torque_scale,
+              "motor torque per unit of what is recorded for it [N.m]; default: 1, and with --joint "
+              "telemetry.torque_per_current / ratio [N.m/A]");
   command
-      .add_option("--torque-scale", source.torque_scale,
-                  "motor torque per unit of what is recorded for it [N.m], for a current: gain / ratio [N.m/A]")
-      ->capture_default_str()
-      ->check(FINITE);
-  command
-      .add_option("--states-topic", options.states_topic, "bag: JointState messages; default: NAMESPACE/joint_states")
-      ->type_name("TOPIC");
-  command.add_option("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load")
-      ->type_name("TOPIC");
+      .add("--states-topic", options.states_topic,
+           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
+      .type("TOPIC");
+  command.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
+  addNamespaceOption(command, options.joint_namespace);
+  addCommonOptions(command, options);
 }
-}  // namespace
 
-void addIndicatorsCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<IndicatorsOptions>();
-  auto* command = app.add_subcommand("indicators",
-                                     "health indicators and assessment of a recording, from encoders and "
-                                     "torque or current alone");
-  command->add_option("recordings", options->recordings, "one recording, or several of the same joint")
-      ->required()
-      ->type_name("IN.csv|IN.bag")
-      ->check(BAG_OR_CSV);
-  command
-      ->add_option("--model", options->model, "the twin's own recording of the same run: its indicators are taken off")
-      ->type_name("FILE.csv|FILE.bag")
-      ->check(BAG_OR_CSV);
-  command->add_flag("--windows", options->windows,
-                    "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
-  command->add_option("--baseline", options->baseline, "healthy reference; default: learned from the first windows")
-      ->type_name("FILE.yaml");
-  command->add_option("--save-baseline", options->save_baseline, "writes the reference that was learned")
-      ->type_name("FILE.yaml");
-  command->add_option("--out", options->out, "CSV with a row per window")->type_name("FILE.csv");
-  addSourceOptions(*command, *options);
-  addNamespaceOption(*command, options->joint_namespace);
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = run(*options); });
-}
+const Subcommand INDICATORS{
+  Subject::RECORDING, "indicators",
+  "health indicators and assessment of a recording, from encoders and torque or current alone", declare, run
+};
+}  // namespace
 }  // namespace hjt

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
-#include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/report.hpp"
 
 #include "studies/energy_ledger.hpp"
 #include "studies/small_wave.hpp"
@@ -23,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
+const Subcommand INVARIANTS{ Subject::STUDY, "invariants", "what must hold whatever the parameters, as numbers" };
 
 struct StateOptions : CommonOptions
 {
@@ -33,96 +29,111 @@ struct StateOptions : CommonOptions
   int pitches{ 1 };
 };
 
-Json rowOf(const StateInvariants& state)
-{
-  return { { "load", state.load },
-           { "wave_generator_angle", state.wave_generator_angle },
-           { "output_angle", state.output_angle },
-           { "energy", state.energy },
-           { "residual", state.residual },
-           { "softest_stiffness", state.softest_stiffness },
-           { "contact_force_max", state.contact_force_max },
-           { "flank_force_max", state.flank_force_max },
-           { "half_turn_position", state.half_turn.position },
-           { "half_turn_contact_force", state.half_turn.contact_force },
-           { "half_turn_flank_force", state.half_turn.flank_force },
-           { "pitch_shift_position", state.pitch_shift.position },
-           { "pitch_shift_contact_force", state.pitch_shift.contact_force },
-           { "pitch_shift_flank_force", state.pitch_shift.flank_force },
-           { "pitch_shift_energy", state.pitch_shift_energy },
-           { "wave_generator_torque", state.wave_generator_torque },
-           { "output_torque", state.output_torque },
-           { "cup_torque", state.cup_torque } };
-}
+using State = StateInvariants;
+const std::vector<Column<State>> STATE_COLUMNS{
+  { "load", &State::load, "load [N.m]" },
+  { "wave_generator_angle", &State::wave_generator_angle },
+  { "output_angle", &State::output_angle },
+  { "energy", &State::energy },
+  { "softest_stiffness", &State::softest_stiffness },
+  { "contact_force_max", &State::contact_force_max },
+  { "flank_force_max", &State::flank_force_max },
+  { "half_turn_position", [](const State& state) { return state.half_turn.position; }, "half turn [m]" },
+  { "half_turn_contact_force", [](const State& state) { return state.half_turn.contact_force; } },
+  { "half_turn_flank_force", [](const State& state) { return state.half_turn.flank_force; }, "half turn [N]" },
+  { "pitch_shift_position", [](const State& state) { return state.pitch_shift.position; }, "pitch shift [m]" },
+  { "pitch_shift_contact_force", [](const State& state) { return state.pitch_shift.contact_force; } },
+  { "pitch_shift_flank_force", [](const State& state) { return state.pitch_shift.flank_force; }, "pitch shift [N]" },
+  { "pitch_shift_energy", &State::pitch_shift_energy },
+  { "wave_generator_torque", &State::wave_generator_torque },
+  { "output_torque", &State::output_torque },
+  { "cup_torque", &State::cup_torque },
+  { "",
+    [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
+    "torque sum [N.m]" },
+  { "residual", &State::residual, "residual [N]" }
+};
 
-Json rowOf(double load, const PotentialRow& row)
+using LoadedPotential = std::pair<double, PotentialRow>;
+Column<LoadedPotential> ofPotential(const char* key, double PotentialRow::*value, const char* heading = "")
 {
-  return { { "load", load },
-           { "wave_generator_step", row.wave_generator_step },
-           { "output_step", row.output_step },
-           { "wave_generator_torque", row.wave_generator_torque },
-           { "wave_generator_difference", row.wave_generator_difference },
-           { "output_torque", row.output_torque },
-           { "output_difference", row.output_difference },
-           { "wave_generator_by_output", row.wave_generator_by_output },
-           { "output_by_wave_generator", row.output_by_wave_generator },
-           { "condensed_stiffness", row.condensed_stiffness } };
+  return { key, [value](const LoadedPotential& row) { return row.second.*value; }, heading };
 }
+const std::vector<Column<LoadedPotential>> POTENTIAL_COLUMNS{
+  { "load", &LoadedPotential::first, "load [N.m]" },
+  ofPotential("wave_generator_step", &PotentialRow::wave_generator_step, "WG step [rad]"),
+  ofPotential("output_step", &PotentialRow::output_step),
+  ofPotential("wave_generator_torque", &PotentialRow::wave_generator_torque),
+  ofPotential("wave_generator_difference", &PotentialRow::wave_generator_difference, "T + dU/d(WG) [N.m]"),
+  ofPotential("output_torque", &PotentialRow::output_torque),
+  ofPotential("output_difference", &PotentialRow::output_difference, "T + dU/d(output) [N.m]"),
+  ofPotential("wave_generator_by_output", &PotentialRow::wave_generator_by_output, "dT(WG)/d(output) [N.m/rad]"),
+  ofPotential("output_by_wave_generator", &PotentialRow::output_by_wave_generator, "dT(output)/d(WG) [N.m/rad]"),
+  ofPotential("condensed_stiffness", &PotentialRow::condensed_stiffness)
+};
 
 int state(const StateOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  Json states = Json::array();
-  Json potential = Json::array();
-  std::vector<std::vector<double>> table;
-  std::vector<std::vector<double>> potential_table;
+  std::vector<State> states;
+  std::vector<LoadedPotential> potential;
   for (const double load : options.loads)
   {
-    const StateInvariants invariants = analyseState(parameters, options.angle, load, options.pitches);
-    if (!invariants.converged)
+    states.push_back(analyseState(parameters, options.angle, load, options.pitches));
+    if (!states.back().converged)
     {
-      return notConverged("a load of " + shortNumber(load) + " N.m", invariants.residual);
+      return notConverged("a load of " + shortNumber(load) + " N.m", states.back().residual);
     }
-    states.push_back(rowOf(invariants));
-    table.push_back({ load, invariants.half_turn.position, invariants.half_turn.flank_force,
-                      invariants.pitch_shift.position, invariants.pitch_shift.flank_force,
-                      invariants.wave_generator_torque + invariants.output_torque + invariants.cup_torque,
-                      invariants.residual });
     for (const PotentialRow& row : analysePotential(parameters, options.angle, load, options.steps))
     {
       if (!row.converged)
       {
         return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.residual);
       }
-      potential.push_back(rowOf(load, row));
-      potential_table.push_back({ load, row.wave_generator_step, row.wave_generator_difference, row.output_difference,
-                                  row.wave_generator_by_output, row.output_by_wave_generator });
+      potential.emplace_back(load, row);
     }
   }
-  if (options.json)
-  {
-    const Json document{ { "pitches", options.pitches }, { "states", states }, { "potential", potential } };
-    std::cout << document.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printTable({ "load [N.m]", "half turn [m]", "half turn [N]", "pitch shift [m]", "pitch shift [N]", "torque sum [N.m]",
-               "residual [N]" },
-             table);
-  if (!potential_table.empty())
-  {
-    std::cout << '\n';
-    printTable({ "load [N.m]", "WG step [rad]", "T + dU/d(WG) [N.m]", "T + dU/d(output) [N.m]",
-                 "dT(WG)/d(output) [N.m/rad]", "dT(output)/d(WG) [N.m/rad]" },
-               potential_table);
-  }
+  printReport(options.json, { { "pitches", "", options.pitches } },
+              { { "states", { STATE_COLUMNS, states } }, { "potential", { POTENTIAL_COLUMNS, potential } } });
   return EXIT_DONE;
 }
+
+void declareState(Command& command, StateOptions& options)
+{
+  command.add("--loads", options.loads, "loads on the circular spline, e.g. 0,20,150 [N.m]").required();
+  command.add("--angle", options.angle, "wave generator angle [rad]");
+  command.add("--pitches", options.pitches, "tooth pitches of the shift [-]").range(-10000, 10000);
+  command.add("--steps", options.steps, "wave generator's steps for the derivatives, e.g. 1e-4,1e-5 [rad]")
+      .range(1e-9, 0.1);
+  addCommonOptions(command, options);
+}
+
+const Subcommand STATE{ Subject::STUDY, "invariants state",
+                        "two-fold symmetry, shift by tooth pitches, balance of torques and torques as derivatives of "
+                        "the energy, at rest under load",
+                        declareState, state };
 
 struct FrameOptions : CommonOptions
 {
   double load{};
   unsigned seed{ 1 };
   int samples{ 41 };
+};
+
+const std::vector<Column<TurnedElement>> ELEMENT_COLUMNS{
+  { "name", &TurnedElement::name },
+  { "force_max", &TurnedElement::force_max },
+  { "force_difference", &TurnedElement::force_difference },
+  { "energy", &TurnedElement::energy },
+  { "energy_difference", &TurnedElement::energy_difference },
+  { "torque_difference", &TurnedElement::torque_difference }
+};
+const std::vector<Column<TurnedBending>> BENDING_COLUMNS{
+  { "angle", &TurnedBending::angle, "turn [rad]" },
+  { "curvature_force", &TurnedBending::curvature_force, "bending, law curvature [N]" },
+  { "absolute_force", &TurnedBending::absolute_force, "bending, law absolute [N]" },
+  { "curvature_energy", &TurnedBending::curvature_energy },
+  { "absolute_energy", &TurnedBending::absolute_energy }
 };
 
 int frame(const FrameOptions& options)
@@ -133,39 +144,26 @@ int frame(const FrameOptions& options)
   {
     return notConverged("a load of " + shortNumber(options.load) + " N.m", result.residual);
   }
-  Json elements = Json::array();
-  std::vector<NamedValue> changes;
+  std::vector<ReportLine> lines{ { "load", "", options.load },
+                                 { "elements", "", Table(ELEMENT_COLUMNS, result.elements).rows() } };
   for (const TurnedElement& element : result.elements)
   {
-    elements.push_back({ { "name", element.name },
-                         { "force_max", element.force_max },
-                         { "force_difference", element.force_difference },
-                         { "energy", element.energy },
-                         { "energy_difference", element.energy_difference },
-                         { "torque_difference", element.torque_difference } });
-    changes.push_back({ element.name + ", largest change of a force", shortNumber(element.force_difference), "N" });
+    lines.push_back({ "", element.name + ", largest change of a force", element.force_difference, "N" });
   }
-  Json bending = Json::array();
-  std::vector<std::vector<double>> table;
-  for (const TurnedBending& row : result.bending)
-  {
-    bending.push_back({ { "angle", row.angle },
-                        { "curvature_force", row.curvature_force },
-                        { "absolute_force", row.absolute_force },
-                        { "curvature_energy", row.curvature_energy },
-                        { "absolute_energy", row.absolute_energy } });
-    table.push_back({ row.angle, row.curvature_force, row.absolute_force });
-  }
-  if (options.json)
-  {
-    std::cout << Json{ { "load", options.load }, { "elements", elements }, { "bending", bending } }.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printValues(changes);
-  std::cout << '\n';
-  printTable({ "turn [rad]", "bending, law curvature [N]", "bending, law absolute [N]" }, table);
+  printReport(options.json, lines, { { "bending", { BENDING_COLUMNS, result.bending } } });
   return EXIT_DONE;
 }
+
+void declareFrame(Command& command, FrameOptions& options)
+{
+  command.add("--load", options.load, "load on the circular spline [N.m]");
+  command.add("--seed", options.seed, "of the random angles [-]");
+  command.add("--samples", options.samples, "angles [-]").range(1, 100000);
+  addCommonOptions(command, options);
+}
+
+const Subcommand FRAME{ Subject::STUDY, "invariants frame",
+                        "forces and energies of each element with the whole machine turned", declareFrame, frame };
 
 struct SmallWaveOptions : CommonOptions
 {
@@ -174,44 +172,63 @@ struct SmallWaveOptions : CommonOptions
   bool hold{};
 };
 
-Json jsonOf(const ShapeError& error)
+template <ShapeError SmallWaveRow::*ERROR>
+Json errorOf(const SmallWaveRow& row)
 {
+  const ShapeError& error = row.*ERROR;
   return { { "radial", error.radial }, { "tangential", error.tangential }, { "tilt", error.tilt } };
 }
+template <ShapeError SmallWaveRow::*ERROR, double ShapeError::*PART>
+Column<SmallWaveRow> partOf(const char* heading)
+{
+  return { "", [](const SmallWaveRow& row) { return row.*ERROR.*PART; }, heading };
+}
+
+const std::vector<Column<SmallWaveRow>> SMALL_WAVE_COLUMNS{
+  { "wave_amplitude", &SmallWaveRow::wave_amplitude, "wave amplitude [m]" },
+  { "teeth_in_contact", &SmallWaveRow::teeth_in_contact, "teeth in contact [-]" },
+  { "residual", &SmallWaveRow::residual },
+  { "contact_force_min", &SmallWaveRow::contact_force_min },
+  { "contact_force_max", &SmallWaveRow::contact_force_max },
+  { "thin_ring", errorOf<&SmallWaveRow::thin_ring> },
+  { "linear", errorOf<&SmallWaveRow::linear> },
+  { "second_order", errorOf<&SmallWaveRow::second_order> },
+  partOf<&SmallWaveRow::thin_ring, &ShapeError::radial>("radial [-]"),
+  partOf<&SmallWaveRow::thin_ring, &ShapeError::tangential>("tangential [-]"),
+  partOf<&SmallWaveRow::thin_ring, &ShapeError::tilt>("tilt [-]"),
+  partOf<&SmallWaveRow::second_order, &ShapeError::radial>("radial, 2nd order [-]"),
+  partOf<&SmallWaveRow::second_order, &ShapeError::tangential>("tangential, 2nd order [-]"),
+  partOf<&SmallWaveRow::second_order, &ShapeError::tilt>("tilt, 2nd order [-]")
+};
 
 int smallWave(const SmallWaveOptions& options)
 {
-  Json rows = Json::array();
-  std::vector<std::vector<double>> table;
   const WaveBending bending = options.hold ? WaveBending::PROPORTIONAL : WaveBending::KEPT;
-  for (const SmallWaveRow& row : analyseSmallWave(loadParameters(options), bending, options.smallest, options.count))
+  const auto rows = analyseSmallWave(loadParameters(options), bending, options.smallest, options.count);
+  for (const SmallWaveRow& row : rows)
   {
     if (!row.converged)
     {
       return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.residual);
     }
-    rows.push_back({ { "wave_amplitude", row.wave_amplitude },
-                     { "teeth_in_contact", row.teeth_in_contact },
-                     { "residual", row.residual },
-                     { "contact_force_min", row.contact_force_min },
-                     { "contact_force_max", row.contact_force_max },
-                     { "thin_ring", jsonOf(row.thin_ring) },
-                     { "linear", jsonOf(row.linear) },
-                     { "second_order", jsonOf(row.second_order) } });
-    table.push_back({ row.wave_amplitude, static_cast<double>(row.teeth_in_contact), row.thin_ring.radial,
-                      row.thin_ring.tangential, row.thin_ring.tilt, row.second_order.radial,
-                      row.second_order.tangential, row.second_order.tilt });
   }
-  if (options.json)
-  {
-    std::cout << Json{ { "rows", rows } }.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printTable({ "wave amplitude [m]", "teeth in contact [-]", "radial [-]", "tangential [-]", "tilt [-]",
-               "radial, 2nd order [-]", "tangential, 2nd order [-]", "tilt, 2nd order [-]" },
-             table);
+  printReport(options.json, {}, { { "rows", { SMALL_WAVE_COLUMNS, rows } } });
   return EXIT_DONE;
 }
+
+void declareSmallWave(Command& command, SmallWaveOptions& options)
+{
+  command.add("--smallest", options.smallest, "smallest wave amplitude [m]").required().range(1e-9, 0.01);
+  command.add("--count", options.count, "amplitudes in equal ratios [-]").required().range(1, 100000);
+  command.flag("--hold", options.hold,
+               "bending stiffness in proportion to the amplitude: the ring touches all round at any amplitude");
+  addCommonOptions(command, options);
+}
+
+const Subcommand SMALL_WAVE{
+  Subject::STUDY, "invariants small-wave",
+  "shape of the inserted ring against thin-ring theory, from the gear's wave amplitude down", declareSmallWave, smallWave
+};
 
 struct EnergyOptions : CommonOptions
 {
@@ -221,120 +238,50 @@ struct EnergyOptions : CommonOptions
   double duration{ 1.0 };
 };
 
+using RatedResult = std::pair<double, LedgerResult>;
+const std::vector<Column<RatedResult>> ENERGY_COLUMNS{
+  { "rate", &RatedResult::first, "rate [Hz]" },
+  { "throughput", [](const RatedResult& row) { return row.second.throughput; }, "through [J]" },
+  { "residual", [](const RatedResult& row) { return row.second.residual; }, "left over [J]" },
+  { "relative_residual",
+    [](const RatedResult& row) { return row.second.residual / row.second.throughput; },
+    "left over / through [-]" },
+  { "travel", [](const RatedResult& row) { return row.second.travel; } },
+  { "top_speed", [](const RatedResult& row) { return row.second.top_speed; }, "top speed [rad/s]" },
+  { "reversals", [](const RatedResult& row) { return row.second.reversals; } }
+};
+
 int energy(const EnergyOptions& options)
 {
   Parameters parameters = loadParameters(options);
   const std::vector<double> rates =
       options.rates.empty() ? std::vector<double>{ parameters.solver.rate } : options.rates;
-  Json rows = Json::array();
-  std::vector<std::vector<double>> table;
+  std::vector<RatedResult> rows;
   for (const double rate : rates)
   {
     parameters.solver.rate = rate;
-    Progress progress("random motion at " + shortNumber(rate) + " Hz");
-    const LedgerResult result = runLedger(parameters, { options.seed, options.load, true }, options.duration,
-                                          [&](double done) { progress.update(done); });
-    if (!result.converged)
+    rows.emplace_back(rate, runLedger(parameters, { options.seed, options.load, true }, options.duration,
+                                      showProgress("random motion at " + shortNumber(rate) + " Hz")));
+    if (!rows.back().second.converged)
     {
-      return notConverged("a step at " + shortNumber(rate) + " Hz", result.force_residual);
+      return notConverged("a step at " + shortNumber(rate) + " Hz", rows.back().second.force_residual);
     }
-    rows.push_back({ { "rate", rate },
-                     { "throughput", result.throughput },
-                     { "residual", result.residual },
-                     { "relative_residual", result.residual / result.throughput },
-                     { "travel", result.travel },
-                     { "top_speed", result.top_speed },
-                     { "reversals", result.reversals } });
-    table.push_back(
-        { rate, result.throughput, result.residual, result.residual / result.throughput, result.top_speed });
   }
-  if (options.json)
-  {
-    std::cout << Json{ { "seed", options.seed }, { "duration", options.duration }, { "rows", rows } }.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printTable({ "rate [Hz]", "through [J]", "left over [J]", "left over / through [-]", "top speed [rad/s]" }, table);
+  printReport(options.json, { { "seed", "", options.seed }, { "duration", "", options.duration } },
+              { { "rows", { ENERGY_COLUMNS, rows } } });
   return EXIT_DONE;
 }
 
-void addStateCommand(CLI::App& app, int& exit_code)
+void declareEnergy(Command& command, EnergyOptions& options)
 {
-  const auto options = std::make_shared<StateOptions>();
-  auto* command = app.add_subcommand("state",
-                                     "two-fold symmetry, shift by tooth pitches, balance of torques and "
-                                     "torques as derivatives of the energy, at rest under load");
-  command->add_option("--loads", options->loads, "loads on the circular spline, e.g. 0,20,150 [N.m]")
-      ->required()
-      ->delimiter(',')
-      ->check(FINITE);
-  command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
-  command->add_option("--pitches", options->pitches, "tooth pitches of the shift [-]")
-      ->capture_default_str()
-      ->check(CLI::Range(-10000, 10000));
-  command->add_option("--steps", options->steps, "wave generator's steps for the derivatives, e.g. 1e-4,1e-5 [rad]")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-9, 0.1));
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = state(*options); });
+  command.add("--rates", options.rates, "step rates, e.g. 10000,50000 [Hz]; default: solver.rate").range(100.0, 1e6);
+  command.add("--seed", options.seed, "of the random torques [-]");
+  command.add("--load", options.load, "largest load, either way [N.m]").atLeast(0.0);
+  command.add("--duration", options.duration, "simulated time [s]").range(1e-3, 1e4);
+  addCommonOptions(command, options);
 }
 
-void addFrameCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<FrameOptions>();
-  auto* command = app.add_subcommand("frame", "forces and energies of each element with the whole machine turned");
-  command->add_option("--load", options->load, "load on the circular spline [N.m]")->check(FINITE);
-  command->add_option("--seed", options->seed, "of the random angles [-]")->capture_default_str();
-  command->add_option("--samples", options->samples, "angles [-]")->capture_default_str()->check(CLI::Range(1, 100000));
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = frame(*options); });
-}
-
-void addSmallWaveCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<SmallWaveOptions>();
-  auto* command = app.add_subcommand("small-wave",
-                                     "shape of the inserted ring against thin-ring theory, from the "
-                                     "gear's wave amplitude down");
-  command->add_option("--smallest", options->smallest, "smallest wave amplitude [m]")
-      ->required()
-      ->check(CLI::Range(1e-9, 0.01));
-  command->add_option("--count", options->count, "amplitudes in equal ratios [-]")
-      ->required()
-      ->check(CLI::Range(1, 100000));
-  command->add_flag("--hold", options->hold,
-                    "bending stiffness in proportion to the amplitude: the ring touches all "
-                    "round at any amplitude");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = smallWave(*options); });
-}
-
-void addEnergyCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<EnergyOptions>();
-  auto* command = app.add_subcommand("energy", "energy ledger over a random motion with reversals, load and brake");
-  command->add_option("--rates", options->rates, "step rates, e.g. 10000,50000 [Hz]; default: solver.rate")
-      ->delimiter(',')
-      ->check(CLI::Range(100.0, 1e6));
-  command->add_option("--seed", options->seed, "of the random torques [-]")->capture_default_str();
-  command->add_option("--load", options->load, "largest load, either way [N.m]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
-      ->check(FINITE);
-  command->add_option("--duration", options->duration, "simulated time [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e4));
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = energy(*options); });
-}
+const Subcommand ENERGY{ Subject::STUDY, "invariants energy",
+                         "energy ledger over a random motion with reversals, load and brake", declareEnergy, energy };
 }  // namespace
-
-void addInvariantsCommand(CLI::App& app, int& exit_code)
-{
-  auto* command = app.add_subcommand("invariants", "what must hold whatever the parameters, as numbers");
-  command->require_subcommand(1);
-  addStateCommand(*command, exit_code);
-  addFrameCommand(*command, exit_code);
-  addSmallWaveCommand(*command, exit_code);
-  addEnergyCommand(*command, exit_code);
-}
 }  // namespace hjt

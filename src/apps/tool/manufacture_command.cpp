@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/text_table.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/report.hpp"
 
 #include "gear/manufacture_errors.hpp"
 
@@ -20,8 +14,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 struct ManufactureOptions : CommonOptions
 {
   std::string flexspline_csv;
@@ -75,42 +67,31 @@ int manufacture(const ManufactureOptions& options)
       writePitch(path, pitch);
     }
   }
-  if (options.json)
-  {
-    const ManufactureErrors errors(parameters.manufacture, parameters.gear);
-    std::cout << Json{
-      { "flexspline",
-        { { "total_pitch_deviation", totalDeviation(flexspline) },
-          { "single_pitch_deviation", singleDeviation(flexspline) },
-          { "pitch_deviation", list(flexspline) } } },
-      { "circular_spline",
-        { { "total_pitch_deviation", totalDeviation(circular_spline) },
-          { "single_pitch_deviation", singleDeviation(circular_spline) },
-          { "pitch_deviation", list(circular_spline) },
-          { "across", list(errors.space_across) },
-          { "along", list(errors.space_along) } } }
-    }.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printValues({ { "flexspline, total pitch deviation", shortNumber(totalDeviation(flexspline)), "m" },
-                { "flexspline, largest of one pitch", shortNumber(singleDeviation(flexspline)), "m" },
-                { "circular spline, total pitch deviation", shortNumber(totalDeviation(circular_spline)), "m" },
-                { "circular spline, largest of one pitch", shortNumber(singleDeviation(circular_spline)), "m" } });
+  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+  printReport(
+      options.json,
+      { { "flexspline.total_pitch_deviation", "flexspline, total pitch deviation", totalDeviation(flexspline), "m" },
+        { "flexspline.single_pitch_deviation", "flexspline, largest of one pitch", singleDeviation(flexspline), "m" },
+        { "flexspline.pitch_deviation", "", list(flexspline) },
+        { "circular_spline.total_pitch_deviation", "circular spline, total pitch deviation",
+          totalDeviation(circular_spline), "m" },
+        { "circular_spline.single_pitch_deviation", "circular spline, largest of one pitch",
+          singleDeviation(circular_spline), "m" },
+        { "circular_spline.pitch_deviation", "", list(circular_spline) },
+        { "circular_spline.across", "", list(errors.space_across) },
+        { "circular_spline.along", "", list(errors.space_along) } });
   return EXIT_DONE;
 }
-}  // namespace
 
-void addManufactureCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, ManufactureOptions& options)
 {
-  const auto options = std::make_shared<ManufactureOptions>();
-  auto* command = app.add_subcommand("manufacture", "errors of manufacture of every tooth and space [m]");
-  command->add_option("--flexspline-csv", options->flexspline_csv, "write the flexspline's pitch deviations")
-      ->type_name("FILE");
-  command
-      ->add_option("--circular-spline-csv", options->circular_spline_csv,
-                   "write the circular spline's pitch deviations")
-      ->type_name("FILE");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = manufacture(*options); });
+  command.add("--flexspline-csv", options.flexspline_csv, "write the flexspline's pitch deviations").type("FILE");
+  command.add("--circular-spline-csv", options.circular_spline_csv, "write the circular spline's pitch deviations")
+      .type("FILE");
+  addCommonOptions(command, options);
 }
+
+const Subcommand MANUFACTURE{ Subject::GEAR, "manufacture", "errors of manufacture of every tooth and space [m]",
+                              declare, manufacture };
+}  // namespace
 }  // namespace hjt

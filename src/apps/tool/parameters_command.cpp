@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
-#include <memory>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/json.hpp"
 
 #include "params/choices.hpp"
 #include "params/field_table.hpp"
@@ -15,8 +12,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 struct ParametersOptions : CommonOptions
 {
   bool markdown{};
@@ -28,7 +23,7 @@ Json toJson(const Parameters& parameters)
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto& second, const auto&...)
               {
-                Json& entry = json[key.substr(0, key.find('.'))][key.substr(key.find('.') + 1)];
+                Json& entry = json[key];
                 // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
                 if constexpr (std::is_enum_v<std::decay_t<decltype(first)>>)
                 {
@@ -56,22 +51,26 @@ int describe(const ParametersOptions& options)
 {
   if (options.markdown)
   {
+    if (options.json)
+    {
+      std::cerr << "joint_twin: --markdown and --json exclude each other\n";
+      return EXIT_USAGE;
+    }
     std::cout << parameterTableMarkdown();
     return EXIT_DONE;
   }
   const Parameters parameters = loadParameters(options);
-  std::cout << (options.json ? toJson(parameters).dump(2) + "\n" : describeParameters(parameters));
+  std::cout << (options.json ? toJson(parameters).dump() + "\n" : describeParameters(parameters));
   return EXIT_DONE;
 }
-}  // namespace
 
-void addParametersCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, ParametersOptions& options)
 {
-  const auto options = std::make_shared<ParametersOptions>();
-  auto* command = app.add_subcommand("parameters", "all parameters in force, with unit and meaning");
-  auto* markdown = command->add_flag("--markdown", options->markdown, "the table of keys, ranges and meanings instead");
-  addCommonOptions(*command, *options);
-  command->get_option("--json")->excludes(markdown);
-  command->callback([options, &exit_code] { exit_code = describe(*options); });
+  command.flag("--markdown", options.markdown, "the table of keys, ranges and meanings instead");
+  addCommonOptions(command, options);
 }
+
+const Subcommand PARAMETERS{ Subject::DATA_SET, "parameters", "all parameters in force, with unit and meaning", declare,
+                             describe };
+}  // namespace
 }  // namespace hjt

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <limits>
-#include <memory>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/progress.hpp"
-#include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/report.hpp"
 
 #include "studies/ratchet_analysis.hpp"
 
@@ -18,8 +13,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 struct RatchetOptions : CommonOptions
 {
   double angle{};
@@ -35,82 +28,61 @@ const char* endOf(RatchetEnd end)
                                             "no equilibrium";
 }
 
-Json rowJson(const RatchetRow& row)
-{
-  return { { "output_angle", row.output_angle },
-           { "torque", row.torque },
-           { "wave_amplitude", row.wave_amplitude },
-           { "lobe_force", row.lobe_force },
-           { "depth_max", row.depth_max },
-           { "mesh_force_max", row.mesh_force_max },
-           { "wave_generator_force_max", row.wave_generator_force_max },
-           { "teeth_loaded", row.teeth_loaded },
-           { "snaps", row.snaps },
-           { "teeth_jumped", row.teeth_jumped } };
-}
+const std::vector<Column<RatchetRow>> COLUMNS{
+  { "output_angle", &RatchetRow::output_angle },
+  { "torque", &RatchetRow::torque },
+  { "wave_amplitude", &RatchetRow::wave_amplitude },
+  { "lobe_force", &RatchetRow::lobe_force },
+  { "depth_max", &RatchetRow::depth_max },
+  { "mesh_force_max", &RatchetRow::mesh_force_max },
+  { "wave_generator_force_max", &RatchetRow::wave_generator_force_max },
+  { "teeth_loaded", &RatchetRow::teeth_loaded },
+  { "snaps", &RatchetRow::snaps },
+  { "teeth_jumped", &RatchetRow::teeth_jumped }
+};
 
 int ratchet(const RatchetOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
-  RatchetResult result;
-  {
-    Progress progress("loading");
-    result = analyseRatchet(parameters, options.angle, options.lobe_stiffness, options.angle_step, options.torque_limit,
-                            [&](double done) { progress.update(done); });
-  }
+  const RatchetResult result = analyseRatchet(loadParameters(options), options.angle, options.lobe_stiffness,
+                                              options.angle_step, options.torque_limit, showProgress("loading"));
   if (!result.converged)
   {
     std::cerr << "joint_twin: no equilibrium found at no load; see solver.max_iterations and solver.max_step_cuts\n";
     return EXIT_FAILED;
   }
-  if (options.json)
-  {
-    Json rows = Json::array();
-    for (const RatchetRow& row : result.rows)
-    {
-      rows.push_back(rowJson(row));
-    }
-    std::cout << Json{ { "end", endOf(result.end) }, { "peak", rowJson(result.peak) }, { "rows", rows } }.dump(2)
-              << '\n';
-    return EXIT_DONE;
-  }
   const RatchetRow& peak = result.peak;
-  printValues({ { "end", endOf(result.end), "" },
-                { "largest torque", shortNumber(peak.torque), "N.m" },
-                { "output angle there", shortNumber(peak.output_angle), "rad" },
-                { "wave amplitude left", shortNumber(peak.wave_amplitude), "m" },
-                { "force on each lobe", shortNumber(peak.lobe_force), "N" },
-                { "deepest tooth", shortNumber(peak.depth_max), "m" },
-                { "mesh force, largest", shortNumber(peak.mesh_force_max), "N" },
-                { "wave generator force, largest", shortNumber(peak.wave_generator_force_max), "N" },
-                { "snaps before", std::to_string(peak.snaps), "" },
-                { "teeth jumped", std::to_string(peak.teeth_jumped), "" },
-                { "teeth loaded", std::to_string(peak.teeth_loaded), "" } });
+  printReport(
+      options.json,
+      { { "end", "end", endOf(result.end) },
+        { "peak.torque", "largest torque", peak.torque, "N.m" },
+        { "peak.output_angle", "output angle there", peak.output_angle, "rad" },
+        { "peak.wave_amplitude", "wave amplitude left", peak.wave_amplitude, "m" },
+        { "peak.lobe_force", "force on each lobe", peak.lobe_force, "N" },
+        { "peak.depth_max", "deepest tooth", peak.depth_max, "m" },
+        { "peak.mesh_force_max", "mesh force, largest", peak.mesh_force_max, "N" },
+        { "peak.wave_generator_force_max", "wave generator force, largest", peak.wave_generator_force_max, "N" },
+        { "peak.snaps", "snaps before", peak.snaps },
+        { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
+        { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
+        { "rows", "", Table(COLUMNS, result.rows).rows() } });
   return EXIT_DONE;
 }
-}  // namespace
 
-void addRatchetCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, RatchetOptions& options)
 {
-  const auto options = std::make_shared<RatchetOptions>();
-  auto* command = app.add_subcommand("ratchet",
-                                     "jump of the teeth: wave generator locked, output driven until the "
-                                     "torque falls, friction left out");
   command
-      ->add_option("--lobe-stiffness", options->lobe_stiffness,
-                   "radial stiffness of each lobe of the wave generator, default rigid [N/m]")
-      ->check(FINITE)
-      ->check(CLI::Range(1e3, 1e15));
-  command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
-  command->add_option("--angle-step", options->angle_step, "step of the output angle [rad]")
-      ->check(FINITE)
-      ->check(CLI::Range(1e-6, 1e-2))
-      ->capture_default_str();
-  command->add_option("--torque-limit", options->torque_limit, "ends the search if nothing has jumped [N.m]")
-      ->check(FINITE)
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str();
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = ratchet(*options); });
+      .add("--lobe-stiffness", options.lobe_stiffness,
+           "radial stiffness of each lobe of the wave generator, default rigid [N/m]")
+      .range(1e3, 1e15);
+  command.add("--angle", options.angle, "wave generator angle [rad]");
+  command.add("--angle-step", options.angle_step, "step of the output angle [rad]").range(1e-6, 1e-2);
+  command.add("--torque-limit", options.torque_limit, "ends the search if nothing has jumped [N.m]").range(1.0, 1e6);
+  addCommonOptions(command, options);
 }
+
+const Subcommand RATCHET{
+  Subject::GEAR, "ratchet",
+  "jump of the teeth: wave generator locked, output driven until the torque falls, friction left out", declare, ratchet
+};
+}  // namespace
 }  // namespace hjt

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,8 +12,6 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
@@ -195,20 +192,17 @@ int replay(const ReplayOptions& options)
   }
   return summary.report(twin, options.json);
 }
-}  // namespace
 
-void addReplayCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, ReplayOptions& options)
 {
-  const auto options = std::make_shared<ReplayOptions>();
-  auto* command = app.add_subcommand("replay", "run the twin through a bag; every original message is kept as it is");
-  command->add_option("bag", options->bag, "the recording")->required()->type_name("IN.bag");
-  command->add_option("--out", options->out, "the bag with the simulated topics added")
-      ->required()
-      ->type_name("OUT.bag")
-      ->check(BAG);
-  addNamespaceOption(*command, options->joint_namespace);
-  addFaultOption(*command, *options);
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = replay(*options); });
+  command.add("bag", options.bag, "the recording").required().type("IN.bag");
+  command.add("--out", options.out, "the bag with the simulated topics added").required().type("OUT.bag").bag();
+  addNamespaceOption(command, options.joint_namespace);
+  addFaultOption(command, options);
+  addCommonOptions(command, options);
 }
+
+const Subcommand REPLAY{ Subject::RECORDING, "replay",
+                         "run the twin through a bag; every original message is kept as it is", declare, replay };
+}  // namespace
 }  // namespace hjt

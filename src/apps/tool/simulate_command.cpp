@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,8 +10,6 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
 #include "apps/tool/torque_profile.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -123,41 +120,28 @@ int simulate(const SimulateOptions& options)
   }
   return summary.report(twin, options.json);
 }
-}  // namespace
 
-void addSimulateCommand(CLI::App& app, int& exit_code)
+void declare(Command& command, SimulateOptions& options)
 {
-  const auto options = std::make_shared<SimulateOptions>();
-  auto* command = app.add_subcommand("simulate", "run the twin under a given torque");
-  command->add_option("--duration", options->duration, "simulated time [s]; default: up to the profile's last row")
-      ->check(FINITE)
-      ->check(CLI::PositiveNumber);
-  auto* source = command->add_option_group("drive", "one of");
-  source->add_option("--torque", options->torque, "constant motor torque [N.m]")->check(FINITE);
-  source
-      ->add_option("--profile", options->profile,
-                   "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); "
-                   "each row holds until the next")
-      ->type_name("FILE.csv");
-  source->require_option(1);
+  command.add("--duration", options.duration, "simulated time [s]; default: up to the profile's last row").positive();
+  command.add("--torque", options.torque, "constant motor torque [N.m]").needs("--duration");
   command
-      ->add_option("--load", options->load, "constant external torque at the output; > 0 resists positive motion [N.m]")
-      ->check(FINITE);
-  command->add_option("--out", options->out, "bag with the node's topics, or CSV with a row per joint_states")
-      ->required()
-      ->type_name("FILE.bag|FILE.csv")
-      ->check(BAG_OR_CSV);
-  addNamespaceOption(*command, options->joint_namespace);
-  addFaultOption(*command, *options);
-  addCommonOptions(*command, *options);
-  command->callback(
-      [options, &exit_code]
-      {
-        if (options->torque && !options->duration)
-        {
-          throw CLI::RequiredError("--duration");
-        }
-        exit_code = simulate(*options);
-      });
+      .add("--profile", options.profile,
+           "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); each row "
+           "holds until the next")
+      .type("FILE.csv");
+  command.oneOf({ "--torque", "--profile" });
+  command.add("--load", options.load,
+              "constant external torque at the output; > 0 resists positive motion [N.m]");
+  command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
+      .required()
+      .type("FILE.bag|FILE.csv")
+      .bagOrCsv();
+  addNamespaceOption(command, options.joint_namespace);
+  addFaultOption(command, options);
+  addCommonOptions(command, options);
 }
+
+const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given torque", declare, simulate };
+}  // namespace
 }  // namespace hjt

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/not_converged.hpp"
-#include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
-#include "apps/common/text_table.hpp"
-#include "apps/common/validators.hpp"
-#include "apps/tool/commands.hpp"
+#include "apps/common/report.hpp"
 
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 
@@ -21,8 +14,6 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
-
 /// One quantity of every tooth: its name in files and documents, its place in the table.
 struct ToothColumn
 {
@@ -99,37 +90,32 @@ int insert(const InsertOptions& options)
     writeTeeth(csv, {}, result.teeth, RING_COLUMNS);
     csv.close();
   }
-  if (options.json)
-  {
-    const Json json{ { "wave_generator_force_max", result.wave_generator_force_max },
-                     { "wave_generator_force_min", result.wave_generator_force_min },
-                     { "wave_generator_force_sum", result.wave_generator_force_sum },
-                     { "teeth_in_contact", result.teeth_in_contact },
-                     { "tension_min", result.tension_min },
-                     { "tension_max", result.tension_max },
-                     { "radius_major_axis", result.radius_major_axis },
-                     { "radius_minor_axis", result.radius_minor_axis },
-                     { "bending_force_max", result.bending_force_max },
-                     { "residual", result.residual },
-                     { "iterations", result.iterations },
-                     { "solve_time", result.solve_time } };
-    std::cout << json.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printValues({ { "wave generator force, largest", shortNumber(result.wave_generator_force_max), "N" },
-                { "wave generator force, smallest", shortNumber(result.wave_generator_force_min), "N" },
-                { "wave generator force, sum", shortNumber(result.wave_generator_force_sum), "N" },
-                { "teeth in contact", std::to_string(result.teeth_in_contact), "" },
-                { "rim tension, smallest", shortNumber(result.tension_min), "N" },
-                { "rim tension, largest", shortNumber(result.tension_max), "N" },
-                { "radius at the major axis", shortNumber(result.radius_major_axis), "m" },
-                { "radius at the minor axis", shortNumber(result.radius_minor_axis), "m" },
-                { "bending force, largest", shortNumber(result.bending_force_max), "N" },
-                { "residual", shortNumber(result.residual), "N" },
-                { "iterations", std::to_string(result.iterations), "" },
-                { "solve time", shortNumber(result.solve_time), "s" } });
+  printReport(
+      options.json,
+      { { "wave_generator_force_max", "wave generator force, largest", result.wave_generator_force_max, "N" },
+        { "wave_generator_force_min", "wave generator force, smallest", result.wave_generator_force_min, "N" },
+        { "wave_generator_force_sum", "wave generator force, sum", result.wave_generator_force_sum, "N" },
+        { "teeth_in_contact", "teeth in contact", result.teeth_in_contact },
+        { "tension_min", "rim tension, smallest", result.tension_min, "N" },
+        { "tension_max", "rim tension, largest", result.tension_max, "N" },
+        { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
+        { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
+        { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
+        { "residual", "residual", result.residual, "N" },
+        { "iterations", "iterations", result.iterations },
+        { "solve_time", "solve time", result.solve_time, "s" } });
   return EXIT_DONE;
 }
+
+void declareInsert(Command& command, InsertOptions& options)
+{
+  command.add("--csv", options.csv, "write positions and forces of every tooth").type("FILE");
+  addCommonOptions(command, options);
+}
+
+const Subcommand INSERT{ Subject::GEAR, "insert",
+                         "static equilibrium after the wave generator's insertion, circular spline left out",
+                         declareInsert, insert };
 
 struct StiffnessOptions : CommonOptions
 {
@@ -139,12 +125,24 @@ struct StiffnessOptions : CommonOptions
   bool teeth{};
 };
 
-Json teethJson(const ToothTable& teeth)
+const std::vector<Column<StiffnessRow>> STIFFNESS_COLUMNS{
+  { "torque", &StiffnessRow::torque, "torque [N.m]" },
+  { "output_angle", &StiffnessRow::output_angle, "output angle [rad]" },
+  { "wave_generator_torque", &StiffnessRow::wave_generator_torque, "WG torque [N.m]" },
+  { "housing_torque", &StiffnessRow::housing_torque, "" },
+  { "cup_rotation", &StiffnessRow::cup_rotation, "" },
+  { "teeth_loaded", &StiffnessRow::teeth_loaded, "teeth loaded [-]" },
+  { "mesh_force_max", &StiffnessRow::mesh_force_max, "mesh force max [N]" },
+  { "wave_generator_force_sum", &StiffnessRow::wave_generator_force_sum, "WG force sum [N]" },
+  { "residual", &StiffnessRow::residual, "residual [N]" }
+};
+
+Json teethJson(const StiffnessRow& row)
 {
   Json json;
   for (const ToothColumn& column : meshColumns())
   {
-    json[column.name] = teeth.*column.values;
+    json[column.name] = row.teeth.*column.values;
   }
   return json;
 }
@@ -167,44 +165,44 @@ int stiffness(const StiffnessOptions& options)
     requireWritable(options.csv, options.force);
   }
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
-  Json json_rows = Json::array();
-  std::vector<std::vector<double>> table;
   for (const StiffnessRow& row : rows)
   {
     if (!row.converged)
     {
       return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.residual);
     }
-    json_rows.push_back({ { "torque", row.torque },
-                          { "output_angle", row.output_angle },
-                          { "wave_generator_torque", row.wave_generator_torque },
-                          { "housing_torque", row.housing_torque },
-                          { "cup_rotation", row.cup_rotation },
-                          { "teeth_loaded", row.teeth_loaded },
-                          { "mesh_force_max", row.mesh_force_max },
-                          { "wave_generator_force_sum", row.wave_generator_force_sum },
-                          { "residual", row.residual } });
-    if (options.teeth)
-    {
-      json_rows.back()["teeth"] = teethJson(row.teeth);
-    }
-    table.push_back({ row.torque, row.output_angle, row.wave_generator_torque, static_cast<double>(row.teeth_loaded),
-                      row.mesh_force_max, row.wave_generator_force_sum, row.residual });
   }
   if (!options.csv.empty())
   {
     writeTeeth(options.csv, rows);
   }
-  if (options.json)
+  std::vector<Column<StiffnessRow>> columns = STIFFNESS_COLUMNS;
+  if (options.teeth)
   {
-    std::cout << Json{ { "wave_generator_angle", options.angle }, { "rows", json_rows } }.dump(2) << '\n';
-    return EXIT_DONE;
+    columns.push_back({ "teeth", teethJson, "" });
   }
-  printTable({ "torque [N.m]", "output angle [rad]", "WG torque [N.m]", "teeth loaded [-]", "mesh force max [N]",
-               "WG force sum [N]", "residual [N]" },
-             table);
+  printReport(options.json, { { "wave_generator_angle", "", options.angle } }, { { "rows", { columns, rows } } });
   return EXIT_DONE;
 }
+
+void declareStiffness(Command& command, StiffnessOptions& options)
+{
+  command
+      .add("--torques", options.torques,
+           "loads on the circular spline, e.g. 5,14,48 [N.m]; > 0 turns the output towards negative angles, as a load "
+           "that resists positive motion does")
+      .required();
+  command.add("--angle", options.angle, "wave generator angle [rad]");
+  command.add("--csv", options.csv, "write positions and forces of every tooth at every torque").type("FILE");
+  addCommonOptions(command, options);
+  command
+      .flag("--teeth", options.teeth,
+            "every tooth's forces [N], place in its space [m], tilt [rad] and gap to the nearer flank [m]; with --json")
+      .needs("--json");
+}
+
+const Subcommand STIFFNESS{ Subject::GEAR, "stiffness", "torsion under load, wave generator locked", declareStiffness,
+                            stiffness };
 
 struct TurnOptions : CommonOptions
 {
@@ -213,17 +211,19 @@ struct TurnOptions : CommonOptions
   int steps{};
 };
 
+const std::vector<Column<TurnRow>> TURN_COLUMNS{
+  { "wave_generator_angle", &TurnRow::wave_generator_angle, "WG angle [rad]" },
+  { "output_angle", &TurnRow::output_angle, "output angle [rad]" },
+  { "kinematic_error", &TurnRow::kinematic_error, "kinematic error [rad]" },
+  { "wave_generator_torque", &TurnRow::wave_generator_torque, "WG torque [N.m]" },
+  { "housing_torque", &TurnRow::housing_torque, "" }
+};
+
 int turn(const TurnOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
-  std::vector<TurnRow> rows;
-  {
-    Progress progress("turning");
-    rows = analyseTurn(parameters, options.load, options.angle_range, options.steps,
-                       [&](int step) { progress.update(static_cast<double>(step) / options.steps); });
-  }
-  Json json_rows = Json::array();
-  std::vector<std::vector<double>> table;
+  const std::vector<TurnRow> rows =
+      analyseTurn(loadParameters(options), options.load, options.angle_range, options.steps,
+                  [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
     if (!row.converged)
@@ -231,64 +231,20 @@ int turn(const TurnOptions& options)
       return notConverged("the row of wave generator angle " + shortNumber(row.wave_generator_angle) + " rad",
                           row.residual);
     }
-    json_rows.push_back({ { "wave_generator_angle", row.wave_generator_angle },
-                          { "output_angle", row.output_angle },
-                          { "kinematic_error", row.kinematic_error },
-                          { "wave_generator_torque", row.wave_generator_torque },
-                          { "housing_torque", row.housing_torque } });
-    table.push_back({ row.wave_generator_angle, row.output_angle, row.kinematic_error, row.wave_generator_torque });
   }
-  if (options.json)
-  {
-    std::cout << Json{ { "load", options.load }, { "rows", json_rows } }.dump(2) << '\n';
-    return EXIT_DONE;
-  }
-  printTable({ "WG angle [rad]", "output angle [rad]", "kinematic error [rad]", "WG torque [N.m]" }, table);
+  printReport(options.json, { { "load", "", options.load } }, { { "rows", { TURN_COLUMNS, rows } } });
   return EXIT_DONE;
 }
+
+void declareTurn(Command& command, TurnOptions& options)
+{
+  command.add("--load", options.load, "load on the circular spline [N.m]").required();
+  command.add("--angle-range", options.angle_range, "wave generator turns from 0 to this [rad]").required();
+  command.add("--steps", options.steps, "steps of equal size").required().range(1, 1e8);
+  addCommonOptions(command, options);
+}
+
+const Subcommand TURN{ Subject::GEAR, "turn", "quasi-static turning at constant load, friction left out", declareTurn,
+                       turn };
 }  // namespace
-
-void addInsertCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<InsertOptions>();
-  auto* command = app.add_subcommand("insert",
-                                     "static equilibrium after the wave generator's insertion, circular spline "
-                                     "left out");
-  command->add_option("--csv", options->csv, "write positions and forces of every tooth")->type_name("FILE");
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = insert(*options); });
-}
-
-void addStiffnessCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<StiffnessOptions>();
-  auto* command = app.add_subcommand("stiffness", "torsion under load, wave generator locked");
-  command->add_option("--torques", options->torques, "loads on the circular spline, e.g. 5,14,48 [N.m]")
-      ->required()
-      ->delimiter(',')
-      ->check(FINITE);
-  command->add_option("--angle", options->angle, "wave generator angle [rad]")->check(FINITE);
-  command->add_option("--csv", options->csv, "write positions and forces of every tooth at every torque")
-      ->type_name("FILE");
-  addCommonOptions(*command, *options);
-  command
-      ->add_flag(
-          "--teeth", options->teeth,
-          "every tooth's forces [N], place in its space [m], tilt [rad] and gap to the nearer flank [m]; with --json")
-      ->needs("--json");
-  command->callback([options, &exit_code] { exit_code = stiffness(*options); });
-}
-
-void addTurnCommand(CLI::App& app, int& exit_code)
-{
-  const auto options = std::make_shared<TurnOptions>();
-  auto* command = app.add_subcommand("turn", "quasi-static turning at constant load, friction left out");
-  command->add_option("--load", options->load, "load on the circular spline [N.m]")->required()->check(FINITE);
-  command->add_option("--angle-range", options->angle_range, "wave generator turns from 0 to this [rad]")
-      ->required()
-      ->check(FINITE);
-  command->add_option("--steps", options->steps, "steps of equal size")->required()->check(CLI::Range(1, 100000000));
-  addCommonOptions(*command, *options);
-  command->callback([options, &exit_code] { exit_code = turn(*options); });
-}
 }  // namespace hjt

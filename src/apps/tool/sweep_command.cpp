@@ -3,35 +3,43 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <sstream>
 #include <thread>
 
-#include "apps/tool/commands.hpp"
+#include "apps/common/command.hpp"
 
 namespace hjt
 {
-void addSweepCommand(CLI::App& app, int& exit_code)
+namespace
 {
-  const auto arguments = std::make_shared<SweepArguments>();
-  arguments->jobs = std::max(1u, std::thread::hardware_concurrency());
-  auto* command = app.add_subcommand("sweep", "work off a plan of many runs: a labelled data set");
-  addSweepOptions(*command, *arguments);
-  const auto shard = std::make_shared<std::string>();
-  const CLI::Validator part(
-      [arguments](std::string& text)
-      {
-        char slash = 0;
-        std::istringstream stream(text);
-        const bool read = static_cast<bool>(stream >> arguments->shard >> slash >> arguments->shards);
-        return read && stream.peek() == EOF && slash == '/' && arguments->shard < arguments->shards ?
-                   std::string() :
-                   "'" + text + "' must be I/N with 0 <= I < N";
-      },
-      "");
-  command->add_option("--shard", *shard, "only every N-th run, from run I on: one of N processes, anywhere")
-      ->type_name("I/N")
-      ->check(part);
-  command->callback([arguments, shard, &exit_code] { exit_code = sweep(*arguments); });
+struct ShardOptions : SweepArguments
+{
+  std::string part;
+};
+
+void declare(Command& command, ShardOptions& options)
+{
+  options.jobs = std::max(1u, std::thread::hardware_concurrency());
+  addSweepOptions(command, options);
+  command.add("--shard", options.part, "only every N-th run, from run I on: one of N processes, anywhere")
+      .type("I/N")
+      .check(
+          [&options](const std::string& text)
+          {
+            char slash = 0;
+            std::istringstream stream(text);
+            const bool read = static_cast<bool>(stream >> options.shard >> slash >> options.shards);
+            return read && stream.peek() == EOF && slash == '/' && options.shard < options.shards ?
+                       std::string() :
+                       "'" + text + "' must be I/N with 0 <= I < N";
+          });
 }
+
+int run(const ShardOptions& options)
+{
+  return sweep(options);
+}
+
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "work off a plan of many runs: a labelled data set", declare, run };
+}  // namespace
 }  // namespace hjt

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The README's tables of topics and services list exactly what a running node offers, with their types."""
+"""The tables of topics and services in docs/node.md list exactly what a running node offers, with their types."""
 import os
 import sys
 import unittest
@@ -11,8 +11,8 @@ import rostest
 import rospy
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-import project  # noqa: E402  (it lies beside this file, wherever that was started from)
-import readme_tables  # noqa: E402
+import doc_tables  # noqa: E402  (it lies beside this file, wherever that was started from)
+import project  # noqa: E402
 
 NODE = "/joint_twin"
 # Every node of roscpp has these.
@@ -20,19 +20,19 @@ OF_ROS = {"/rosout", "/clock", f"{NODE}/get_loggers", f"{NODE}/set_logger_level"
 TIMEOUT = 30.0  # for the node to come up [s]
 
 
-class ReadmeInterface(unittest.TestCase):
+class NodeInterface(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.wait_for_service(f"{NODE}/brake", TIMEOUT)
-        master = rosgraph.Master("/readme_interface")
+        master = rosgraph.Master("/node_interface")
         cls.published, cls.subscribed, cls.services = ({name for name, nodes in group if NODE in nodes} - OF_ROS
                                                        for group in master.getSystemState())
         cls.types = dict(master.getTopicTypes())
-        cls.readme = project.text(project.ROOT, "README.md")
+        cls.page = project.text(project.ROOT, "docs/node.md")
 
     def table(self, title):
         return {name.replace("~", f"{NODE}/"): kind for name, kind
-                in readme_tables.names_and_types(self.readme, title).items()}
+                in doc_tables.names_and_types(self.page, title).items()}
 
     def test_subscribed_topics(self):
         self.assertEqual(self.table("Subscribed topics"), {name: self.types[name] for name in self.subscribed})
@@ -45,5 +45,5 @@ class ReadmeInterface(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("readme_interface")
-    rostest.rosrun("harmonic_joint_twin", "readme_interface", ReadmeInterface)
+    rospy.init_node("node_interface")
+    rostest.rosrun("harmonic_joint_twin", "node_interface", NodeInterface)

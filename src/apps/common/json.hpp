@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace hjt
+{
+/// A JSON value to be written; objects keep the order of their members. A number that is not finite is written as null.
+class Json
+{
+public:
+  using Member = std::pair<std::string, Json>;
+
+  Json() = default;  ///< null
+  Json(std::initializer_list<Member> members) : value_(std::vector<Member>(members)) {}
+  Json(const char* text) : value_(std::string(text)) {}
+  Json(std::string text) : value_(std::move(text)) {}
+  template <class Number, std::enable_if_t<std::is_arithmetic_v<Number>, int> = 0>
+  Json(Number number)
+  {
+    if constexpr (std::is_same_v<Number, bool> || std::is_floating_point_v<Number>)
+    {
+      value_ = number;
+    }
+    else
+    {
+      value_ = static_cast<std::int64_t>(number);
+    }
+  }
+  template <class Value>
+  Json(const std::optional<Value>& value) : Json(value ? Json(*value) : Json())
+  {
+  }
+  template <class Value>
+  Json(const std::vector<Value>& values) : value_(std::vector<Json>(values.begin(), values.end()))
+  {
+  }
+
+  /// The member of this name, dots going deeper ("peak.torque"); made where it is missing.
+  Json& operator[](const std::string& path);
+
+  std::string dump() const;       ///< indented document
+  double number() const;          ///< of a number or a truth value; else NaN
+  std::string shortText() const;  ///< for people: numbers with seven digits, truth as yes or no
+
+private:
+  friend struct JsonWriter;
+
+  std::variant<std::nullptr_t, bool, std::int64_t, double, std::string, std::vector<Json>, std::vector<Member>> value_;
+};
+
+/// The numbers of these names in the object that a file holds; null: NaN.
+/// @throws InputError if the file holds no such object.
+std::vector<double> readJsonNumbers(const std::string& path, const std::vector<std::string>& names);
+}  // namespace hjt

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace hjt
+{
+/// Single edits (insert, delete, replace) between two texts (Levenshtein).
+inline std::size_t editDistance(const std::string& from, const std::string& to)
+{
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{ 0 });
+  for (std::size_t i = 1; i <= from.size(); ++i)
+  {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j)
+    {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({ replaced, row[j] + 1, row[j - 1] + 1 });
+    }
+  }
+  return row.back();
+}
+}  // namespace hjt

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/health_monitor.hpp"
+#include "health/signal_monitor.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "sensors/joint_sensors.hpp"
+#include "solver/joint_stepper.hpp"
+#include "surface/surface_worker.hpp"
+#include "twin/observed_ring.hpp"
+
+namespace hjt
+{
+/// The twin's parts and what happens in one of its steps.
+struct Twin::Impl
+{
+  Impl(const Parameters& given, const SurfaceSource& surface_source);
+
+  static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
+
+  /// @returns false if the joint found no equilibrium.
+  bool reset(Stamp stamp) noexcept;
+  void step() noexcept;
+  LobeLoads lobes() const noexcept;
+  SolverState solverState(Stamp since) const noexcept;
+
+  Parameters parameters;
+  JointFaults faults;
+  const JointModel& model;
+  FaultList active;
+  FaultSchedule waiting;
+  FaultList surface_faults;  // that the surface was asked for with
+  std::shared_ptr<const ResponseSurface> surface;
+  std::unique_ptr<SurfaceWorker> surface_worker;
+  bool surface_awaited{};
+  JointStepper stepper;
+  ObservedRing observed_ring;
+  Stamp step_length;
+  Stamp now{};
+  Stamp simulated_until{};  // an input with an earlier stamp is late: now, or the start if that is not on the grid
+  InputQueue queue;
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the input in force, by kind
+  TwinCounters counters;
+  double command{};      // last motor torque command [N.m]
+  bool commanded{};      // a command is in force, not timed out
+  double load_torque{};  // last load torque, clamped [N.m]
+  bool load_clamped{};
+  double temperature{};  // [degC]
+  bool brake_engaged{};
+  JointOutputs outputs;
+  JointSensors sensors;
+  HealthMonitor monitor;
+  SignalMonitor signals;
+  Assessor assessor;
+  Stamp steps_per_sample;
+  bool watching{};               // indicators are made of the readings
+  Eigen::VectorXd tooth_angles;  // at rest [rad]
+  Stamp last_failed{};           // instant of the last step that did not converge; before any: the earliest
+  Stamp last_doubtful{};         // likewise of one that was cut, too long, or in which a tooth jumped
+
+private:
+  void prepareSurface(const SurfaceSource& source);
+  void useSurface() noexcept;
+  void scheduleConfigured(Stamp stamp) noexcept;
+  bool takeFaults() noexcept;
+  void takeInputs() noexcept;
+  void takeSurface() noexcept;
+  double commandInForce() noexcept;
+  bool overshoots(const Motor::Drive& drive) const noexcept;
+  void fillOutputs(double motor_torque, bool converged) noexcept;
+  void observe() noexcept;
+  void takeReadings() noexcept;
+};
+}  // namespace hjt

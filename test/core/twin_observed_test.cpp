@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harmonic_joint_twin/surface/surface_source.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "surface/surface_cache.hpp"
+#include "test/support/allocation_count.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr Stamp DURATION = 600 * MILLISECOND;
+constexpr Stamp FAULT_STAMP = 300 * MILLISECOND;
+constexpr Stamp LOOK_PERIOD = 10 * MILLISECOND;
+
+/// One surface for all twins of this program, built once.
+SurfaceSource surfaces()
+{
+  SurfaceSource source;
+  static const auto pool = std::make_shared<SurfacePool>(1);
+  source.pool = pool;
+  return source;
+}
+
+class ObservedTwin : public testing::TestWithParam<const char*>
+{
+protected:
+  static Twin makeTwin()
+  {
+    Twin twin(shippedParameters({ std::string("solver.scene=") + GetParam(), "input.command_timeout=10.0" }),
+              surfaces());
+    const Parameters& parameters = twin.parameters();
+    for (const Input& input : randomInputs(97, DURATION, 1.5, 60.0))
+    {
+      give(twin, input);
+    }
+    twin.injectFault(FAULT_STAMP, parseFault("tooth_wear:0.5", parameters));
+    return twin;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, ObservedTwin, testing::Values("full_ring", "auto"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+/// Tooth forces, health and indicators are read every 10 ms from one of two twins; both stay the same in every bit.
+TEST_P(ObservedTwin, RunsAsOneThatNobodyLooksAt)
+{
+  Twin alone = makeTwin();
+  Twin observed = makeTwin();
+  observed.watchSignals(true);
+  ToothForces forces = observed.makeToothForces();
+  std::uint64_t on_surface = 0;
+  while (alone.step(DURATION))
+  {
+    ASSERT_TRUE(observed.step(DURATION));
+    ASSERT_EQ(numbers(observed.outputs()), numbers(alone.outputs())) << observed.stamp() << " ns";
+    ASSERT_EQ(observed.onSurface(), alone.onSurface()) << observed.stamp() << " ns";
+    on_surface += observed.onSurface() ? 1 : 0;
+    if (observed.stamp() % LOOK_PERIOD == 0)
+    {
+      EXPECT_TRUE(observed.toothForces(forces));
+      EXPECT_EQ(observed.health().solver_state, SolverState::OK);
+      observed.signalIndicators();
+    }
+  }
+  EXPECT_EQ(observed.counters().solver_failures, alone.counters().solver_failures);
+  EXPECT_EQ(observed.counters().step_cuts, alone.counters().step_cuts);
+  EXPECT_EQ(observed.counters().jumps, alone.counters().jumps);
+  EXPECT_EQ(on_surface > 1000, std::string(GetParam()) == "auto") << on_surface;
+}
+
+/// Nor does a reset or a fault make the loop of an observed twin allocate.
+TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
+{
+  Twin twin = makeTwin();
+  twin.watchSignals(true);
+  ToothForces forces = twin.makeToothForces();
+  const std::size_t before = allocationCount();
+  for (const Stamp duration : { DURATION, DURATION / 10 })
+  {
+    while (twin.step(duration))
+    {
+      if (twin.stamp() % LOOK_PERIOD == 0)
+      {
+        EXPECT_TRUE(twin.toothForces(forces));
+        twin.health();
+      }
+    }
+    twin.reset(0);
+  }
+  EXPECT_EQ(allocationCount(), before);
+}
+
+/// What one reader of the health was told of the solver, another is told as well.
+TEST(ObservedHealth, HasAReportForEveryReader)
+{
+  Twin twin(shippedParameters({ "solver.rate=1000" }));  // every step is too long for the swing of the joint
+  advance(twin, 20 * MILLISECOND);
+  for (int reader = 0; reader < 2; ++reader)
+  {
+    EXPECT_EQ(twin.health().solver_state, SolverState::DEGRADED);
+    EXPECT_EQ(twin.health(19 * MILLISECOND).solver_state, SolverState::DEGRADED);
+  }
+  twin.reset(0);
+  EXPECT_EQ(twin.health().solver_state, SolverState::OK);
+  // A reader from before the reset.
+  EXPECT_EQ(twin.health(20 * MILLISECOND).solver_state, SolverState::OK);
+}
+}  // namespace
+}  // namespace hjt
