@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -123,7 +124,9 @@ std::string shownFirst(FaultKind kind, const Parameters& parameters)
     const std::size_t at = text.find(name);
     if (at != std::string::npos)
     {
-      text.replace(at, std::strlen(name), numberText(std::round(100.0 * order) / 100.0));
+      std::array<char, 32> number{};
+      std::snprintf(number.data(), number.size(), "%.2f", order);
+      text.replace(at, std::strlen(name), number.data());
     }
   }
   return text;

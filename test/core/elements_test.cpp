@@ -274,6 +274,21 @@ TEST(CupTorsion, StoresTheIntegralOfItsTorque)
   }
 }
 
+/// RingModel::tangent asserts it.
+TEST(RingForces, AreOfTheShapeTheyWereComputedFor)
+{
+#ifdef NDEBUG
+  GTEST_SKIP() << "a build without assertions notes no shape";
+#endif
+  const RingModel model(shippedParameters());
+  RingShape shape = model.restShape({});
+  RingForces forces(shape.teeth());
+  model.forces(shape, {}, forces);
+  EXPECT_TRUE(forces.areOf(shape));
+  shape.points[17] += 1e-12;
+  EXPECT_FALSE(forces.areOf(shape));
+}
+
 /// An element in the tests that all of them have to pass.
 struct Row
 {

@@ -407,6 +407,20 @@ TEST(FaultList, HasRoomForSoMany)
   EXPECT_EQ(list.begin()->fault.place, WHOLE_MEMBER);
 }
 
+TEST(FaultDescriptions, GiveTheOrdersOfTheGearInQuestion)
+{
+  const Parameters parameters = shippedParameters();
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, parameters), "order 12.68");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_BALL, parameters), "orders 9.65 and 1.10");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_CAGE, parameters), "order 1.10: twice 1 less the cage's 0.45");
+  EXPECT_EQ(shownFirst(FaultKind::RATCHETING, parameters), "running torque, orders 2 and 1.98");
+  // 15 balls, 7 mm on 50 mm: the cage turns at 0.43.
+  const Parameters other =
+      shippedParameters({ "bearing.balls=15", "bearing.ball_diameter=7.0e-3", "bearing.pitch_diameter=50.0e-3" });
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, other), "order 8.55");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_OUTER_RACE, other), "order 6.45 and its sidebands at 2");
+}
+
 TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
 {
   GearParameters gear = shippedParameters().gear;

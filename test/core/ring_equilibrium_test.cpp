@@ -107,6 +107,21 @@ TEST_F(Ring, IsInEquilibriumWhereItSaysSo)
   }
 }
 
+/// Also where nobody has called followModel().
+TEST_F(Ring, IsSolvedAgainOnceItsModelHasChanged)
+{
+  ASSERT_TRUE(moveTo(0.3, 0.3 / ratio() - 2e-3).ok());
+  const double energy = ring_.forces().energy;
+  model_.edit<ToothMesh>().stiffness() *= 0.5;
+  ASSERT_TRUE(ring_.moveTo(ring_.position()).ok());
+  EXPECT_LT(ring_.forces().energy, 0.999 * energy);
+  RingEquilibrium fresh(model_, parameters_.solver);
+  ASSERT_TRUE(fresh.insert({ 0.0, 0.0, parameters_.gear.wave_amplitude }).ok());
+  ASSERT_TRUE(fresh.moveTo(ring_.position()).ok());
+  EXPECT_NEAR(ring_.forces().energy, fresh.forces().energy, 1e-9 * energy);
+  EXPECT_NEAR(ring_.stiffness()(1, 1), fresh.stiffness()(1, 1), 1e-6 * fresh.stiffness()(1, 1));
+}
+
 TEST_F(Ring, IsTwoFoldSymmetric)
 {
   ASSERT_TRUE(moveTo(0.3, 0.3 / ratio() - 2e-3).ok());
