@@ -75,7 +75,7 @@ Problem drive(const std::string& name, const std::string& title, double duration
   RingEquilibrium ring(problem.model->ring, solver);
   RingMotion motion(2 * problem.model->ring.rest.teeth() + 2);
   if (!ring.insert({ 0.0, 0.0, amplitude }).ok() || !balanceOutput(ring, 0.0, LOAD_BEFORE).ok() ||
-      !travelInEquilibrium(ring, SPEED, LOAD_BEFORE, motion))
+      !travelInEquilibrium(ring, SPEED, LOAD_BEFORE, motion).ok())
   {
     throw std::runtime_error(name + ": no equilibrium to start from");
   }

@@ -51,7 +51,7 @@ ExposureAnalysis::ExposureAnalysis(const Parameters& parameters, int positions)
 {
   if (!impl_->walk.status().ok())
   {
-    throw ParameterError("the wave generator does not go in: no equilibrium with these parameters");
+    throw ParameterError(explanationOf(impl_->walk.status()));
   }
 }
 
@@ -89,7 +89,8 @@ Exposure ExposureAnalysis::under(double load_torque)
       });
   if (!impl.walk.status().ok())
   {
-    throw ParameterError("no equilibrium under a load of " + numberText(load_torque) + " N.m");
+    throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
+                         " N.m: " + explanationOf(impl.walk.status()));
   }
   exposure.rim_stress_range = highest - lowest;
   return exposure;

@@ -184,7 +184,7 @@ Fault parseFault(const std::string& text, const Parameters& parameters)
   }
   const auto number = [&](std::size_t i, const char* what)
   {
-    const std::optional<double> value = looseNumber(parts[i]);
+    const std::optional<double> value = decimalNumber(parts[i]);
     if (!value)
     {
       throw ParameterError(origin + what + " '" + parts[i] + "' is not a number");

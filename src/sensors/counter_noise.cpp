@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include <Random123/philox.h>
-
+#include "base/philox.hpp"
 #include "gear/angle.hpp"
 
 namespace hjt
@@ -23,9 +22,8 @@ double unitInterval(std::uint32_t high, std::uint32_t low) noexcept
 std::array<double, 2> CounterNoise::normals(std::uint32_t channel, std::int64_t index) const noexcept
 {
   const auto counter = static_cast<std::uint64_t>(index);
-  const r123::Philox4x32::ctr_type words =
-      r123::Philox4x32()({ { static_cast<std::uint32_t>(counter), static_cast<std::uint32_t>(counter >> 32), 0, 0 } },
-                         { { seed_, channel } });
+  const std::array<std::uint32_t, 4> words = philox(
+      { static_cast<std::uint32_t>(counter), static_cast<std::uint32_t>(counter >> 32), 0, 0 }, { seed_, channel });
   const double radius = std::sqrt(-2.0 * std::log(unitInterval(words[0], words[1])));
   const double angle = TWO_PI * unitInterval(words[2], words[3]);
   return { radius * std::cos(angle), radius * std::sin(angle) };

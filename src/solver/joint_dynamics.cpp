@@ -23,11 +23,18 @@ SolveStatus JointDynamics::settle() noexcept
   SolveStatus result = ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude });
   // Gravity changes with the output angle; the joint is stiff, so taking it as constant and repeating converges fast.
   double torque = 0.0;
-  for (int i = 0; i < MAX_ITERATIONS && result.ok(); ++i)
+  for (int i = 0; result.ok(); ++i)
   {
     const double wanted = inputs.load_torque - model_.load.gravityTorque(ring_.position().output_angle);
-    if (i > 0 && std::abs(wanted - torque) < 1e-9)
+    if (i > 0 && std::abs(wanted - torque) <= balanceTolerance(ring_))
     {
+      break;
+    }
+    if (i == MAX_ITERATIONS)
+    {
+      result.code = SolveCode::UNBALANCED;
+      result.stage = SolveStage::BALANCE;
+      result.unbalanced_torque = wanted - torque;
       break;
     }
     torque = wanted;
@@ -124,12 +131,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
   SolveStatus result = ring_.moveTo(target);
   if (!result.ok() && std::isfinite(motor_angle) && std::isfinite(output_angle))
   {
-    const SolveStatus again = ring_.reinsert(target);
-    result.code = again.code;
-    result.residual = again.residual;
-    result.iterations += again.iterations;
-    result.cuts += again.cuts;
-    result.jumps = again.jumps;
+    result = ring_.reinsert(target).addEffort(result);
   }
   status.iterations += result.iterations;
   status.cuts += result.cuts;
@@ -138,6 +140,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
   if (!result.ok())
   {
     status.code = result.code;
+    status.stage = result.stage;
   }
   return result;
 }

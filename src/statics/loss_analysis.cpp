@@ -100,8 +100,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
                        });
     for (std::size_t i = first; i < rows.size(); ++i)
     {
-      rows[i].converged = meter.status().ok();
-      rows[i].residual = meter.status().residual;
+      rows[i].status = meter.status();
       const double asked = std::abs(rows[i].load_reduced);
       rows[i].gear_efficiency = asked > 0.0 ? asked / (asked + rows[i].loss.gear()) : 0.0;
     }
@@ -123,15 +122,20 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
   // The load that the friction just holds: friction grows slowly with the load, so repeating converges.
   const double ratio = nominalRatio(parameters.gear);
   double load = ratio * result.starting;
-  for (int i = 0; i < MAX_ITERATIONS && !result.converged && meter.status().ok(); ++i)
+  double change = load;
+  for (int i = 0; i < MAX_ITERATIONS && meter.status().ok() && std::abs(change) > ENOUGH * load; ++i)
   {
-    const double next = ratio * breakaway(meter, load);
-    result.converged = std::abs(next - load) <= ENOUGH * next;
-    load = next;
+    change = ratio * breakaway(meter, load) - load;
+    load += change;
   }
   result.back_driving = load;
-  result.converged = result.converged && meter.status().ok();
-  result.residual = meter.status().residual;
+  result.status = meter.status();
+  if (result.status.ok() && std::abs(change) > ENOUGH * load)
+  {
+    result.status.code = SolveCode::UNBALANCED;
+    result.status.stage = SolveStage::BALANCE;
+    result.status.unbalanced_torque = change;
+  }
   return result;
 }
 }  // namespace hjt

@@ -64,11 +64,8 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   InsertionResult result;
   const auto start = std::chrono::steady_clock::now();
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  const SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  result.status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
   result.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.converged = status.ok();
-  result.iterations = status.iterations;
-  result.residual = status.residual;
   result.teeth = tabulateTeeth(ring);
   const ToothTable& teeth = result.teeth;
   const auto force = std::minmax_element(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end());
@@ -89,32 +86,43 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   return result;
 }
 
+FitCheck checkFit(const Parameters& parameters)
+{
+  FitCheck check;
+  for (const bool meshed : { false, true })
+  {
+    RingModel model(parameters);
+    model.setMeshed(meshed);
+    RingEquilibrium ring(model, staticSolver(parameters.solver));
+    check.status = meshed ? insertUnderLoad(ring, 0.0, 0.0) : ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+    if (!check.status.ok())
+    {
+      break;
+    }
+    (meshed ? check.wave_generator_force : check.wave_generator_force_insertion) =
+        ring.forces().of<WaveGeneratorContact>().force.sum();
+    check.teeth_loaded = static_cast<int>((ring.forces().of<ToothMesh>().flank_force.array() != 0.0).count());
+  }
+  return check;
+}
+
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques)
 {
   const RingModel model(parameters);
-  RingEquilibrium ring(model, staticSolver(parameters.solver));
-  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
-  if (status.ok())
-  {
-    status = balanceOutput(ring, wave_generator_angle, 0.0);
-  }
-  const double unloaded = ring.position().output_angle;
+  RingEquilibrium unloaded(model, staticSolver(parameters.solver));
+  const SolveStatus status = insertUnderLoad(unloaded, wave_generator_angle, 0.0);
   std::vector<StiffnessRow> rows;
   for (const double torque : torques)
   {
-    if (status.ok())
-    {
-      status = balanceOutput(ring, wave_generator_angle, torque);
-    }
+    RingEquilibrium ring = unloaded;
     StiffnessRow row;
-    row.converged = status.ok();
+    row.status = status.ok() ? balanceOutput(ring, wave_generator_angle, torque) : status;
     row.torque = torque;
-    row.output_angle = ring.position().output_angle - unloaded;
+    row.output_angle = ring.position().output_angle - unloaded.position().output_angle;
     row.wave_generator_torque = ring.forces().wave_generator_torque;
     row.housing_torque = housingTorque(ring);
     row.cup_rotation = ring.forces().of<CupTorsion>().rotation;
-    row.residual = status.residual;
     row.teeth = tabulateTeeth(ring);
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
@@ -143,8 +151,8 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
       status = balanceOutput(ring, angle, load_torque);
     }
     const double output_angle = ring.position().output_angle;
-    rows.push_back({ status.ok(), angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
-                     ring.forces().wave_generator_torque, housingTorque(ring), status.residual });
+    rows.push_back({ status, angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
+                     ring.forces().wave_generator_torque, housingTorque(ring) });
     if (progress)
     {
       progress(i);

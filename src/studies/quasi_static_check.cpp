@@ -122,7 +122,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   const double amplitude = parameters.gear.wave_amplitude;
   RingEquilibrium balanced(model.ring, staticSolver(parameters.solver));
   QuasiStaticResult result;
-  if (!balanced.insert({ 0.0, 0.0, amplitude }).ok() || !balanceOutput(balanced, 0.0, setup.load).ok())
+  if (result.status = insertUnderLoad(balanced, 0.0, setup.load); !result.status.ok())
   {
     return result;
   }
@@ -135,7 +135,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   ring.setSpaces(balanced.shape().space);
   const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver, setup.tolerance);
   RingMotion motion(ring.coordinates());
-  if (!travelInEquilibrium(balanced, setup.speed, setup.load, motion))
+  if (result.status = travelInEquilibrium(balanced, setup.speed, setup.load, motion); !result.status.ok())
   {
     return result;
   }
@@ -164,7 +164,12 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
     }
     ring.evaluate(motion.q, motion.v, motion.time);
     const DrivePosition& position = ring.position();
-    if (!same.moveTo(position).ok() || !balanceOutput(balanced, position.wave_generator_angle, setup.load).ok())
+    result.status = same.moveTo(position);
+    if (result.status.ok())
+    {
+      result.status = balanceOutput(balanced, position.wave_generator_angle, setup.load);
+    }
+    if (!result.status.ok())
     {
       return result;
     }

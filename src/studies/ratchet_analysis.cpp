@@ -93,7 +93,7 @@ private:
       other_excess = excess();
       if (other == 0.0)
       {
-        status.code = SolveCode::NOT_CONVERGED;  // the lobes are gone
+        status.code = SolveCode::UNBALANCED;  // the lobes are gone
       }
     }
     for (int i = 0; i < MAX_ITERATIONS && status.ok() && std::abs(excess()) > FORCE_TOLERANCE; ++i)
@@ -153,9 +153,8 @@ RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator
   RatchetResult result;
   const RingModel model(parameters);
   RingEquilibrium ring(model, parameters.solver);
-  result.converged = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok() &&
-                     balanceOutput(ring, wave_generator_angle, 0.0).ok();
-  if (!result.converged)
+  result.status = insertUnderLoad(ring, wave_generator_angle, 0.0);
+  if (!result.status.ok())
   {
     return result;
   }

@@ -119,9 +119,8 @@ std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBen
       status = ring.relax(model.rest.points() + w / ring.position().wave_amplitude * displacements, { 0.0, 0.0, w });
     }
     SmallWaveRow row;
-    row.converged = status.ok();
+    row.status = status;
     row.wave_amplitude = w;
-    row.residual = status.residual;
     row.teeth_in_contact = static_cast<int>((ring.forces().of<WaveGeneratorContact>().force.array() > 0.0).count());
     row.contact_force_min = ring.forces().of<WaveGeneratorContact>().force.minCoeff();
     row.contact_force_max = ring.forces().of<WaveGeneratorContact>().force.maxCoeff();

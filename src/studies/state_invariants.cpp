@@ -14,13 +14,6 @@ namespace hjt
 {
 namespace
 {
-/// The ring under `load`, wave generator at `angle`.
-SolveStatus bringTo(RingEquilibrium& ring, double angle, double load)
-{
-  const SolveStatus status = ring.insert({ 0.0, 0.0, ring.model().gear.wave_amplitude });
-  return status.ok() ? balanceOutput(ring, angle, load) : status;
-}
-
 /// `there` against `here` turned by `pitches` tooth pitches, tooth i taking the place of tooth i + pitches.
 RingDifference renumberedDifference(const RingEquilibrium& here, const RingEquilibrium& there, int pitches)
 {
@@ -73,7 +66,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   const RingModel model(parameters);
   StateInvariants state;
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  const SolveStatus status = bringTo(ring, angle, load);
+  const SolveStatus status = insertUnderLoad(ring, angle, load);
   const DrivePosition& position = ring.position();
   const double pitch = model.rest.pitchAngle();
   const double output_shift = pitches * (pitch - TWO_PI / model.gear.teeth_circular_spline);
@@ -88,7 +81,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   {
     shifted_status = shifted.moveTo(there);
   }
-  state.converged = status.ok() && shifted_status.ok();
+  state.status = status.ok() ? shifted_status : status;
   state.load = load;
   state.wave_generator_angle = position.wave_generator_angle;
   state.output_angle = position.output_angle;
@@ -112,7 +105,7 @@ std::vector<PotentialRow> analysePotential(const Parameters& parameters, double 
 {
   const RingModel model(parameters);
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  SolveStatus status = bringTo(ring, angle, load);
+  SolveStatus status = insertUnderLoad(ring, angle, load);
   const DrivePosition centre = ring.position();
   const Eigen::Vector2d torque(ring.forces().wave_generator_torque, ring.forces().output_torque);
   const double stiffness = ring.stiffness()(0, 1);
@@ -148,8 +141,7 @@ std::vector<PotentialRow> analysePotential(const Parameters& parameters, double 
     row.output_difference = (output_behind.energy - output_ahead.energy) / (2.0 * row.output_step) - torque[1];
     row.wave_generator_by_output = (output_ahead.torque[0] - output_behind.torque[0]) / (2.0 * row.output_step);
     row.output_by_wave_generator = (ahead.torque[1] - behind.torque[1]) / (2.0 * step);
-    row.converged = status.ok();
-    row.residual = status.residual;
+    row.status = status;
     rows.push_back(row);
   }
   return rows;

@@ -105,13 +105,7 @@ TurnedMachine analyseTurnedMachine(const Parameters& parameters, double load, un
   const RingModel model(parameters);
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   TurnedMachine result;
-  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
-  if (status.ok())
-  {
-    status = balanceOutput(ring, 0.0, load);
-  }
-  result.converged = status.ok();
-  result.residual = status.residual;
+  result.status = insertUnderLoad(ring, 0.0, load);
   const State state{ ring.shape(), ring.position() };
   const RimBending curvature = bendingOf(parameters, BendingLaw::CURVATURE, model.rest);
   const RimBending absolute = bendingOf(parameters, BendingLaw::ABSOLUTE, model.rest);

@@ -19,7 +19,8 @@
 namespace hjt
 {
 /// Surfaces in memory for the twins of one process, one for each set of parameters. Safe to use from several threads:
-/// who asks for one that is being made waits for it, and who asks for another does not.
+/// who asks for one that is being made waits for it, and who asks for another does not. Where `make` throws, its caller gets
+/// the exception and the next asker tries again.
 class SurfacePool
 {
 public:
@@ -33,6 +34,8 @@ public:
 
 private:
   using Entry = std::pair<std::string, std::shared_future<Surface>>;
+
+  std::list<Entry>::iterator find(const std::string& key);
 
   std::size_t kept_;
   std::mutex mutex_;
@@ -50,8 +53,12 @@ struct SurfaceTables
 ///
 /// `model`: the joint of these parameters with its faults; `faults`: names what they changed in it, for the cache; empty: none.
 /// Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as departure from one
-/// of equal teeth. A file counts only if it names this format, holds the very same parameters and faults and its sum is
-/// right; else it is built anew and written over. Files appear whole or not at all.
+/// of equal teeth.
+///
+/// A file counts only if it is a regular file of this user that others cannot write, not larger than 1 GB, begins with the
+/// hash of this very code, the same parameters and faults, ends with the hash of all its bytes, and holds finite numbers on
+/// ascending lines; else the table is built again and the file replaced. That finds damage and other builds, not a table
+/// that this user has forged. Files appear whole or not at all.
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source);
 

@@ -41,10 +41,10 @@ FrictionMap::FrictionMap(const Parameters& parameters)
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const LossRow& row = rows[i];
-    if (!row.converged)
+    if (!row.status.ok())
     {
       throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.load_torque) +
-                           " N.m at the output");
+                           " N.m at the output: " + explanationOf(row.status));
     }
     if (i % SPEEDS == 0)
     {

@@ -45,9 +45,8 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   }
   if (!reset(0))
   {
-    throw ParameterError(
-        "the faults that the twin starts with leave it no equilibrium: the insertion of the wave "
-        "generator did not converge (faults.*)");
+    throw ParameterError("the twin has no equilibrium to start from, with the faults it starts with (faults.*): " +
+                         explanationOf(stepper.status()));
   }
 }
 

@@ -110,7 +110,7 @@ TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergy)
   for (int k = 0; k < 12;)
   {
     ring.draw(model, shape, position);
-    const Eigen::ArrayXd depth = contact.forces(shape, position).contact_depth.array();
+    const Eigen::ArrayXd depth = contact.forces(shape, position).of<WaveGeneratorContact>().depth.array();
     // No tooth so near a kink of the law that a difference would straddle it.
     const double width = parameters.contact.smoothing;
     if (std::min(depth.abs().minCoeff(), (depth - width).abs().minCoeff()) < 1e-8)
@@ -174,7 +174,7 @@ TEST_P(WaveGeneratorContactNormal, SurfaceAdvancesByTheAmplitudeAsTheEnergyTells
     ring.draw(model, shape, position);
     const RingForces forces = contact.forces(shape, position);
     Eigen::VectorXd surface(shape.teeth());
-    model.of<WaveGeneratorContact>().surfaceByAmplitude(position, forces, surface);
+    model.of<WaveGeneratorContact>().surfaceByAmplitude(position, forces.of<WaveGeneratorContact>(), surface);
     const double force = forces.of<WaveGeneratorContact>().force.dot(surface);
     constexpr double STEP = 1e-9;  // m
     DrivePosition before = position;

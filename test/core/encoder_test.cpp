@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/philox.hpp"
 #include "gear/angle.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
@@ -21,6 +23,31 @@ namespace
 constexpr int COUNTS = 4320;
 constexpr double QUANTUM = TWO_PI / COUNTS;
 const SensorParameters SENSORS{ COUNTS, 19, 10e-3 };
+
+// The known answers of the authors' own library (Random123, kat_vectors: philox4x32 10).
+TEST(Philox, GivesThePublishedWords)
+{
+  using Words = std::array<std::uint32_t, 4>;
+  constexpr std::uint32_t ONES = 0xffffffff;
+  EXPECT_EQ(philox({ 0, 0, 0, 0 }, { 0, 0 }), (Words{ 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8 }));
+  EXPECT_EQ(philox({ ONES, ONES, ONES, ONES }, { ONES, ONES }),
+            (Words{ 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd }));
+  EXPECT_EQ(philox({ 0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344 }, { 0xa4093822, 0x299f31d0 }),
+            (Words{ 0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1 }));
+}
+
+TEST(PhiloxStream, GivesTheWordsOfEachCounterFromTheLastToTheFirst)
+{
+  PhiloxStream stream({ 7, 8, 9 }, { 1, 2 });
+  for (std::uint32_t block = 0; block < 3; ++block)
+  {
+    const std::array<std::uint32_t, 4> words = philox({ 7, 8, 9, block }, { 1, 2 });
+    for (std::size_t i = 4; i-- > 0;)
+    {
+      EXPECT_EQ(stream(), words[i]);
+    }
+  }
+}
 
 TEST(IncrementalEncoder, CountsDownBelowZeroWithoutAGap)
 {

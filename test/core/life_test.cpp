@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 
 #include <gtest/gtest.h>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 
+#include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 
 #include "gear/angle.hpp"
@@ -320,9 +320,9 @@ TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
 
 TEST(UseRecord, IsTheSameAfterItsFile)
 {
-  const std::string path = ::testing::TempDir() + "/use.csv";
+  const TemporaryFolder folder;
   const CountedMotion counted;
-  std::ofstream(path) << counted.record.text();
+  const std::string path = folder.write("use.csv", counted.record.text());
   const UseRecord read(shippedLife(), path);
   const DutyCycle before = counted.record.duty();
   const DutyCycle after = read.duty();
@@ -334,20 +334,27 @@ TEST(UseRecord, IsTheSameAfterItsFile)
     EXPECT_EQ(after.phases[i].load_torque, before.phases[i].load_torque);
     EXPECT_EQ(after.phases[i].temperature, before.phases[i].temperature);
   }
-  std::ofstream(path) << "duration,motor_speed,load_torque\n10,0,5\n";
+  folder.write("use.csv", "duration,motor_speed,load_torque\n10,0,5\n");
   EXPECT_THROW(UseRecord(shippedLife(), path), InputError);
 }
 
-TEST(DutyCycle, RefusesAFileWithoutMotion)
+TEST(DutyCycle, RefusesNumbersThatNoDriveHas)
 {
-  const std::string path = ::testing::TempDir() + "/duty.csv";
-  const auto write = [&](const char* rows) {
-    std::ofstream(path) << "duration,motor_speed,load_torque,temperature\n" << rows;
-  };
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "duty.csv").string();
+  const auto write = [&](const std::string& rows)
+  { folder.write("duty.csv", "duration,motor_speed,load_torque,temperature\n" + rows); };
   write("10,0,5,20\n");
   EXPECT_THROW(DutyCycle::fromFile(path), InputError);
   write("0,10,5,20\n");
   EXPECT_THROW(DutyCycle::fromFile(path), InputError);
+  for (const char* row :
+       { "1e308,10,5,20\n", "10,1e308,5,20\n", "10,-1e308,5,20\n", "10,10,1e308,20\n", "10,10,5,1e308\n" })
+  {
+    write(row);
+    EXPECT_THROW(DutyCycle::fromFile(path), InputError) << row;
+    EXPECT_THROW(UseRecord(shippedLife(), path), InputError) << row;
+  }
   write("10,-62.83185307179586,5,20\n10,0,0,20\n");
   EXPECT_NEAR(DutyCycle::fromFile(path).turnsPerHour(), 5.0 * 3600.0, 1e-6);
 }

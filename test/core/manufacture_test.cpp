@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <complex>
-#include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <Eigen/Geometry>
 
 #include "element_under_test.hpp"
@@ -15,6 +12,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "random_ring.hpp"
 #include "solver/output_balance.hpp"
+#include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -22,20 +20,14 @@ namespace hjt
 namespace
 {
 using testing::HasSubstr;
-namespace fs = std::filesystem;
 
 /// A table of pitch deviations, removed at the end of the test.
 class TableFile
 {
 public:
-  explicit TableFile(const std::string& text)
-    : path_(fs::temp_directory_path() / ("hjt_manufacture_test_" + std::to_string(::getpid()) + ".csv"))
-  {
-    std::ofstream(path_) << text;
-  }
-  ~TableFile() { fs::remove(path_); }
+  explicit TableFile(const std::string& text) : path_(folder_.write("table.csv", text)) {}
 
-  PitchParameters pitch() const { return { 0.0, 1, path_.string() }; }
+  PitchParameters pitch() const { return { 0.0, 1, path_ }; }
 
   /// What is said about it as the table of a member with three teeth.
   std::string complaint() const
@@ -52,7 +44,8 @@ public:
   }
 
 private:
-  fs::path path_;
+  TemporaryFolder folder_;
+  std::string path_;
 };
 
 /// sum_i values_i exp(-2 pi j k i / Z) * 2 / Z: for a cosine of order k, its amplitude and phase.

@@ -56,7 +56,8 @@ void expectInsertedOrSaid(const Assignments& assignments, bool must_converge)
   }
   else
   {
-    EXPECT_EQ(status.code, SolveCode::NOT_CONVERGED);
+    EXPECT_TRUE(status.code == SolveCode::NO_DESCENT || status.code == SolveCode::ITERATION_LIMIT);
+    EXPECT_EQ(status.stage, SolveStage::INSERTION);
     EXPECT_LT(ring.position().wave_amplitude, parameters.gear.wave_amplitude);
   }
 }
@@ -322,7 +323,7 @@ TEST(Backlash, IsCrossedByTheStaticAnalysesAtAnyAngle)
   for (const double angle : { 0.0, 0.3 })
   {
     const std::vector<StiffnessRow> rows = analyseStiffness(parameters, angle, { 5.0, -5.0, 48.0 });
-    ASSERT_TRUE(rows[0].converged && rows[1].converged && rows[2].converged) << angle;
+    ASSERT_TRUE(rows[0].status.ok() && rows[1].status.ok() && rows[2].status.ok()) << angle;
     EXPECT_LT(rows[0].output_angle, -0.3e-3);
     EXPECT_GT(rows[1].output_angle - rows[0].output_angle, 2.0 * 20e-6 / 32e-3);
   }

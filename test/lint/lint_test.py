@@ -20,6 +20,7 @@ import layering
 import links
 import message_comments
 import project
+import python
 import spdx
 import type_names
 
@@ -140,6 +141,15 @@ class ConfigFiles(Tree):
     def test_key_without_unit(self):
         self.yaml("0.25", comment="# Length.")
         self.assert_fault(config_files.check, "config/a.yaml:3", "unit")
+
+    def test_launch_file_with_other_stages(self):
+        self.yaml("0.25")
+        self.write("config/stages", "# Files.\na.yaml\nb.yaml\n")
+        load = '<rosparam command="load" file="$(arg config)/{}.yaml"/>'
+        self.write("launch/twin.launch", load.format("a") + load.format("b"))
+        self.assert_clean(config_files.check)
+        self.write("launch/twin.launch", load.format("b") + load.format("a"))
+        self.assert_fault(config_files.check, "launch/twin.launch", "stages")
 
 
 class MessageComments(Tree):
@@ -302,6 +312,18 @@ class ClangTidy(Tree):
         options = ["-Winvalid-pch", "-include", prefix]
         self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
         self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
+
+
+class Python(Tree):
+    def test_clean(self):
+        self.write("scripts/one.py", "import sys\n\nsys.exit(0)\n")
+        self.assert_clean(python.check)
+
+    def test_faults(self):
+        for content, word in [("import os\n", "F401"), ("x = 1" + " + 1" * 40 + "\n", "E501"), ("x = y\n", "F821")]:
+            with self.subTest(content=content):
+                self.write("scripts/one.py", content)
+                self.assert_fault(python.check, "scripts/one.py:1", word)
 
 
 class CatkinLint(Tree):
