@@ -94,7 +94,7 @@ def main():
     synchronise(copy)
     run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path.resolve()], cwd=copy)
     # Quick to build rather than to run; with the assertions.
-    run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O1",
+    run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
          f"-DCATKIN_DEVEL_PREFIX={build}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3"], stdout=subprocess.DEVNULL)
     run(["cmake", "--build", build, "-j", os.environ.get("HJT_JOBS", str(os.cpu_count())), "--target",
          *fields["Targets"].split()])
