@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws a simulated joint: what it was asked, how it moved, and what its teeth carried."""
+"""Draws a simulated joint: commands, motion, and forces of its teeth."""
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
 import numpy as np  # noqa: E402
 
-# Okabe and Ito's colours: told apart by every eye, and in grey.
+# Okabe and Ito's colours: distinct for every eye, and in grey.
 BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
 STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
          "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
@@ -18,7 +18,7 @@ RING_STRETCH = 13.0  # the flexspline's deformation is drawn this much larger
 
 
 def thin(series, name, factor=1.0):
-    """Time and values, no more points than the eye can tell apart."""
+    """Time and values, reduced to the number of points that a figure can show."""
     step = max(1, len(series) // MOST_POINTS)
     return series.time[::step], series[name][::step] * factor
 

@@ -10,7 +10,7 @@ FEW = 20000  # messages are read in a moment
 
 
 class Series:
-    """What one topic said: `time` [s] since the start of the simulation, and one array per field."""
+    """Messages of one topic: `time` [s] since the start of the simulation, and one array per field."""
 
     def __init__(self, time, fields):
         self.time = time

@@ -182,7 +182,7 @@ def draw(rows, title, file):
 
 
 def failures(rows):
-    """One line a solver: what did not finish."""
+    """One line a solver: runs that did not finish."""
     lost = {}
     for row in rows:
         if row["failure"]:
@@ -203,7 +203,7 @@ def processor():
 
 
 class Progress:
-    """Passes on what the problems say on stderr, with the part done and the time left."""
+    """Prints the messages of the problems on stderr, with the part done and the time left."""
 
     def __init__(self, problems):
         self.start = time.monotonic()
@@ -243,7 +243,7 @@ def ask(tool, problem, *arguments, progress):
 
 
 def cached(file, reuse, newer_than, make):
-    """JSON lines of a file, made anew if something they depend on is younger."""
+    """JSON lines of a file, renewed if something they depend on is younger."""
     fresh = os.path.exists(file) and (reuse or os.path.getmtime(file) > newer_than)
     if not fresh:
         lines = make()
@@ -268,7 +268,7 @@ def measure(problem, options, progress):
 
 
 def section(problem, reference, rows, images):
-    """Lines of the page, what did not finish, and the ratios by quantity and level."""
+    """Lines of the page, unfinished runs, and the ratios by quantity and level."""
     draw(rows, reference["title"], os.path.join(images, problem + ".png"))
     lines = ["## " + reference["title"], "",
              f"Reference: {reference['methods'][0]}; {reference['methods'][1]} is {reference['apart']['force']:.1e} "
@@ -287,7 +287,7 @@ def section(problem, reference, rows, images):
 
 
 def kinks(references):
-    """What keeps the references of the exact contact law apart, seen from the same steps on its C1 ramp."""
+    """Cause of the difference between the references of the exact contact law: the same steps on its C1 ramp."""
     exact, smooth = (references.get(problem) for problem in ("drive", "drive_smooth"))
     if not exact or not smooth or exact["apart"]["force"] < 10.0 * smooth["apart"]["force"]:
         return []

@@ -37,8 +37,8 @@ def read_table(directory, name):
         return None
     with open(path, encoding="utf-8") as file:
         names = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    return dict(zip(names, rows.T)) if rows.size else None
+        lines = file.readlines()
+    return dict(zip(names, np.loadtxt(lines, delimiter=",", ndmin=2).T)) if lines else None
 
 
 def new_figure(width, height, rows=1, columns=1, **settings):
@@ -53,8 +53,7 @@ def with_gaps(time, *columns):
 
 
 def shift_to(course, twin, name):
-    """What the twin's angle differs by at the first instant of both: where a twin starts is not where the robot
-    stood."""
+    """Offset of the twin's angle at the first common instant: a twin does not start at the robot's position."""
     start = max(course["time"][0], twin["time"][0])
     return (np.interp(start, course["time"], course[name]) - np.interp(start, twin["time"], twin[name]))
 
@@ -229,7 +228,7 @@ def draw_all(directory, data):
 
 
 def reason(verdict):
-    """What the head of the page says: what is out of the ordinary with the faults that would do it, or what is not."""
+    """Text at the head of the page: the deviations with possible faults, or that there are none."""
     if verdict["level"] == "NOT JUDGED":
         return "This recording does not tell whether the joint is sound."
     if verdict["level"] != "OK":

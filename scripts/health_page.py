@@ -84,7 +84,7 @@ def limits(sound):
 
 
 def weakest(run):
-    """Of a faulty run's windows the least score: what an alarm hangs on."""
+    """Smallest score among a faulty run's windows, which decides on an alarm."""
     return min((window.largest for window in run.windows), default=0.0)
 
 
@@ -138,7 +138,7 @@ def fault_table(kinds, faulty, limit):
 
 
 def size_table(kinds, sound, faulty):
-    """What changes most, at severity 1, against what it is in sound drives."""
+    """The indicator with the largest change at severity 1, relative to sound drives."""
     lines = ["| kind | where it stands out most | indicator | sound: mean ± spread | severity 1 | change over spread |",
              "|---|---|---|---|---|---|"]
     for kind in kinds:

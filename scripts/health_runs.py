@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of sound and faulty joints with real sensors, and what `joint_twin indicators` makes of their windows.
+"""Runs of sound and faulty joints with real sensors, and the indicators of their windows by `joint_twin indicators`.
 
 Runs are made by `joint_twin sweep`, in bags that hold the windows' indicators only; a run that is there already is not
 made again."""
@@ -150,7 +150,7 @@ class Bench:
         return self.sweep("setting_in", condition, CHECK_UP, 4, 1, 5, classes)
 
     def reference(self, condition):
-        """File of what is healthy there, made of runs of its own."""
+        """File of the healthy reference, from separate runs."""
         bags = [bag for point in points_of(condition)
                 for bag, _ in self.sound("commissioning", condition, point,
                                          max(round(COMMISSIONING[1] / window_time(point)), 2), COMMISSIONING[0], 1)]
@@ -159,7 +159,7 @@ class Bench:
         return path
 
     def judge(self, bags, condition, point, reference):
-        """What is said of runs held against a reference."""
+        """Assessments of runs compared with a reference."""
         report = self._indicators([bag for bag, _ in bags], ["--baseline", reference])
         windows = collections.defaultdict(list)
         for window in report["windows"]:

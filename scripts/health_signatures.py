@@ -14,7 +14,7 @@ TABLE_LEAST = 0.1  # shown from this size on
 
 
 def compressed(features):
-    """As the assessment takes them; what was not compared is NaN."""
+    """As in the assessment; features not compared are NaN."""
     return numpy.array([math.nan if score is None else math.copysign(math.asinh(max(abs(score) - NOISE, 0.0)), score)
                         for score in features.values()])
 

@@ -89,7 +89,7 @@ def master():
 
 
 class Bench:
-    """What talks to the node: torque at 125 Hz, a listener of the joint states, the report of its timing."""
+    """Clients of the node: torque at 125 Hz, a subscriber to the joint states, the report of its timing."""
 
     def __init__(self):
         rospy.init_node("jitter", disable_signals=True)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads a bag with a simulated joint; prints a table of what came out and draws it."""
+"""Reads a bag with a simulated joint; prints a table of the results and draws them."""
 import argparse
 import os
 import sys

@@ -37,7 +37,7 @@ Problem insertion()
   Parameters parameters = thesisParameters();
   Problem problem = fromParameters("insertion", "Insertion of the wave generator, thesis masses, 0.05 s", parameters);
   auto model = std::make_shared<JointModel>(*problem.parameters);
-  model->ring.meshed = false;
+  model->ring.setMeshed(false);
   problem.model = model;
   problem.drive.wave_generator_driven = true;
   problem.drive.output_driven = true;
@@ -75,7 +75,7 @@ Problem drive(const std::string& name, const std::string& title, double duration
   RingEquilibrium ring(problem.model->ring, solver);
   RingMotion motion(2 * problem.model->ring.rest.teeth() + 2);
   if (!ring.insert({ 0.0, 0.0, amplitude }).ok() || !balanceOutput(ring, 0.0, LOAD_BEFORE).ok() ||
-      !travelInEquilibrium(ring, SPEED, LOAD_BEFORE, motion))
+      !travelInEquilibrium(ring, SPEED, LOAD_BEFORE, motion).ok())
   {
     throw std::runtime_error(name + ": no equilibrium to start from");
   }
@@ -217,7 +217,8 @@ Series Recorder::series() const
       series.angles.row(i) = q.tail(2);
     }
     series.positions.row(i) = q.head(n - 2);
-    series.forces.row(i) << ring.forces().contact_force.transpose(), ring.forces().flank_force.transpose();
+    series.forces.row(i) << ring.forces().of<WaveGeneratorContact>().force.transpose(),
+        ring.forces().of<ToothMesh>().flank_force.transpose();
   }
   return series;
 }

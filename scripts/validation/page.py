@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyp
 
 from bounds import number  # noqa: E402
 
-# Okabe and Ito's colours: told apart by every eye, and in grey.
+# Okabe and Ito's colours: distinct for every eye, and in grey.
 BLUE, ORANGE, GREEN, RED, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#666666"
 STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
          "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws a twin's drive for rviz: contact forces in, markers out.
-#include <csignal>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "ros_io/drive_markers.hpp"
 #include "ros_io/parameter_server.hpp"
+#include "ros_io/shutdown_signals.hpp"
 
 namespace
 {
@@ -49,7 +49,7 @@ hjt::DriveMarkers readMarkers(const ros::NodeHandle& node)
 int main(int argc, char** argv)
 {
   ros::init(argc, argv, "drive_markers");
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  hjt::shutDownOnSignals();
   ros::NodeHandle node("~");
   try
   {

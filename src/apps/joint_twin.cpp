@@ -9,9 +9,10 @@
 
 int main(int argc, char** argv)
 {
-  hjt::CommandLine line("joint_twin",
-                        "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
-                        "in rad.");
+  hjt::CommandLine line(
+      "joint_twin",
+      "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
+      "in rad.");
   line.addSubcommands();
   hjt::catchInterrupts();
   try

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <csignal>
-
 #include <ros/ros.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "ros_io/companion_node.hpp"
 #include "ros_io/parameter_server.hpp"
+#include "ros_io/shutdown_signals.hpp"
 #include "ros_io/twin_node.hpp"
 
 namespace
@@ -24,8 +23,7 @@ void run(ros::NodeHandle& handle, const hjt::Parameters& parameters)
 int main(int argc, char** argv)
 {
   ros::init(argc, argv, "joint_twin");
-  // roscpp catches SIGINT only.
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  hjt::shutDownOnSignals();
   // Outlives the try block: with the last handle ROS shuts down, and its console with it.
   ros::NodeHandle node("~");
   try

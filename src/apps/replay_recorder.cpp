@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <csignal>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,8 +16,10 @@
 #include <CLI/CLI.hpp>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_file.hpp"
 #include "ros_io/bag_inputs.hpp"
 #include "ros_io/bag_writer.hpp"
+#include "ros_io/shutdown_signals.hpp"
 
 namespace
 {
@@ -23,7 +29,8 @@ using topic_tools::ShapeShifter;
 std::set<std::string> topicsToRecord(const std::string& played_bag, const std::string& twin_namespace)
 {
   std::set<std::string> topics{ "/diagnostics" };
-  const rosbag::Bag bag(played_bag, rosbag::bagmode::Read);
+  rosbag::Bag bag;
+  hjt::openForReading(bag, played_bag);
   rosbag::View view(bag);
   for (const rosbag::ConnectionInfo* connection : view.getConnections())
   {
@@ -38,36 +45,103 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 
 /// Records given topics, each message at the time it comes. `rosbag record` cannot serve here: its queues of 100
 /// messages lose joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it
-/// looks for topics only once the clock runs, and misses what came first. Here queues have no bound.
+/// looks for topics only once the clock runs, and misses what came first.
+///
+/// What has come waits in memory for the disk, up to a number of bytes; beyond it messages are lost and counted.
 class TopicRecorder
 {
 public:
-  TopicRecorder(const std::set<std::string>& topics, const std::string& path) : writer_(path)
+  /// @param buffer for what waits [bytes].
+  TopicRecorder(const std::set<std::string>& topics, const std::string& path, std::size_t buffer)
+    : writer_(path), buffer_(buffer)
   {
     for (const std::string& topic : topics)
     {
-      constexpr std::uint32_t NO_BOUND = 0;
+      constexpr std::uint32_t NO_BOUND = 0;  // of ROS' own queue, which `receive` empties at once
       subscribers_.push_back(node_.subscribe<ShapeShifter>(
-          topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { write(topic, *message); },
+          topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { receive(topic, message); },
           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
     }
   }
 
-  void close() { writer_.close(); }
+  /// Records until ROS shuts down. @throws hjt::InputError if not all could be written.
+  void run()
+  {
+    ros::AsyncSpinner spinner(1);
+    spinner.start();
+    while (ros::ok())
+    {
+      writeWaiting();
+    }
+    spinner.stop();
+    writeWaiting();
+    writer_.close();
+    if (!lost_.empty())
+    {
+      std::string text;
+      for (const auto& [topic, count] : lost_)
+      {
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + " of " + topic;
+      }
+      throw hjt::InputError("more came than could be written; lost messages: " + text + ". " + writer_.path() +
+                            " has all others");
+    }
+  }
 
 private:
-  void write(const std::string& topic, const ShapeShifter& message)
+  struct Waiting
+  {
+    const std::string* topic;
+    hjt::Stamp stamp;
+    ShapeShifter::ConstPtr message;
+  };
+
+  void receive(const std::string& topic, const ShapeShifter::ConstPtr& message)
   {
     // Before the clock has started there is no time to record at, and a bag takes none before the epoch.
     const ros::Time now = ros::Time::now();
-    if (!now.isZero())
+    if (now.isZero())
     {
-      writer_.write(topic, hjt::fromRosTime(now), message);
+      return;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (bytes_ + message->size() > buffer_)
+    {
+      ++lost_[topic];
+      return;
+    }
+    bytes_ += message->size();
+    waiting_.push_back({ &topic, hjt::fromRosTime(now), message });
+    arrived_.notify_one();
+  }
+
+  /// Writes what waits; waits a moment if that is nothing.
+  void writeWaiting()
+  {
+    constexpr std::chrono::milliseconds MOMENT{ 50 };
+    std::deque<Waiting> taken;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      arrived_.wait_for(lock, MOMENT, [this] { return !waiting_.empty(); });
+      taken.swap(waiting_);
+    }
+    for (; !taken.empty(); taken.pop_front())
+    {
+      const Waiting& next = taken.front();
+      writer_.write(*next.topic, next.stamp, *next.message);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      bytes_ -= next.message->size();
     }
   }
 
   hjt::BagWriter writer_;
+  const std::size_t buffer_;
   ros::NodeHandle node_;
+  std::mutex mutex_;  // of the four below
+  std::condition_variable arrived_;
+  std::deque<Waiting> waiting_;
+  std::size_t bytes_{};  // of all that waits
+  std::map<std::string, std::uint64_t> lost_;
   std::vector<ros::Subscriber> subscribers_;
 };
 
@@ -78,37 +152,38 @@ std::string defaultOutput(const std::filesystem::path& played_bag)
   return played_bag.parent_path() / (stem + "_twin.bag");
 }
 
-void record(const std::set<std::string>& topics, const std::string& path, bool force)
+void record(const std::set<std::string>& topics, const std::string& path, std::size_t buffer, bool force)
 {
   if (!force && std::filesystem::exists(path))
   {
     throw hjt::InputError(path + " exists already and is not overwritten without --force");
   }
-  TopicRecorder recorder(topics, path);
-  ros::spin();
-  recorder.close();
+  TopicRecorder(topics, path, buffer).run();
 }
 }  // namespace
 
 int main(int argc, char** argv)
 {
   ros::init(argc, argv, "replay_recorder");
-  // roscpp catches SIGINT only; either ends the recording with the bag closed.
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  hjt::shutDownOnSignals();
   CLI::App app("Records the topics of a bag being played, and everything the twin puts out beside them");
   std::string played_bag;
   std::string output_bag;
   std::string twin_namespace = "/joint_twin";
+  std::size_t buffer = 256;
   bool force = false;
   app.add_option("played", played_bag, "the bag being played")->required()->check(CLI::ExistingFile);
   app.add_option("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag beside the one played");
   app.add_option("--joint-namespace", twin_namespace, "of the twin's topics")->capture_default_str();
+  app.add_option("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
+      ->check(CLI::Range(1UL, 1UL << 20))
+      ->capture_default_str();
   app.add_flag("--force", force, "overwrite an existing output");
   CLI11_PARSE(app, argc, argv);
   try
   {
     record(topicsToRecord(played_bag, twin_namespace), output_bag.empty() ? defaultOutput(played_bag) : output_bag,
-           force);
+           buffer * 1024 * 1024, force);
   }
   catch (const std::exception& error)
   {

@@ -12,6 +12,7 @@
 #define CSV_IO_NO_THREAD
 #include <libfccp/csv.h>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -64,6 +65,16 @@ public:
       }
     }
     return true;
+  }
+
+  /// @throws InputError naming line, column, value, unit and range.
+  void requireRange(std::size_t column, double value, const Range& range, const std::string& unit) const
+  {
+    if (!(value >= range.min && value <= range.max))
+    {
+      throw InputError(place() + ": column '" + names_[column] + "' = " + numberText(value) + " [" + unit +
+                       "] is out of range, allowed: " + rangeText(range) + " [" + unit + "]");
+    }
   }
 
   std::string place() const { return path_ + ":" + std::to_string(reader_.get_file_line()); }

@@ -60,14 +60,34 @@ std::string rangeText(const Range& range)
   return bound(range.min) + " ... " + bound(range.max);
 }
 
-std::optional<double> looseNumber(const std::string& text)
+std::optional<double> decimalNumber(const std::string& text)
 {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0')
+  const char* next = text.c_str();
+  const auto digits = [&next]
   {
-    return std::nullopt;
+    const char* first = next;
+    while (*next >= '0' && *next <= '9')
+    {
+      ++next;
+    }
+    return next - first;
+  };
+  next += *next == '+' || *next == '-' ? 1 : 0;
+  auto mantissa = digits();
+  if (*next == '.')
+  {
+    ++next;
+    mantissa += digits();
   }
-  return value;
+  bool good = mantissa > 0;
+  if (good && (*next == 'e' || *next == 'E'))
+  {
+    ++next;
+    next += *next == '+' || *next == '-' ? 1 : 0;
+    good = digits() > 0;
+  }
+  // Beyond the largest number it is infinite.
+  return good && next == text.c_str() + text.size() ? std::optional<double>(std::strtod(text.c_str(), nullptr)) :
+                                                      std::nullopt;
 }
 }  // namespace hjt

@@ -14,6 +14,6 @@ std::string numberText(double value);
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.
 std::string rangeText(const Range& range);
 
-/// The number a text would be to a reader less strict than rosparam ("1e-3", "1e3"); nothing if it is no number at all.
-std::optional<double> looseNumber(const std::string& text);
+/// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another text.
+std::optional<double> decimalNumber(const std::string& text);
 }  // namespace hjt

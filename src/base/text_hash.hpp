@@ -7,9 +7,9 @@
 namespace hjt
 {
 /// Fowler, Noll, Vo, 1a, 64 bits: tells texts apart, no protection against those made on purpose.
-constexpr std::uint64_t textHash(std::string_view text)
+/// `hash`: of the text before, to go on from.
+constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 14695981039346656037ull)
 {
-  std::uint64_t hash = 14695981039346656037ull;
   for (const char c : text)
   {
     hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;

@@ -36,16 +36,29 @@ void synchronise(const std::string& path)
 
 void writeTextFile(const std::string& path, const std::string& text)
 {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path there = fs::canonical(path, error);  // the file behind links; none: it is new
+  const std::string target = error ? path : there.string();
+  const bool device = !error && !fs::is_regular_file(there, error);
   // Shards may write the same file at once: each has a temporary of its own.
-  const std::string temporary = path + "." + std::to_string(std::random_device{}()) + ".part";
+  const std::string temporary = device ? target : target + "." + std::to_string(std::random_device{}()) + ".part";
   std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();
   if (!file)
   {
-    throw InputError(temporary + " cannot be written: " + std::strerror(errno));
+    const int reason = errno;
+    if (!device)
+    {
+      fs::remove(temporary, error);
+    }
+    throw InputError(path + " cannot be written: " + std::strerror(reason));
   }
-  bringToDisk(temporary, path);
+  if (!device)
+  {
+    bringToDisk(temporary, target);
+  }
 }
 
 void bringToDisk(const std::string& temporary, const std::string& path)

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// A text file, whole or not at all, brought to the disk. @throws InputError.
+/// A text file, whole or not at all, brought to the disk; a device or pipe is written to. @throws InputError.
 void writeTextFile(const std::string& path, const std::string& text);
 
 /// Brings a written file to the disk and gives it its name. @throws InputError.

@@ -8,22 +8,21 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "health/indicator_table.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEP = 25.0;         // [N.m]
+constexpr double LOAD_STEP = 0.375;        // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr double COUNT_SHARE = 0.1;        // of an encoder count that a window's mean may wander by
-constexpr double KURTOSIS_FLOOR = 0.3;  // moments of the residual are no normal quantities: these are not looked into
-constexpr double CREST_FLOOR = 0.5;
 constexpr int LEAST_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {
-  return std::isfinite(value) ? static_cast<int>(std::floor(value / step)) : 0;
+  constexpr double FARTHEST = 1e6;  // damaged recordings hold numbers that no int does
+  return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
 }
 
 /// Student's t with `freedom` as a normal deviate, and back.
@@ -52,12 +51,17 @@ std::size_t sizeOf(std::size_t indicator) noexcept
 }
 }  // namespace
 
-OperatingBin binOf(const OperatingPoint& point) noexcept
+double loadStep(const Parameters& parameters) noexcept
+{
+  return LOAD_STEP * parameters.life.rated_torque;
+}
+
+OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
 {
   OperatingBin bin;
-  bin.speed = point.speed > 0.0 ? static_cast<int>(std::floor(std::log2(point.speed))) : -100;
+  bin.speed = point.speed > 0.0 ? stepOf(std::log2(point.speed), 1.0) : -100;
   bin.direction = point.direction > ONE_WAY ? 1 : point.direction < -ONE_WAY ? -1 : 0;
-  bin.load = stepOf(point.load, LOAD_STEP);
+  bin.load = stepOf(point.load, load_step);
   bin.temperature = stepOf(point.temperature, TEMPERATURE_STEP);
   return bin;
 }
@@ -71,20 +75,19 @@ void Reference::add(double value) noexcept
 }
 
 Baseline::Baseline(const Parameters& parameters)
-  : windows_(parameters.indicators.baseline_windows), least_spread_(parameters.indicators.least_spread)
+  : windows_(parameters.indicators.baseline_windows)
+  , least_spread_(parameters.indicators.least_spread)
+  , load_step_(hjt::loadStep(parameters))
 {
   const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / std::exp2(parameters.sensors.output_bits));
-  floor_[indexOf(ScalarIndicator::RATIO_DEVIATION)] = COUNT_SHARE * count * nominalRatio(parameters.gear) / TWO_PI;
-  for (const ScalarIndicator indicator :
-       { ScalarIndicator::KINEMATIC_ERROR, ScalarIndicator::LOST_MOTION, ScalarIndicator::RESIDUAL_RMS })
+  const std::array<double, 3> unit{ 1.0, count, count * nominalRatio(parameters.gear) / TWO_PI };  // by FloorUnit
+  for (const ScalarRow& row : SCALARS)
   {
-    floor_[indexOf(indicator)] = COUNT_SHARE * count;
+    floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
   }
-  floor_[indexOf(ScalarIndicator::RESIDUAL_KURTOSIS)] = KURTOSIS_FLOOR;
-  floor_[indexOf(ScalarIndicator::RESIDUAL_CREST)] = CREST_FLOOR;
   bins_.reserve(MOST_BINS);
 }
 
@@ -122,7 +125,7 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
 BaselineState Baseline::take(const SignalIndicators& indicators, Deviations& deviations) noexcept
 {
   deviations.fill({});
-  ReferenceBin* bin = find(binOf(indicators.point));
+  ReferenceBin* bin = find(binOf(indicators.point, load_step_));
   if (bin == nullptr)
   {
     return BaselineState::NO_REFERENCE;

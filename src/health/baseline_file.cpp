@@ -2,11 +2,12 @@
 #include "health/baseline_file.hpp"
 
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -48,15 +49,23 @@ ReferenceBin readBin(const YAML::Node& node)
 }
 }  // namespace
 
-std::vector<ReferenceBin> readBaseline(const std::string& path)
+std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters)
 {
   std::vector<ReferenceBin> bins;
   try
   {
-    const YAML::Node list = YAML::LoadFile(path)["baseline"];
+    const YAML::Node file = YAML::LoadFile(path);
+    const YAML::Node list = file["baseline"];
     if (!list.IsSequence() || list.size() == 0)
     {
       throw InputError("no list 'baseline' of operating bins");
+    }
+    const double step = file["load_step"] ? file["load_step"].as<double>() : 0.0;
+    if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
+    {
+      throw InputError("its load_step is " + numberText(step) + " [N.m], expected " + numberText(loadStep(parameters)) +
+                       ", three eighths of life.rated_torque; save it again with "
+                       "this gear's parameters");
     }
     for (const YAML::Node& node : list)
     {
@@ -74,30 +83,28 @@ std::vector<ReferenceBin> readBaseline(const std::string& path)
   return bins;
 }
 
-void writeBaseline(const std::string& path, const std::vector<ReferenceBin>& bins)
+void writeBaseline(const std::string& path, const Baseline& baseline)
 {
-  std::ofstream file(path);
-  file << "# Healthy indicators by operating point: octave of motor speed, direction, steps of 25 N.m and 10 K.\n"
+  std::ostringstream text;
+  text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
+          "K.\n"
           "# Each indicator: [windows, mean, spread], units as in docs/indicators.md.\n"
-          "baseline:\n";
-  for (const ReferenceBin& bin : bins)
+          "load_step: "
+       << numberText(baseline.loadStep()) << "\nbaseline:\n";
+  for (const ReferenceBin& bin : baseline.bins())
   {
-    file << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
+    text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    indicators:\n";
     for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
     {
       const Reference& reference = bin.references[i];
       if (reference.count > 0)
       {
-        file << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
+        text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
              << numberText(std::sqrt(reference.variance())) << "]\n";
       }
     }
   }
-  file.close();
-  if (!file)
-  {
-    throw InputError(path + " cannot be written");
-  }
+  writeTextFile(path, text.str());
 }
 }  // namespace hjt

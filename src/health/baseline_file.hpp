@@ -8,11 +8,12 @@
 
 namespace hjt
 {
-/// References as YAML: a list `baseline` of operating bins, and for each indicator its `[windows, mean, spread]`.
+/// References as YAML: `load_step`, between two classes of load [N.m], and a list `baseline` of operating bins, with
+/// `[windows, mean, spread]` of each indicator.
 
-/// @throws InputError naming the file, and what in it is wrong.
-std::vector<ReferenceBin> readBaseline(const std::string& path);
+/// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear.
+std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters);
 
 /// @throws InputError if the file cannot be written.
-void writeBaseline(const std::string& path, const std::vector<ReferenceBin>& bins);
+void writeBaseline(const std::string& path, const Baseline& baseline);
 }  // namespace hjt

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "health/fitted_signatures.hpp"
+#include "health/indicator_table.hpp"
 
 namespace hjt
 {
@@ -15,12 +16,12 @@ constexpr double SHARPNESS = 20.0;
 constexpr double NOISE =
     2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
 
-constexpr std::array<const char*, FEATURE_COUNT> FEATURE_NAMES{
-  "ratio",   "kinematic_error", "stiffness",       "lost_motion", "loop",     "running_torque",
-  "coulomb", "viscous",         "efficiency",      "residual",    "impulses", "order_1",
-  "order_2", "order_4",         "circular_spline", "cage",        "ball",     "outer",
-  "inner",   "tooth_pass"
-};
+constexpr std::array FEATURE_NAMES{ "ratio",      "kinematic_error", "stiffness",       "lost_motion",
+                                    "loop",       "running_torque",  "coulomb",         "viscous",
+                                    "efficiency", "residual",        "impulses",        "order_1",
+                                    "order_2",    "order_4",         "circular_spline", "cage",
+                                    "ball",       "outer",           "inner",           "tooth_pass" };
+static_assert(FEATURE_NAMES.size() == FEATURE_COUNT, "a name for each Feature");
 
 /// However large a fault has grown, its direction is nearly the same.
 double compressed(double score) noexcept
@@ -126,34 +127,21 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
 {
   FeatureScores scores{};
   const Gatherer gather(deviations, scores);
-  gather.scalar(Feature::RATIO, ScalarIndicator::RATIO_DEVIATION);
-  gather.scalar(Feature::KINEMATIC_ERROR, ScalarIndicator::KINEMATIC_ERROR);
-  gather.scalar(Feature::STIFFNESS, ScalarIndicator::TORSIONAL_STIFFNESS);
-  gather.scalar(Feature::LOST_MOTION, ScalarIndicator::LOST_MOTION);
-  gather.scalar(Feature::LOOP_AREA, ScalarIndicator::HYSTERESIS_AREA);
-  gather.scalar(Feature::RUNNING_TORQUE, ScalarIndicator::RUNNING_TORQUE);
-  gather.scalar(Feature::COULOMB, ScalarIndicator::COULOMB_TORQUE);
-  gather.scalar(Feature::VISCOUS, ScalarIndicator::VISCOUS_FRICTION);
-  gather.scalar(Feature::EFFICIENCY, ScalarIndicator::EFFICIENCY);
-  gather.scalar(Feature::RESIDUAL, ScalarIndicator::RESIDUAL_RMS);
-  gather.scalar(Feature::IMPULSES, ScalarIndicator::RESIDUAL_KURTOSIS);
-  gather.scalar(Feature::IMPULSES, ScalarIndicator::RESIDUAL_CREST);
-  gather.vector(Feature::ORDER_1, Line::WAVE_GENERATOR_1);
-  gather.vector(Feature::ORDER_2, Line::WAVE_GENERATOR_2);
-  gather.vector(Feature::ORDER_4, Line::WAVE_GENERATOR_4);
-  gather.vector(Feature::ORDER_CIRCULAR_SPLINE, Line::CIRCULAR_SPLINE_2);
-  gather.amplitude(Feature::CAGE, Line::CAGE);
-  gather.amplitude(Feature::CAGE, Line::CAGE_LOBES);
-  gather.amplitude(Feature::BALL, Line::BALL);
-  gather.amplitude(Feature::BALL, Line::BALL_DOUBLE);
-  gather.amplitude(Feature::OUTER, Line::OUTER);
-  gather.amplitude(Feature::OUTER, Line::OUTER_BELOW);
-  gather.amplitude(Feature::OUTER, Line::OUTER_ABOVE);
-  gather.amplitude(Feature::INNER, Line::INNER);
-  gather.amplitude(Feature::INNER, Line::INNER_BELOW);
-  gather.amplitude(Feature::INNER, Line::INNER_ABOVE);
-  gather.amplitude(Feature::TOOTH_PASS, Line::TOOTH_PASS);
-  gather.amplitude(Feature::TOOTH_PASS, Line::TOOTH_PASS_ABOVE);
+  for (const ScalarRow& row : SCALARS)
+  {
+    gather.scalar(row.feature, row.indicator);
+  }
+  for (const LineRow& row : LINES)
+  {
+    if (index(row.line) < PHASE_LOCKED)
+    {
+      gather.vector(row.feature, row.line);
+    }
+    else
+    {
+      gather.amplitude(row.feature, row.line);
+    }
+  }
   return scores;
 }
 

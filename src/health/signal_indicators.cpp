@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "health/indicator_table.hpp"
+
 namespace hjt
 {
 namespace
@@ -14,36 +16,6 @@ struct Label
   std::string unit;
 };
 
-constexpr std::array<std::array<const char*, 2>, SCALAR_COUNT> SCALARS{ {
-    { "ratio_deviation", "-" },
-    { "kinematic_error", "rad" },
-    { "torsional_stiffness", "N.m/rad" },
-    { "lost_motion", "rad" },
-    { "hysteresis_area", "J" },
-    { "running_torque", "N.m" },
-    { "coulomb_torque", "N.m" },
-    { "viscous_friction", "N.m.s/rad" },
-    { "efficiency", "-" },
-    { "residual_rms", "rad" },
-    { "residual_kurtosis", "-" },
-    { "residual_crest", "-" },
-} };
-constexpr std::array<const char*, LINE_COUNT> LINES{ "wave_generator_1",
-                                                     "wave_generator_2",
-                                                     "wave_generator_4",
-                                                     "circular_spline_2",
-                                                     "cage",
-                                                     "cage_lobes",
-                                                     "ball",
-                                                     "ball_double",
-                                                     "outer",
-                                                     "outer_below",
-                                                     "outer_above",
-                                                     "inner",
-                                                     "inner_below",
-                                                     "inner_above",
-                                                     "tooth_pass",
-                                                     "tooth_pass_above" };
 constexpr std::array<std::array<const char*, 2>, LINE_SIGNALS> SIGNALS{ { { "error", "rad" }, { "torque", "N.m" } } };
 
 std::array<Label, INDICATOR_COUNT> makeLabels()
@@ -51,14 +23,14 @@ std::array<Label, INDICATOR_COUNT> makeLabels()
   std::array<Label, INDICATOR_COUNT> labels;
   for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
   {
-    labels[i] = { SCALARS[i][0], SCALARS[i][1] };
+    labels[i] = { SCALARS[i].name, SCALARS[i].unit };
   }
   for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
   {
     const auto signal = static_cast<LineSignal>(s);
     for (std::size_t line = 0; line < LINE_COUNT; ++line)
     {
-      const std::string name = std::string(SIGNALS[s][0]) + "_" + LINES[line];
+      const std::string name = std::string(SIGNALS[s][0]) + "_" + LINES[line].name;
       labels[amplitudeIndex(signal, line)] = { name, SIGNALS[s][1] };
       if (line < PHASE_LOCKED)
       {

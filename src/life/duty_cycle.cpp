@@ -5,18 +5,24 @@
 #include <cmath>
 
 #include "base/number_table.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
 DutyCycle DutyCycle::fromFile(const std::string& path)
 {
+  // Beyond these no drive lives or works; sums over as many rows as a file may have stay finite.
+  constexpr Range ALLOWED[] = {
+    { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE }
+  };
+  constexpr const char* UNITS[] = { "s", "rad/s", "N.m", "degC" };
   NumberTable<4> table(path, { "duration", "motor_speed", "load_torque", "temperature" });
   DutyCycle duty;
   for (std::array<double, 4> row{}; table.read(row);)
   {
-    if (row[0] <= 0.0)
+    for (std::size_t i = 0; i < row.size(); ++i)
     {
-      throw InputError(table.place() + ": column 'duration' must be more than 0 [s]");
+      table.requireRange(i, row[i], ALLOWED[i], UNITS[i]);
     }
     duty.phases.push_back({ row[0], std::abs(row[1]), row[2], row[3] });
   }

@@ -13,7 +13,8 @@ namespace
 constexpr double LOAD_STEPS = 16.0;        // in the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 
-/// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is one.
+/// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is one;
+/// NaN counts as the first.
 struct Share
 {
   Share(double place, std::size_t nodes) noexcept
@@ -21,7 +22,7 @@ struct Share
     constexpr double ROUNDING = 1e-9;
     const double node = std::round(place);
     const double exact = std::abs(place - node) < ROUNDING ? node : place;
-    const double within = std::clamp(exact, 0.0, static_cast<double>(nodes - 1));
+    const double within = std::fmin(std::fmax(exact, 0.0), static_cast<double>(nodes - 1));
     below = std::min(static_cast<std::size_t>(within), nodes - 2);
     above = within - static_cast<double>(below);
   }

@@ -2,8 +2,12 @@
 #include "params/cross_checks.hpp"
 
 #include <cmath>
+#include <string>
+#include <tuple>
+#include <type_traits>
 
 #include "base/number_text.hpp"
+#include "params/field_table.hpp"
 
 namespace hjt
 {
@@ -114,10 +118,6 @@ void checkLife(const Parameters& p, Contradictions& check)
 
 void checkFaults(const Parameters& p, Contradictions& check)
 {
-  check.require(p.bearing.ball_diameter < p.bearing.pitch_diameter,
-                { "bearing.ball_diameter", "bearing.pitch_diameter" },
-                "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
-                    " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
   for (std::size_t i = 0; i < p.faults.size(); ++i)
   {
     const std::string key = faultKey(static_cast<int>(i)) + '.';
@@ -142,11 +142,22 @@ void checkRates(const Parameters& p, Contradictions& check)
         divides(rate, p.solver.rate), { key, "solver.rate" },
         key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) + " [Hz]");
   };
-  check_rate("publish.joint_states_rate", p.publish.joint_states_rate);
-  check_rate("publish.encoders_rate", p.publish.encoders_rate);
-  check_rate("publish.contact_forces_rate", p.publish.contact_forces_rate);
-  check_rate("publish.health_rate", p.publish.health_rate);
-  check_rate("publish.indicators_rate", p.publish.indicators_rate);
+  // Every number below publish is the rate of a topic.
+  visitFields(p,
+              [&check_rate](const std::string& key, const auto&... rest)
+              {
+                if constexpr (sizeof...(rest) == 4)  // unit, value, range, meaning
+                {
+                  const auto& value = std::get<1>(std::tie(rest...));
+                  if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+                  {
+                    if (key.rfind("publish.", 0) == 0)
+                    {
+                      check_rate(key, value);
+                    }
+                  }
+                }
+              });
 }
 }  // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 
 #include "base/range.hpp"
 
@@ -9,6 +10,34 @@
 
 namespace hjt
 {
+/// Whose the response surface's tables are made for, or with.
+enum class Shapes
+{
+  SURFACE,  ///< the ring in equilibrium, or its friction by angle
+  FAULTS,   ///< the same, once there are faults
+  OTHERS    ///< neither: what is added to the tables' friction as they are read counts to these
+};
+
+/// What a parameter means, and what it shapes: the surface unless said otherwise.
+struct Meaning
+{
+  // NOLINTNEXTLINE(google-explicit-constructor): most rows of the table give a text alone
+  Meaning(const char* meaning, Shapes shaped = Shapes::SURFACE) : text(meaning), shapes(shaped) {}
+
+  const char* text;
+  Shapes shapes;
+};
+
+inline Meaning ofFaults(const char* text)
+{
+  return { text, Shapes::FAULTS };
+}
+
+inline Meaning ofOthers(const char* text)
+{
+  return { text, Shapes::OTHERS };
+}
+
 /// The one table of all parameters. Reading, range checks, the dump at start and the README table all walk it.
 ///
 /// `visit(key, unit, value, range, meaning)` is called for numbers and arrays of numbers,
@@ -19,8 +48,8 @@ void visitFields(P& p, Visitor&& visit)
 {
   constexpr double INF = std::numeric_limits<double>::max();
 
-  visit("joint.name", p.joint.name, "name of the joint in JointState messages; the motor is NAME_motor");
-  visit("joint.hardware_id", p.joint.hardware_id, "hardware id in /diagnostics (REP-107: the serial number)");
+  visit("joint.name", p.joint.name, ofOthers("name of the joint in JointState messages; the motor is NAME_motor"));
+  visit("joint.hardware_id", p.joint.hardware_id, ofOthers("hardware id in /diagnostics (REP-107: the serial number)"));
 
   visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 }, "teeth of the flexspline, even");
   visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
@@ -61,7 +90,7 @@ void visitFields(P& p, Visitor&& visit)
         "what the wave generator's amplitude exceeds gear.wave_amplitude by, which the teeth were cut for");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
-        "mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it");
+        ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
   visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");
@@ -94,18 +123,20 @@ void visitFields(P& p, Visitor&& visit)
         "depth over which a tooth's stiffness grows from none to full");
   visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
   visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 }, "flank friction at rest");
-  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 }, "flank friction when sliding");
+  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
+        ofOthers("flank friction when sliding"));
   visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
-        "sliding speed at which static has turned into kinetic friction");
+        ofOthers("sliding speed at which static has turned into kinetic friction"));
 
   visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
         "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
   visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
         "torques at which the slope changes, ascending");
   visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
-        "dry friction beside the cup's spring: half the height of its torsion loop");
+        ofOthers("dry friction beside the cup's spring: half the height of its torsion loop"));
 
-  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 }, "f0 of Palmgren's law");
+  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
+        ofOthers("f0 of Palmgren's law"));
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
   visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
         "sum of the ball forces with which the bearing's own outer race, bent to the ellipse, sits on the balls");
@@ -114,275 +145,295 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
         "diameter of a ball, below pitch_diameter");
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
-        "kinematic viscosity of the grease's base oil at viscosity_temperature");
+        ofOthers("kinematic viscosity of the grease's base oil at viscosity_temperature"));
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
-        "temperature the viscosity is given at");
+        ofOthers("temperature the viscosity is given at"));
   visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
-        "slope m of the base oil in the viscosity-temperature chart (Ubbelohde-Walther, DIN 51563)");
+        ofOthers("slope m of the base oil in the viscosity-temperature chart (Ubbelohde-Walther, DIN 51563)"));
 
-  visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, "motor's rotor");
-  visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 }, "wave generator");
+  visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, ofOthers("motor's rotor"));
+  visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 },
+        ofOthers("wave generator"));
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
-        "Coulomb friction at the motor shaft beyond bearing, outer race and flanks");
+        ofOthers("Coulomb friction at the motor shaft beyond bearing, outer race and flanks"));
   visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
-        "viscous friction, motor side");
+        ofOthers("viscous friction, motor side"));
   visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{ 0.0, 1e4 },
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
-        "the drive gives no torque that would speed the motor up beyond this");
+        ofOthers("the drive gives no torque that would speed the motor up beyond this"));
 
   visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{ 1e-7, 100.0 },
-        "circular spline and what turns with it inside the joint");
-  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, "what the joint carries");
+        ofOthers("circular spline and what turns with it inside the joint"));
+  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, ofOthers("what the joint carries"));
   visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{ 0.0, 1e6 },
-        "viscous friction, joint side");
-  visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 }, "m g l of the load; 0 = none");
+        ofOthers("viscous friction, joint side"));
+  visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 },
+        ofOthers("m g l of the load; 0 = none"));
   visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
-        "joint angle at which the load hangs straight down");
+        ofOthers("joint angle at which the load hangs straight down"));
   visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{ 0.0, 1e6 },
         "larger external torques are clamped and counted");
 
   visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{ 0.0, 1e4 },
-        "motor side; above it the brake slips");
-  visit("brake.engaged_at_start", p.brake.engaged_at_start, "state of the brake after start and reset");
+        ofOthers("motor side; above it the brake slips"));
+  visit("brake.engaged_at_start", p.brake.engaged_at_start, ofOthers("state of the brake after start and reset"));
 
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
-        "steps per simulated second; must divide 1e9 ns evenly");
+        ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
   visit("solver.stepper", p.solver.stepper,
-        "leapfrog: one ring solve a step, exact stiction; runge_kutta4: Boost.odeint's, four solves a step");
+        ofOthers("leapfrog: one ring solve a step, exact stiction; runge_kutta4: Boost.odeint's, four solves a step"));
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 10.0 },
-        "largest out-of-balance force on any tooth");
-  visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 }, "Newton iterations per attempt");
+        ofOthers("largest out-of-balance force on any tooth"));
+  visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
+        ofOthers("Newton iterations per attempt"));
   visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
-        "halvings of a step that does not converge");
+        ofOthers("halvings of a step that does not converge"));
   visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
-        "motor speed below which friction is regularised");
+        ofOthers("motor speed below which friction is regularised"));
   visit("solver.scene", p.solver.scene,
-        "full_ring: every tooth at every step; auto: a response surface built at start, where it holds");
+        ofOthers("full_ring: every tooth at every step; auto: a response surface built at start, where it holds"));
 
   visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{ 1, 1 << 30 },
-        "counts of the motor encoder after quadrature");
-  visit("sensors.output_bits", "-", p.sensors.output_bits, Range{ 1, 30 }, "resolution of the absolute output encoder");
+        ofOthers("counts of the motor encoder after quadrature"));
+  visit("sensors.output_bits", "-", p.sensors.output_bits, Range{ 1, 30 },
+        ofOthers("resolution of the absolute output encoder"));
   visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
-        "encoder velocities are differences over this time");
+        ofOthers("encoder velocities are differences over this time"));
   visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
-        "error of the motor encoder once a turn, sine of the motor angle: amplitude");
+        ofOthers("error of the motor encoder once a turn, sine of the motor angle: amplitude"));
   visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
-        "noise of the motor encoder at every step, before it is resolved into counts, rms");
+        ofOthers("noise of the motor encoder at every step, before it is resolved into counts, rms"));
   visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
-        "error of the output encoder once a turn, sine of the output angle: amplitude");
+        ofOthers("error of the output encoder once a turn, sine of the output angle: amplitude"));
   visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
-        "noise of the output encoder at every step, before it is resolved into counts, rms");
+        ofOthers("noise of the output encoder at every step, before it is resolved into counts, rms"));
   visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
-        "noise of the motor torque told from the current, at every step, rms");
+        ofOthers("noise of the motor torque told from the current, at every step, rms"));
   visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
-        "step of the motor torque told from the current; 0 = none");
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, "by which all readings lag, in whole steps");
+        ofOthers("step of the motor torque told from the current; 0 = none"));
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("by which all readings lag, in whole steps"));
   visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
-        "of the noise: the same seed gives the same noise at the same stamps");
+        ofOthers("of the noise: the same seed gives the same noise at the same stamps"));
 
   visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{ 1e-3, 1e5 },
-        "joint torque must have varied this much before a stiffness is estimated");
+        ofOthers("joint torque must have varied this much before a stiffness is estimated"));
   visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
-        "time constant over which efficiency and stiffness forget");
+        ofOthers("time constant over which efficiency and stiffness forget"));
 
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
-        "of the readings the twin's own indicators are made of; the nearest that divides solver.rate");
+        ofOthers("of the readings the twin's own indicators are made of; the nearest that divides solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
-        "motor turns at steady speed that make one window");
+        ofOthers("motor turns at steady speed that make one window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
-        "a window ends after this even with fewer turns");
+        ofOthers("a window ends after this even with fewer turns"));
   visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
-        "motor speed below which the joint is taken to stand");
+        ofOthers("motor speed below which the joint is taken to stand"));
   visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
-        "speed is steady while it is within this share of its mean over half a turn");
+        ofOthers("speed is steady while it is within this share of its mean over half a turn"));
   visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
-        "K1 is the stiffness at joint torques below this");
+        ofOthers("K1 is the stiffness at joint torques below this"));
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
-        "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round");
+        ofOthers(
+            "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
-        "windows at one operating point the healthy reference is learned from");
+        ofOthers("windows at one operating point the healthy reference is learned from"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
-        "smallest spread of an indicator, as a share of its healthy mean");
+        ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
-        "chance that a healthy window shows any indicator beyond its threshold");
+        ofOthers("chance that a healthy window shows any indicator beyond its threshold"));
   visit("indicators.confirm_windows", "-", p.indicators.confirm_windows, Range{ 1, 1000 },
-        "windows in a row that must agree before the level changes");
+        ofOthers("windows in a row that must agree before the level changes"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
-        "a deviation of so many times the threshold is an error, not a warning");
+        ofOthers("a deviation of so many times the threshold is an error, not a warning"));
   visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
-        "rated output torque of the catalogue, at which the bearing's lives are given");
+        ofOthers("rated output torque of the catalogue, at which the bearing's lives are given"));
   visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
-        "rated motor speed of the catalogue, at which the bearing's lives are given");
+        ofOthers("rated motor speed of the catalogue, at which the bearing's lives are given"));
   visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
-        "hours at rated torque and speed by which 10 % of the wave generator's bearings have failed");
+        ofOthers("hours at rated torque and speed by which 10 % of the wave generator's bearings have failed"));
   visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
-        "hours at rated torque and speed by which half of them have failed; more than bearing_l10");
+        ofOthers("hours at rated torque and speed by which half of them have failed; more than bearing_l10"));
   visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
-        "share of the bearing's life, in turns, from its first spall to the end of use");
+        ofOthers("share of the bearing's life, in turns, from its first spall to the end of use"));
   visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
-        "standard deviation of its logarithm from drive to drive");
-  visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, "length of the flexspline's teeth");
-  visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 }, "of the flexspline");
+        ofOthers("standard deviation of its logarithm from drive to drive"));
+  visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, ofOthers("length of the flexspline's teeth"));
+  visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 }, ofOthers("of the flexspline"));
   visit("life.flank_wear_coefficient", "1/Pa", p.life.flank_wear_coefficient, Range{ 0.0, 1e-12 },
-        "Archard's k of the tooth flanks in fresh grease: worn volume by force times sliding");
+        ofOthers("Archard's k of the tooth flanks in fresh grease: worn volume by force times sliding"));
   visit("life.interface_wear_coefficient", "1/Pa", p.life.interface_wear_coefficient, Range{ 0.0, 1e-12 },
-        "the same between the bearing's outer race and the flexspline");
+        ofOthers("the same between the bearing's outer race and the flexspline"));
   visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
-        "standard deviation of the logarithm of both coefficients from drive to drive");
+        ofOthers("standard deviation of the logarithm of both coefficients from drive to drive"));
   visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
-        "depth worn off both flanks of a pair at which the drive is at its end");
+        ofOthers("depth worn off both flanks of a pair at which the drive is at its end"));
   visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
-        "depth worn off race and rim at which the drive is at its end");
+        ofOthers("depth worn off race and rim at which the drive is at its end"));
   visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
-        "turns of the motor between two changes of grease at grease_temperature");
+        ofOthers("turns of the motor between two changes of grease at grease_temperature"));
   visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
-        "temperature grease_turns holds for");
+        ofOthers("temperature grease_turns holds for"));
   visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
-        "by so much warmer the grease lasts half as long");
+        ofOthers("by so much warmer the grease lasts half as long"));
   visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
-        "wear in grease due for a change over wear in fresh grease");
-  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, "deepest flaw of a new tooth root");
+        ofOthers("wear in grease due for a change over wear in fresh grease"));
+  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, ofOthers("deepest flaw of a new tooth root"));
   visit("life.stress_concentration", "-", p.life.stress_concentration, Range{ 1.0, 10.0 },
-        "stress at the tooth root over that of the smooth rim");
+        ofOthers("stress at the tooth root over that of the smooth rim"));
   visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
-        "C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)");
-  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, "m of Paris' law");
+        ofOthers("C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)"));
+  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, ofOthers("m of Paris' law"));
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
-        "range of the stress intensity below which a flaw does not grow");
+        ofOthers("range of the stress intensity below which a flaw does not grow"));
   visit("life.use_record", p.life.use_record,
-        "live: none, or the absolute path of the file that keeps the drive's use from one start to the next");
+        ofOthers("live: none, or the absolute path of the file that keeps the drive's use from one start to the next"));
   visit("life.forecast_period", "s", p.life.forecast_period, Range{ 0.1, 1e5 },
-        "live: time between two forecasts of the remaining life, and between two writes of the record");
+        ofOthers("live: time between two forecasts of the remaining life, and between two writes of the record"));
 
   visit("input.mode", p.input.mode,
-        "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)");
+        ofOthers(
+            "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)"));
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
-        "a torque command older than this counts as zero");
+        ofOthers("a torque command older than this counts as zero"));
   visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
-        "live, the twin stays this far behind the clock, so that stamped commands arrive in time");
-  visit("input.wait_for_first_input", p.input.wait_for_first_input,
-        "true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant");
+        ofOthers("live, the twin stays this far behind the clock, so that stamped commands arrive in time"));
+  visit(
+      "input.wait_for_first_input", p.input.wait_for_first_input,
+      ofOthers("true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant"));
   visit("input.temperature", "degC", p.input.temperature, Range{ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE },
-        "temperature of the drive");
+        ofOthers("temperature of the drive"));
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
-        "torque at the joint per measured motor current");
+        ofOthers("torque at the joint per measured motor current"));
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
-        "current measured where there is none");
+        ofOthers("current measured where there is none"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        "motor angle over which friction builds up after a reversal");
+        ofOthers("motor angle over which friction builds up after a reversal"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
-        "share of the friction that a small motion does not turn round, and that stays at rest");
+        ofOthers("share of the friction that a small motion does not turn round, and that stays at rest"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
-        "of the motor's inertia, what a recorded load torque holds already");
-  visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
-        "kinematic error times stiffness, cos and sin of two waves a turn of the motor against the circular spline");
+        ofOthers("of the motor's inertia, what a recorded load torque holds already"));
+  visit(
+      "telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
+      ofOthers(
+          "kinematic error times stiffness, cos and sin of two waves a turn of the motor against the circular spline"));
   visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
-        "the same against the flexspline");
+        ofOthers("the same against the flexspline"));
   visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
-        "four waves against the circular spline");
+        ofOthers("four waves against the circular spline"));
   visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
-        "four waves against the flexspline");
-  visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
-        "of what the joint carries on the joint's stiffness: far below it the load follows the kinematic error, "
-        "far above it stands");
+        ofOthers("four waves against the flexspline"));
+  visit(
+      "telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
+      ofOthers("of what the joint carries on the joint's stiffness: far below it the load follows the kinematic error, "
+               "far above it stands"));
   visit("telemetry.ripple_damping", "-", p.telemetry.ripple_damping, Range{ 0.001, 10.0 },
-        "damping ratio of that resonance");
+        ofOthers("damping ratio of that resonance"));
   visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
-        "of the current's ripple behind the angle");
+        ofOthers("of the current's ripple behind the angle"));
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
-        "by so much a healthy joint's current departs from the predicted one, rms");
-  visit("telemetry.load", p.telemetry.load,
-        "load of a measured joint: model: weight and inertia below output; load_torque: these and what is told; "
-        "target_moment: what is told is all");
+        ofOthers("by so much a healthy joint's current departs from the predicted one, rms"));
+  visit(
+      "telemetry.load", p.telemetry.load,
+      ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: these and what is told; "
+               "target_moment: what is told is all"));
 
   visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
-        "of the measured joint angle, rms");
+        ofOthers("of the measured joint angle, rms"));
   visit("observer.motor_angle_noise", "rad", p.observer.motor_angle_noise, Range{ 1e-9, 1.0 },
-        "of the measured motor angle, rms, where there is one");
-  visit(
-      "observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
-      "of the motor torque told from the current, white: rms of one reading times the root of the time it stands for");
+        ofOthers("of the measured motor angle, rms, where there is one"));
+  visit("observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
+        ofOthers("of the motor torque told from the current, white: rms of one reading times the root of the time it "
+                 "stands for"));
   visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
-        "of the load torque, white, likewise");
+        ofOthers("of the load torque, white, likewise"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
-        "rms of what the unmodelled torque at the motor changes in a second");
+        ofOthers("rms of what the unmodelled torque at the motor changes in a second"));
 
   visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
-        "share by which a sound joint's friction may differ from the twin's");
+        ofOthers("share by which a sound joint's friction may differ from the twin's"));
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
-        "share by which a sound joint's torsion may differ from the twin's");
+        ofOthers("share by which a sound joint's torsion may differ from the twin's"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
-        "share by which friction and torsion of a sound joint may differ from its own earlier");
+        ofOthers("share by which friction and torsion of a sound joint may differ from its own earlier"));
 
-  visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
-  visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+  visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 },
+        ofOthers("must divide solver.rate"));
+  visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 },
+        ofOthers("must divide solver.rate"));
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
-        "must divide solver.rate");
-  visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
-  visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 }, "must divide solver.rate");
+        ofOthers("must divide solver.rate"));
+  visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, ofOthers("must divide solver.rate"));
+  visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 },
+        ofOthers("must divide solver.rate"));
 
   visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
-        "live: a cycle of the loop that simulates an instant later than this after it was due has missed its deadline");
+        ofOthers("live: a cycle of the loop that simulates an instant later than this after it was due has missed its "
+                 "deadline"));
   visit("realtime.priority", "-", p.realtime.priority, Range{ 0, 99 },
-        "live: priority of the loop's thread under SCHED_FIFO; 0: as every other thread");
+        ofOthers("live: priority of the loop's thread under SCHED_FIFO; 0: as every other thread"));
   visit("realtime.lock_memory", p.realtime.lock_memory,
-        "live: true: the node's memory stays in RAM (mlockall); false: it may be paged out");
+        ofOthers("live: true: the node's memory stays in RAM (mlockall); false: it may be paged out"));
   visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
-        "live: processor that the loop's thread is bound to, counted from 0; -1: any");
+        ofOthers("live: processor that the loop's thread is bound to, counted from 0; -1: any"));
 
   auto& scale = p.fault_scale;
   const Range depth{ 0.0, 1e-3 };
   const Range part{ 0.0, 1.0 };
   const Range factor{ 1.0, 100.0 };
   visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
-        "interface_wear at severity 1: what rim and outer race have lost together, radially");
+        ofFaults("interface_wear at severity 1: what rim and outer race have lost together, radially"));
   visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
-        "interface_wear at severity 1: contact.friction_coefficient times this");
+        ofFaults("interface_wear at severity 1: contact.friction_coefficient times this"));
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
-        "rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked");
+        ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
   visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        "part of the cup's compliance in torsion that lies behind the teeth");
+        ofFaults("part of the cup's compliance in torsion that lies behind the teeth"));
   visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        "part of the cup's compliance in torsion that lies at its flange");
+        ofFaults("part of the cup's compliance in torsion that lies at its flange"));
   visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
-        "rear_section_crack, flange_crack at severity 1: cup.friction_torque times this");
+        ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
   visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
-        "lubricant_degradation at severity 1: viscosity of the grease times this");
+        ofFaults("lubricant_degradation at severity 1: viscosity of the grease times this"));
   visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
-        "lubricant_degradation at severity 1: friction of flanks and of race in rim times this");
+        ofFaults("lubricant_degradation at severity 1: friction of flanks and of race in rim times this"));
   visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
-        "tooth_wear at severity 1: material off each flank, along its normal");
+        ofFaults("tooth_wear at severity 1: material off each flank, along its normal"));
   visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
-        "part of a tooth pair's compliance that is bending of the flexspline's tooth");
+        ofFaults("part of a tooth pair's compliance that is bending of the flexspline's tooth"));
   visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
-        "pitting at severity 1: part of the flank's width that carries no more");
+        ofFaults("pitting at severity 1: part of the flank's width that carries no more"));
   visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
-        "pitting at severity 1: friction of that tooth's flanks times this");
+        ofFaults("pitting at severity 1: friction of that tooth's flanks times this"));
   visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
-        "wave_generator_wear at severity 1: what the major semi-axis has lost");
+        ofFaults("wave_generator_wear at severity 1: what the major semi-axis has lost"));
   visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
-        "what bearing.race_preload falls by with the mean radius of the wave generator");
+        ofFaults("what bearing.race_preload falls by with the mean radius of the wave generator"));
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
-        "part of bearing.race_preload that bends the race, which wear does not take away");
+        ofFaults("part of bearing.race_preload that bends the race, which wear does not take away"));
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
-        "cracks of the rim at severity 1: depth over the rim's thickness");
+        ofFaults("cracks of the rim at severity 1: depth over the rim's thickness"));
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        "flexspline_crack: segments to either side over which the crack fades out");
+        ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
-        "buckling at severity 1: part of the cup's stiffness in torsion that is lost");
+        ofFaults("buckling at severity 1: part of the cup's stiffness in torsion that is lost"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
-        "buckling at severity 1: radial amplitude of the waves that the free rim would keep");
-  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 }, "waves round the buckled rim");
+        ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
+  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },
+        ofFaults("waves round the buckled rim"));
   visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
-        "ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0");
+        ofFaults("ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0"));
   visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
-        "ratcheting at severity 1: height that every tooth has lost");
-  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth, "spalls in the bearing at severity 1: depth");
+        ofFaults("ratcheting at severity 1: height that every tooth has lost"));
+  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth,
+        ofFaults("spalls in the bearing at severity 1: depth"));
   visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
-        "spalls in the bearing: length along the race or on the ball");
+        ofFaults("spalls in the bearing: length along the race or on the ball"));
   visit("fault_scale.cage_sag", "m", scale.cage_sag, depth,
-        "bearing_cage at severity 1: by which the outer race sags where the ball fails to carry");
+        ofFaults("bearing_cage at severity 1: by which the outer race sags where the ball fails to carry"));
 }
+
+/// The parameters that shape a response surface, a line each; `faulty`: also those that shape its faults.
+std::string describeSurfaceParameters(const Parameters& parameters, bool faulty);
 }  // namespace hjt

@@ -48,7 +48,7 @@ class FieldReader
 public:
   explicit FieldReader(const ParameterMap& map) : map_(map) {}
 
-  void operator()(const std::string& key, const char* unit, double& field, const Range& range, const char* meaning)
+  void operator()(const std::string& key, const char* unit, double& field, const Range& range, const Meaning& meaning)
   {
     const ParameterValue* configured = find(key, numberKind("a number", unit, range), meaning);
     if (configured != nullptr)
@@ -57,7 +57,7 @@ public:
     }
   }
 
-  void operator()(const std::string& key, const char* unit, int& field, const Range& range, const char* meaning)
+  void operator()(const std::string& key, const char* unit, int& field, const Range& range, const Meaning& meaning)
   {
     const std::string kind = numberKind("a whole number", unit, range);
     const ParameterValue* configured = find(key, kind, meaning);
@@ -79,7 +79,7 @@ public:
 
   template <std::size_t N>
   void operator()(const std::string& key, const char* unit, std::array<double, N>& field, const Range& range,
-                  const char* meaning)
+                  const Meaning& meaning)
   {
     const std::string kind = numberKind("a list of " + std::to_string(N) + " numbers", unit, range);
     const ParameterValue* configured = find(key, kind, meaning);
@@ -102,12 +102,12 @@ public:
     }
   }
 
-  void operator()(const std::string& key, bool& field, const char* meaning)
+  void operator()(const std::string& key, bool& field, const Meaning& meaning)
   {
     readAs<bool>(key, field, "true or false, without quotes", meaning);
   }
 
-  void operator()(const std::string& key, std::string& field, const char* meaning)
+  void operator()(const std::string& key, std::string& field, const Meaning& meaning)
   {
     readAs<std::string>(key, field, "a text (in quotes if it looks like a number)", meaning);
     const auto found = map_.find(key);
@@ -118,7 +118,8 @@ public:
   }
 
   template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice& field, const char* meaning)
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice& field,
+                                                           const Meaning& meaning)
   {
     std::string names;
     for (const auto& [name, choice] : choiceNames(Choice{}))
@@ -190,20 +191,20 @@ private:
     return what + " [" + unit + "], " + rangeText(range);
   }
 
-  const ParameterValue* find(const std::string& key, const std::string& kind, const char* meaning)
+  const ParameterValue* find(const std::string& key, const std::string& kind, const Meaning& meaning)
   {
     known_.insert(key);
     const auto found = map_.find(key);
     if (found == map_.end())
     {
-      errors_.push_back("parameter " + key + " is missing; expected " + kind + " (" + meaning + ")");
+      errors_.push_back("parameter " + key + " is missing; expected " + kind + " (" + meaning.text + ")");
       return nullptr;
     }
     return &found->second;
   }
 
   template <class T>
-  bool readAs(const std::string& key, T& field, const std::string& kind, const char* meaning)
+  bool readAs(const std::string& key, T& field, const std::string& kind, const Meaning& meaning)
   {
     const ParameterValue* configured = find(key, kind, meaning);
     if (configured == nullptr)
@@ -223,23 +224,14 @@ private:
   void readNumber(const std::string& key, const char* unit, const ParameterValue& configured, const Range& range,
                   double& field)
   {
-    double value{};
-    if (const auto* number = std::get_if<double>(&configured.value))
-    {
-      value = *number;
-    }
-    else if (const auto* whole = std::get_if<std::int64_t>(&configured.value))
-    {
-      value = static_cast<double>(*whole);
-    }
-    else
+    const std::optional<double> value = numberOf(configured.value);
+    if (!value)
     {
       mistyped(key, configured, numberKind("a number", unit, range));
-      return;
     }
-    if (inRange(key, unit, configured, value, range))
+    else if (inRange(key, unit, configured, *value, range))
     {
-      field = value;
+      field = *value;
     }
   }
 
@@ -259,14 +251,10 @@ private:
 
   void mistyped(const std::string& key, const ParameterValue& configured, const std::string& kind)
   {
-    std::string hint;
     const auto* text = std::get_if<std::string>(&configured.value);
-    if (text != nullptr && looseNumber(*text))
-    {
-      hint = "; write " + numberText(*looseNumber(*text)) +
-             " (a number has a dot, a sign in its exponent and no quotes, else rosparam takes it for a text)";
-    }
-    errors_.push_back(configured.origin + ": " + key + " = " + valueText(configured) + " must be " + kind + hint);
+    const bool quoted = text != nullptr && decimalNumber(*text);
+    errors_.push_back(configured.origin + ": " + key + " = " + valueText(configured) + " must be " + kind +
+                      (quoted ? "; write it without quotes, dot and exponent" : ""));
   }
 
   const ParameterMap& map_;
@@ -288,6 +276,19 @@ void throwIfAny(const std::vector<std::string>& errors)
   throw ParameterError(text);
 }
 }  // namespace
+
+std::optional<double> numberOf(const decltype(ParameterValue::value)& value)
+{
+  struct
+  {
+    std::optional<double> operator()(std::int64_t whole) const { return static_cast<double>(whole); }
+    std::optional<double> operator()(double number) const { return number; }
+    std::optional<double> operator()(const std::string& text) const { return decimalNumber(text); }
+    std::optional<double> operator()(bool) const { return std::nullopt; }
+    std::optional<double> operator()(const std::vector<double>&) const { return std::nullopt; }
+  } read;
+  return std::visit(read, value);
+}
 
 std::string valueText(const ParameterValue& configured)
 {

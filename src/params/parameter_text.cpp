@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <functional>
 #include <sstream>
+#include <utility>
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
@@ -10,23 +12,27 @@ namespace hjt
 {
 namespace
 {
-/// Writes each field as `section.key: value  # [unit] meaning`.
+using Fields = std::function<bool(Shapes)>;
+
+/// Writes each field that is asked for as `section.key: value  # [unit] meaning`.
 class FieldWriter
 {
 public:
-  void operator()(const std::string& key, const char* unit, double value, const Range&, const char* meaning)
+  explicit FieldWriter(Fields fields = [](Shapes) { return true; }) : fields_(std::move(fields)) {}
+
+  void operator()(const std::string& key, const char* unit, double value, const Range&, const Meaning& meaning)
   {
     write(key, numberText(value), unit, meaning);
   }
 
-  void operator()(const std::string& key, const char* unit, int value, const Range&, const char* meaning)
+  void operator()(const std::string& key, const char* unit, int value, const Range&, const Meaning& meaning)
   {
     write(key, std::to_string(value), unit, meaning);
   }
 
   template <std::size_t N>
   void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range&,
-                  const char* meaning)
+                  const Meaning& meaning)
   {
     std::string list;
     for (const double value : values)
@@ -36,18 +42,18 @@ public:
     write(key, "[" + list + "]", unit, meaning);
   }
 
-  void operator()(const std::string& key, bool value, const char* meaning)
+  void operator()(const std::string& key, bool value, const Meaning& meaning)
   {
     write(key, value ? "true" : "false", "-", meaning);
   }
 
-  void operator()(const std::string& key, const std::string& value, const char* meaning)
+  void operator()(const std::string& key, const std::string& value, const Meaning& meaning)
   {
     write(key, "\"" + value + "\"", "-", meaning);
   }
 
   template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice value, const char* meaning)
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice value, const Meaning& meaning)
   {
     for (const auto& [name, choice] : choiceNames(Choice{}))
     {
@@ -61,11 +67,15 @@ public:
   std::string text() const { return text_.str(); }
 
 private:
-  void write(const std::string& key, const std::string& value, const char* unit, const char* meaning)
+  void write(const std::string& key, const std::string& value, const char* unit, const Meaning& meaning)
   {
-    text_ << key << ": " << value << "  # [" << unit << "] " << meaning << '\n';
+    if (fields_(meaning.shapes))
+    {
+      text_ << key << ": " << value << "  # [" << unit << "] " << meaning.text << '\n';
+    }
   }
 
+  Fields fields_;
   std::ostringstream text_;
 };
 
@@ -75,32 +85,35 @@ class TableWriter
 public:
   TableWriter() { table_ << "| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n"; }
 
-  void operator()(const std::string& key, const char* unit, double, const Range& range, const char* meaning)
+  void operator()(const std::string& key, const char* unit, double, const Range& range, const Meaning& meaning)
   {
     row(key, "float", unit, rangeText(range), meaning);
   }
 
-  void operator()(const std::string& key, const char* unit, int, const Range& range, const char* meaning)
+  void operator()(const std::string& key, const char* unit, int, const Range& range, const Meaning& meaning)
   {
     row(key, "int", unit, rangeText(range), meaning);
   }
 
   template <std::size_t N>
   void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
-                  const char* meaning)
+                  const Meaning& meaning)
   {
     row(key, std::to_string(N) + " floats", unit, rangeText(range), meaning);
   }
 
-  void operator()(const std::string& key, bool, const char* meaning) { row(key, "bool", "-", "true, false", meaning); }
+  void operator()(const std::string& key, bool, const Meaning& meaning)
+  {
+    row(key, "bool", "-", "true, false", meaning);
+  }
 
-  void operator()(const std::string& key, const std::string&, const char* meaning)
+  void operator()(const std::string& key, const std::string&, const Meaning& meaning)
   {
     row(key, "text", "-", "not empty", meaning);
   }
 
   template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const char* meaning)
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
   {
     std::string names;
     for (const auto& [name, choice] : choiceNames(Choice{}))
@@ -114,9 +127,9 @@ public:
 
 private:
   void row(const std::string& key, const std::string& type, const std::string& unit, const std::string& range,
-           const std::string& meaning)
+           const Meaning& meaning)
   {
-    table_ << "| `" << key << "` | " << type << " | " << unit << " | " << range << " | " << meaning << " |\n";
+    table_ << "| `" << key << "` | " << type << " | " << unit << " | " << range << " | " << meaning.text << " |\n";
   }
 
   std::ostringstream table_;
@@ -136,6 +149,14 @@ std::string describeParameters(const Parameters& parameters)
     writer(key + "place", placeName(describe(fault.kind).place), fault.place, {}, "where; -1: the whole member");
     writer(key + "onset", "s", fault.onset, {}, "after the start");
   }
+  return writer.text();
+}
+
+std::string describeSurfaceParameters(const Parameters& parameters, bool faulty)
+{
+  FieldWriter writer([faulty](Shapes shapes)
+                     { return shapes == Shapes::SURFACE || (faulty && shapes == Shapes::FAULTS); });
+  visitFields(parameters, writer);
   return writer.text();
 }
 

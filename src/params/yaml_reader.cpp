@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <initializer_list>
+#include <optional>
 #include <regex>
 #include <sstream>
 
@@ -18,19 +22,27 @@ namespace
 {
 using Value = decltype(ParameterValue::value);
 
-// How PyYAML, and so rosparam, tells numbers from texts: a float has a dot, and a sign in its exponent.
-const std::regex INTEGER(R"([-+]?(0|[1-9][0-9]*))");
-const std::regex FLOATING(R"(([-+]?[0-9]+\.[0-9]*|\.[0-9]+)([eE][-+][0-9]+)?)");
-const std::regex INFINITE(R"([-+]?\.(inf|Inf|INF))");
-const std::regex NOT_A_NUMBER(R"(\.(nan|NaN|NAN))");
-const std::regex TRUE_TEXT("yes|Yes|YES|true|True|TRUE|on|On|ON");
-const std::regex FALSE_TEXT("no|No|NO|false|False|FALSE|off|Off|OFF");
-const std::regex NO_VALUE("~|null|Null|NULL|");
-// rosparam's own addition for angles.
-const std::regex DEGREES(R"(deg\(([^)]*)\))");
-// PyYAML reads these as numbers, though hardly the ones that were meant: octal, hexadecimal, binary, 1_000, 1:30.
-const std::regex TREACHEROUS(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
-                             R"(|[0-9]+_[0-9_]*(\.[0-9_]*([eE][-+][0-9]+)?)?))");
+/// PyYAML reads these as numbers, though hardly the ones that were meant: octal, hexadecimal, binary, 1_000, 1:30.
+bool isTreacherous(const std::string& text)
+{
+  static const std::regex number(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
+                                 R"(|[0-9]+_[0-9_]*(\.[0-9_]*([eE][-+][0-9]+)?)?))");
+  return std::regex_match(text, number);
+}
+
+bool isOneOf(const std::string& text, std::initializer_list<const char*> spellings)
+{
+  return std::find(spellings.begin(), spellings.end(), text) != spellings.end();
+}
+
+/// `text` between "deg(" and ")": rosparam's own addition for angles.
+std::optional<double> degrees(const std::string& text)
+{
+  const std::string begin = "deg(";
+  return text.rfind(begin, 0) == 0 && text.back() == ')' ?
+             decimalNumber(text.substr(begin.size(), text.size() - begin.size() - 1)) :
+             std::nullopt;
+}
 
 [[noreturn]] void fail(const std::string& origin, const std::string& what)
 {
@@ -42,20 +54,24 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// The value of an unquoted text, by rosparam's rules.
+/// The value of an unquoted text: by rosparam's rules, but that every decimal number is one. rosparam takes 1e-6 for a text,
+/// which FieldReader reads alike.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
-  std::smatch match;
-  if (std::regex_match(text, NO_VALUE))
+  if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))
   {
     fail(origin, key + " has no value");
   }
-  if (std::regex_match(text, TREACHEROUS))
+  if (isTreacherous(text))
   {
     fail(origin, key + " = " + text + ": write numbers in plain decimal digits, and put texts in quotes");
   }
-  if (std::regex_match(text, INTEGER))
+  if (const auto number = decimalNumber(text))
   {
+    if (text.find_first_of(".eE") != std::string::npos)
+    {
+      return *number;
+    }
     errno = 0;
     const std::int64_t value = std::strtoll(text.c_str(), nullptr, 10);
     if (errno == ERANGE)
@@ -64,25 +80,23 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
     }
     return value;
   }
-  if (std::regex_match(text, FLOATING))
-  {
-    return std::strtod(text.c_str(), nullptr);
-  }
-  if (std::regex_match(text, INFINITE))
+  const std::string unsigned_text = text.substr(text.front() == '-' || text.front() == '+' ? 1 : 0);
+  if (isOneOf(unsigned_text, { ".inf", ".Inf", ".INF" }))
   {
     return text.front() == '-' ? -HUGE_VAL : HUGE_VAL;
   }
-  if (std::regex_match(text, NOT_A_NUMBER))
+  if (isOneOf(text, { ".nan", ".NaN", ".NAN" }))
   {
     return std::nan("");
   }
-  if (std::regex_match(text, TRUE_TEXT) || std::regex_match(text, FALSE_TEXT))
+  const bool is_true = isOneOf(text, { "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON" });
+  if (is_true || isOneOf(text, { "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF" }))
   {
-    return std::regex_match(text, TRUE_TEXT);
+    return is_true;
   }
-  if (std::regex_match(text, match, DEGREES) && looseNumber(match[1]))
+  if (const auto angle = degrees(text))
   {
-    return *looseNumber(match[1]) * (M_PI / 180.0);
+    return *angle * (M_PI / 180.0);
   }
   return text;
 }
@@ -102,21 +116,12 @@ Value listValue(const YAML::Node& node, const std::string& origin, const std::st
     {
       fail(origin, key + " must be a list of plain numbers");
     }
-    const Value value = scalarValue(element, origin, key);
-    if (const auto* number = std::get_if<double>(&value))
+    const std::optional<double> number = numberOf(scalarValue(element, origin, key));
+    if (!number)
     {
-      numbers.push_back(*number);
+      fail(origin, key + ": element '" + element.Scalar() + "' is not a number");
     }
-    else if (const auto* whole = std::get_if<std::int64_t>(&value))
-    {
-      numbers.push_back(static_cast<double>(*whole));
-    }
-    else
-    {
-      const auto meant = looseNumber(element.Scalar());
-      fail(origin, key + ": element '" + element.Scalar() + "' is not a number" +
-                       (meant ? " to rosparam: write " + numberText(*meant) : ""));
-    }
+    numbers.push_back(*number);
   }
   return numbers;
 }
@@ -239,6 +244,23 @@ void readYamlFile(const std::string& path, ParameterMap& map)
   readDocument(path, documents.front(), map);
 }
 
+void readDefaultConfiguration(const std::string& directory, ParameterMap& map)
+{
+  const std::string list = directory + "/stages";
+  std::ifstream file(list);
+  if (!file)
+  {
+    fail(list, "cannot be read: no default configuration there");
+  }
+  for (std::string name; std::getline(file, name);)
+  {
+    if (!name.empty() && name.front() != '#')
+    {
+      readYamlFile(directory + '/' + name, map);
+    }
+  }
+}
+
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin)
 {
   return { quoted ? Value(text) : plainValue(text, origin, key), origin };
@@ -249,7 +271,14 @@ void readAssignment(const std::string& assignment, ParameterMap& map)
   const std::string origin = "--set " + assignment;
   const std::size_t equals = assignment.find('=');
   const std::string key = assignment.substr(0, equals);
-  if (equals == std::string::npos || !std::regex_match(key, std::regex(R"([A-Za-z0-9_]+\.[A-Za-z0-9_]+)")))
+  const auto is_name = [](const std::string& name)
+  {
+    return !name.empty() &&
+           std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  };
+  const std::size_t dot = key.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || !is_name(key.substr(0, dot)) ||
+      !is_name(key.substr(dot + 1)))
   {
     fail(origin, "expected section.key=value");
   }

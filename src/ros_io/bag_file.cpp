@@ -6,11 +6,13 @@
 #include <rosbag/view.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_check.hpp"
 
 namespace hjt
 {
 void openForReading(rosbag::Bag& bag, const std::string& path)
 {
+  checkBagFile(path);
   try
   {
     bag.open(path, rosbag::bagmode::Read);

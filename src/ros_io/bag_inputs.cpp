@@ -8,7 +8,8 @@
 #include <std_msgs/Float64.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/topics.hpp"
+#include "ros_io/channels.hpp"
+#include "ros_io/checked_message.hpp"
 
 namespace hjt
 {
@@ -26,7 +27,28 @@ public:
   {
   }
 
+  /// @throws InputError.
   void read(const rosbag::MessageInstance& message)
+  {
+    try
+    {
+      readInput(message);
+    }
+    catch (const ros::Exception&)
+    {
+      ++result_.damaged;
+    }
+  }
+
+  BagInputs take()
+  {
+    std::stable_sort(result_.inputs.begin(), result_.inputs.end(),
+                     [](const Input& a, const Input& b) { return a.stamp < b.stamp; });
+    return std::move(result_);
+  }
+
+private:
+  void readInput(const rosbag::MessageInstance& message)
   {
     const std::string& topic = message.getTopic();
     if (topic == prefix_ + topics::COMMAND)
@@ -50,14 +72,6 @@ public:
     }
   }
 
-  BagInputs take()
-  {
-    std::stable_sort(result_.inputs.begin(), result_.inputs.end(),
-                     [](const Input& a, const Input& b) { return a.stamp < b.stamp; });
-    return std::move(result_);
-  }
-
-private:
   template <class Message>
   static boost::shared_ptr<Message> instantiate(const rosbag::MessageInstance& message)
   {
@@ -100,10 +114,15 @@ private:
   template <class ReadTorque>
   void readStamped(const rosbag::MessageInstance& instance, InputKind kind, ReadTorque read_torque)
   {
-    const auto message = instantiate<sensor_msgs::JointState>(instance);
-    const Stamp stamp = stampOf(instance, message->header);
+    if (!checked_.read(instance))
+    {
+      ++result_.damaged;
+      return;
+    }
+    const sensor_msgs::JointState& message = checked_.state();
+    const Stamp stamp = stampOf(instance, message.header);
     double torque{};
-    switch (read_torque(*message, names_, torque))
+    switch (read_torque(message, names_, torque))
     {
       case EffortStatus::FOUND:
         result_.inputs.push_back({ stamp, kind, torque });
@@ -112,7 +131,7 @@ private:
         ++result_.without_effort;
         break;
       case EffortStatus::UNKNOWN_JOINT:
-        result_.other_joints.insert(message->name.begin(), message->name.end());
+        result_.other_joints.insert(message.name.begin(), message.name.end());
         break;
     }
   }
@@ -120,6 +139,7 @@ private:
   std::string prefix_;
   const Parameters& parameters_;
   JointNames names_;
+  CheckedMessage checked_;
   BagInputs result_;
 };
 }  // namespace
@@ -133,10 +153,9 @@ std::vector<std::string> inputTopics(const std::string& joint_namespace)
 
 std::vector<std::string> outputTopics(const std::string& joint_namespace)
 {
-  const std::string prefix = joint_namespace + "/";
-  return { prefix + topics::JOINT_STATES, prefix + topics::ENCODERS,   prefix + topics::CONTACT_FORCES,
-           prefix + topics::HEALTH,       prefix + topics::INDICATORS, prefix + topics::ASSESSMENT,
-           prefix + topics::FAULTS };
+  std::vector<std::string> names{ joint_namespace + "/" + topics::FAULTS };
+  std::apply([&](const auto&... channel) { (names.push_back(joint_namespace + "/" + channel.name), ...); }, CHANNELS);
+  return names;
 }
 
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters)

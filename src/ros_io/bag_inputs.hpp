@@ -18,6 +18,7 @@ struct BagInputs
 {
   std::vector<Input> inputs;           ///< by stamp; equal stamps in the order of the bag
   std::uint64_t without_effort{};      ///< stamped messages that name the joint but give no effort for it
+  std::uint64_t damaged{};             ///< messages whose bytes cannot be read
   std::uint64_t refused_faults{};      ///< of unknown kind, or out of range: not among the inputs
   std::set<std::string> other_joints;  ///< joints named in stamped messages that do not name this one
 };

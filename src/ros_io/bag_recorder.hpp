@@ -4,8 +4,7 @@
 #include <string>
 
 #include "ros_io/bag_writer.hpp"
-#include "ros_io/conversions.hpp"
-#include "ros_io/output_schedule.hpp"
+#include "ros_io/channels.hpp"
 
 namespace hjt
 {
@@ -13,7 +12,6 @@ namespace hjt
 class BagRecorder
 {
 public:
-  /// Indicators and assessment are only written if the twin watches its signals.
   /// `joint_namespace`: of the node, e.g. "/joint_twin".
   BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
 
@@ -21,18 +19,41 @@ public:
   void record(Twin& twin);
 
 private:
-  BagWriter& bag_;
-  OutputSchedule schedule_;
-  ToothForces tooth_forces_;
-  std::string prefix_;
+  struct Context
+  {
+    BagWriter& bag;
+    std::string prefix;
+  };
+
+  /// Sink of a recorded topic.
+  template <class Message>
+  class RecordedChannel
+  {
+  public:
+    RecordedChannel(const Context& context, const Channel<Message>& channel, Message first)
+      : bag_(context.bag), topic_(context.prefix + channel.name), message_(std::move(first))
+    {
+    }
+    bool isWanted() const { return true; }
+
+    template <class Fill>
+    void write(Fill&& fill)
+    {
+      if (fill(message_))
+      {
+        bag_.write(topic_, fromRosTime(message_.header.stamp), message_);
+      }
+    }
+
+  private:
+    BagWriter& bag_;
+    std::string topic_;
+    Message message_;
+  };
+
+  Context context_;
   JointNames names_;
   std::uint64_t recorded_faults_;  // version of the list that was recorded last
-  sensor_msgs::JointState joint_states_;
-  harmonic_joint_twin::Encoders encoders_;
-  harmonic_joint_twin::ContactForces contact_forces_;
-  harmonic_joint_twin::Health health_;
-  Stamp health_since_{};  // stamp of the last one [ns]
-  harmonic_joint_twin::Indicators indicators_;
-  harmonic_joint_twin::Assessment assessment_;
+  Outputs<RecordedChannel> outputs_;
 };
 }  // namespace hjt

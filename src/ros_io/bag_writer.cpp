@@ -2,20 +2,19 @@
 #include "ros_io/bag_writer.hpp"
 
 #include <filesystem>
+#include <mutex>
 #include <utility>
 
 #include <rosbag/exceptions.h>
 
-#include "harmonic_joint_twin/base/errors.hpp"
-
 namespace hjt
 {
-BagWriter::BagWriter(std::string path) : path_(std::move(path)), active_path_(path_ + ".active")
+BagWriter::BagWriter(std::string path)
+  : path_(std::move(path)), active_path_(path_ + ".active"), lock_(active_path_), bag_(std::make_unique<rosbag::Bag>())
 {
   try
   {
-    bag_.open(active_path_, rosbag::bagmode::Write);
-    open_ = true;
+    bag_->open(active_path_, rosbag::bagmode::Write);
   }
   catch (const rosbag::BagException& error)
   {
@@ -41,32 +40,45 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   scratch_.resize(message.size());
   ros::serialization::OStream stream(scratch_.data(), static_cast<std::uint32_t>(scratch_.size()));
   message.write(stream);
-  bag_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+  guarded([&](rosbag::Bag& bag)
+          { bag.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader()); });
   ++messages_;
 }
 
 void BagWriter::close()
 {
-  if (!open_)
+  if (!bag_)
   {
     return;
   }
-  open_ = false;
-  try
+  guarded([](rosbag::Bag& bag) { bag.close(); });
+  bag_.reset();
+  std::error_code error;
+  if (messages_ > 0)
   {
-    bag_.close();
-    if (messages_ > 0)
-    {
-      std::filesystem::rename(active_path_, path_);
-    }
-    else
-    {
-      std::filesystem::remove(active_path_);
-    }
+    std::filesystem::rename(active_path_, path_, error);
   }
-  catch (const std::exception& error)
+  else
   {
-    throw InputError(path_ + " cannot be written: " + error.what());
+    std::filesystem::remove(active_path_, error);
   }
+  if (error)
+  {
+    throw InputError(path_ + " cannot be written: " + error.message());
+  }
+}
+
+void BagWriter::giveUp(const std::string& reason)
+{
+  // Its destructor would close it, and end the program when that throws.
+  static std::mutex mutex;
+  static std::vector<rosbag::Bag*> given_up;
+  const std::lock_guard<std::mutex> lock(mutex);
+  given_up.push_back(bag_.release());
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(active_path_, unknown);
+  throw InputError(path_ + " cannot be written: " + reason + "; " + active_path_ + " has " + std::to_string(size) +
+                   " bytes of " + std::to_string(messages_) +
+                   " messages, nearly all of which can be read after `rosbag reindex`");
 }
 }  // namespace hjt

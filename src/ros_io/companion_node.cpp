@@ -2,11 +2,13 @@
 #include "ros_io/companion_node.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 #include <ros/console.h>
-#include <ros/transport_hints.h>
 
 #include "gear/ratio.hpp"
+#include "ros_io/input_topics.hpp"
+#include "ros_io/printable.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
 
@@ -17,22 +19,22 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// Seconds of rows at 500 Hz: while a twin in torque mode catches up none may be lost.
-constexpr std::uint32_t QUEUE_SIZE = 4096;
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-/// Between two looks at the levels [s].
-constexpr double LOOK_PERIOD = 0.05;
 /// Telemetry that brings nothing for so long has stopped [s].
 constexpr double STOPPED_AFTER = 0.5;
+/// Of the names in a message without this joint that are shown [bytes].
+constexpr std::size_t LONGEST_NAMES = 500;
 /// Share of the last seconds' rows outside their band beyond which the joint is said to depart [-].
 constexpr double OUTSIDE_WARNING = 0.1;
 /// Stamps further off the clock are said to be [s].
 constexpr double OFFSET_WARNING = 0.5;
 
-constexpr std::size_t TELEMETRY = 0;
-constexpr std::size_t COMPARISON = 1;
-constexpr std::size_t HEALTH = 2;
+/// Whether two rows can be of the same clock: their receptions less stamps [ns].
+bool agree(Stamp a, Stamp b)
+{
+  return std::abs(a - b) <= FAR_STAMP;
+}
 
 /// Surfaces for torque mode: built before the first row is taken, so that the same rows give the same numbers.
 SurfaceSource surfaceSource()
@@ -50,31 +52,31 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
   , parameters_(parameters)
   , companion_(parameters, parameters.input.mode, surfaceSource())
   , life_(node, parameters)
-  , comparison_(makeComparison(names_))
-  , indicators_(makeIndicators(names_))
-  , assessment_(makeAssessment(names_))
+  , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
+  , indicators_(makeIndicators(parameters))
+  , assessment_(makeAssessment(parameters))
   , indicators_period_(toStampLength(1.0 / parameters.publish.indicators_rate))
-  , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, QUEUE_SIZE))
+  , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, InputTopics::QUEUE_SIZE))
   , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
   , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
+  , tasks_(parameters.joint.hardware_id)
   , reset_service_(node.advertiseService("reset", &CompanionNode::reset, this))
 {
-  updater_.setHardwareID(parameters.joint.hardware_id);
-  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportTelemetry(status); });
-  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportComparison(status); });
-  updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
-  timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
-  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  telemetry_subscriber_ = node.subscribe(topics::MEASURED, QUEUE_SIZE, &CompanionNode::receiveTelemetry, this, hints);
-  load_subscriber_ = node.subscribe(topics::LOAD, QUEUE_SIZE, &CompanionNode::receiveLoad, this, hints);
-  load_torque_subscriber_ = node.subscribe<std_msgs::Float64>(
-      topics::LOAD_TORQUE, QUEUE_SIZE, [this](const std_msgs::Float64::ConstPtr& message) { receiveLoadNow(*message); },
-      ros::VoidConstPtr(), hints);
-}
-
-double CompanionNode::secondsFromStart(const ros::Time& time) const
-{
-  return (time - *start_).toSec();
+  tasks_.add(
+      "Input", [this] { return judgeTelemetry(); }, [this](auto& status) { reportTelemetry(status); });
+  tasks_.add(
+      "Drive", [this] { return judgeComparison(); }, [this](auto& status) { reportComparison(status); });
+  tasks_.add(
+      "Health", [this] { return judgeHealth(); }, [this](auto& status) { reportHealth(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
+                                [this](const ros::WallTimerEvent&) { look(); });
+  const InputTopics inputs{ node, too_large_ };
+  telemetry_subscriber_ = inputs.subscribe<sensor_msgs::JointState>(
+      topics::MEASURED, [this](const JointStateEvent& event) { receiveTelemetry(event); });
+  load_subscriber_ = inputs.subscribe<sensor_msgs::JointState>(
+      topics::LOAD, [this](const JointStateEvent& event) { receiveLoad(event); });
+  load_torque_subscriber_ = inputs.subscribe<std_msgs::Float64>(
+      topics::LOAD_TORQUE, [this](const auto& event) { receiveLoadNow(event.getMessage()->data); });
 }
 
 void CompanionNode::receiveTelemetry(const JointStateEvent& event)
@@ -93,6 +95,7 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
       {
         found_names_ += (found_names_.empty() ? "" : ", ") + name;
       }
+      found_names_ = printable(found_names_, LONGEST_NAMES);
       ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "No " << names_.joint << " on " << telemetry_subscriber_.getTopic()
                                                      << ", which names " << found_names_);
       return;
@@ -105,21 +108,48 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
       ++refusals_.not_finite;
       return;
   }
-  last_received_ = event.getReceiptTime();
-  const ros::Time stamp = message.header.stamp.isZero() ? last_received_ : message.header.stamp;
-  if (!start_)
+  const Stamp stamp = stampOr(message.header.stamp, event.getReceiptTime());
+  last_received_ = fromRosTime(event.getReceiptTime());
+  if (!start(stamp))
   {
-    start_ = stamp;
-    for (const LoadAt& load : early_loads_)
-    {
-      companion_.giveLoad(secondsFromStart(load.stamp), load.torque);
-    }
-    early_loads_.clear();
+    ++refusals_.far_stamp;
+    return;
   }
   row.time = secondsFromStart(stamp);
   row.received = secondsFromStart(last_received_);
   companion_.give(row);
   publish();
+}
+
+/// Sets the companion's zero with the first row. False: the stamp is far from where those of the rows before lead to; if the
+/// next row agrees with this one, the clock of the robot or this machine's was set, and all starts anew.
+bool CompanionNode::start(Stamp stamp)
+{
+  const Stamp offset = last_received_ - stamp;
+  const bool moved = start_ && !agree(offset, offset_);
+  if (moved && !(refused_offset_ && agree(offset, *refused_offset_)))
+  {
+    refused_offset_ = offset;
+    return false;
+  }
+  refused_offset_.reset();
+  offset_ = offset;
+  if (moved)
+  {
+    companion_.reset();
+    ++clock_changes_;
+    start_.reset();
+  }
+  if (!start_)
+  {
+    start_ = stamp;
+    for (const LoadAt& load : early_loads_)
+    {
+      passLoad(load);
+    }
+    early_loads_.clear();
+  }
+  return true;
 }
 
 void CompanionNode::receiveLoad(const JointStateEvent& event)
@@ -132,50 +162,62 @@ void CompanionNode::receiveLoad(const JointStateEvent& event)
     ++refusals_.load;
     return;
   }
-  giveLoad(message.header.stamp.isZero() ? event.getReceiptTime() : message.header.stamp, torque);
+  giveLoad({ stampOr(message.header.stamp, event.getReceiptTime()), fromRosTime(event.getReceiptTime()), torque });
 }
 
-void CompanionNode::receiveLoadNow(const std_msgs::Float64& message)
+void CompanionNode::receiveLoadNow(double torque)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!std::isfinite(message.data))
+  if (!std::isfinite(torque))
   {
     ++refusals_.load;
     return;
   }
-  giveLoad(ros::Time::now(), message.data);
+  const Stamp now = fromRosTime(ros::Time::now());
+  giveLoad({ now, now, torque });
 }
 
-void CompanionNode::giveLoad(const ros::Time& stamp, double torque)
+void CompanionNode::giveLoad(const LoadAt& load)
 {
-  last_load_ = LoadAt{ stamp, torque };
   if (start_)
   {
-    companion_.giveLoad(secondsFromStart(stamp), torque);
+    passLoad(load);
     return;
   }
-  early_loads_.push_back(*last_load_);
+  early_loads_.push_back(load);
   if (early_loads_.size() > Companion::LOADS)
   {
     early_loads_.pop_front();
   }
 }
 
+/// Once there is a zero: a load by another clock than the rows is refused.
+void CompanionNode::passLoad(const LoadAt& load)
+{
+  if (!agree(load.received - load.stamp, offset_))
+  {
+    ++refusals_.load;
+    return;
+  }
+  last_load_ = load;
+  companion_.giveLoad(secondsFromStart(load.stamp), load.torque);
+}
+
 void CompanionNode::publish()
 {
   while (const std::optional<Comparison> comparison = companion_.take())
   {
-    const ros::Time stamp = *start_ + ros::Duration(comparison->time);
+    const Stamp stamp = *start_ + std::llround(1e9 * comparison->time);
     fillComparison(stamp, *comparison, comparison_);
     comparison_publisher_.publish(comparison_);
-    life_.offer(fromRosTime(stamp), nominalRatio(parameters_.gear) * comparison->velocity.measured,
-                comparison->joint_torque, parameters_.input.temperature);
-    const std::int64_t due = fromRosTime(stamp) / indicators_period_;
+    life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
+                parameters_.input.temperature);
+    const std::int64_t due = stamp / indicators_period_;
     if (due != indicators_due_)
     {
       indicators_due_ = due;
-      fillIndicators(fromRosTime(stamp), companion_.signalIndicators(), indicators_);
-      fillAssessment(fromRosTime(stamp), companion_.assessment(), assessment_);
+      fillIndicators(stamp, companion_.signalIndicators(), indicators_);
+      fillAssessment(stamp, companion_.assessment(), assessment_);
       indicators_publisher_.publish(indicators_);
       assessment_publisher_.publish(assessment_);
     }
@@ -197,28 +239,19 @@ void CompanionNode::look()
   const ros::WallTime now = ros::WallTime::now();
   const StreamTimingReport timing = companion_.timing();
   const CompanionCounters counters = companion_.counters();
-  recent_refusals_.update(refusals_.unknown_joint + refusals_.incomplete + refusals_.not_finite + refusals_.load, now);
+  recent_refusals_.update(refusals_.unknown_joint + refusals_.incomplete + refusals_.not_finite + refusals_.load +
+                              refusals_.far_stamp + too_large_,
+                          now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);
-  recent_restarts_.update(counters.restarts, now);
+  recent_restarts_.update(counters.restarts + clock_changes_, now);
   recent_failures_.update(counters.solver_failures, now);
-  const std::array<DiagnosticVerdict, 3> verdicts{ judgeTelemetry(), judgeComparison(), judgeHealth() };
-  bool changed = false;
-  for (std::size_t task = 0; task < verdicts.size(); ++task)
-  {
-    changed = changed || verdicts[task].level != verdicts_[task].level;
-  }
-  verdicts_ = verdicts;
-  if (changed || (now - last_report_).toSec() >= updater_.getPeriod())
-  {
-    last_report_ = now;
-    updater_.force_update();
-  }
+  tasks_.look();
 }
 
 bool CompanionNode::hasStopped() const
 {
-  return (ros::Time::now() - last_received_).toSec() > STOPPED_AFTER;
+  return toSeconds(fromRosTime(ros::Time::now()) - last_received_) > STOPPED_AFTER;
 }
 
 DiagnosticVerdict CompanionNode::judgeTelemetry() const
@@ -240,7 +273,8 @@ DiagnosticVerdict CompanionNode::judgeTelemetry() const
   }
   if (refused)
   {
-    return { DiagnosticStatus::WARN, "Messages refused: not for this joint, incomplete or not finite" };
+    return { DiagnosticStatus::WARN,
+             "Messages refused: not for this joint, incomplete, not finite, too large, or stamped far off" };
   }
   if (recent_disorder_.areRecent())
   {
@@ -292,7 +326,6 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
 {
   const StreamTimingReport timing = companion_.timing();
   const CompanionCounters counters = companion_.counters();
-  status.summary(verdicts_[TELEMETRY].level, verdicts_[TELEMETRY].text);
   status.add("Topic", telemetry_subscriber_.getTopic());
   status.add("Joint", names_.joint);
   status.add("Rows", timing.rows);
@@ -302,18 +335,20 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Gaps that cut the stream", counters.gaps);
   status.add("Stamps repeated", timing.repeated);
   status.add("Stamps going back", timing.backward);
-  status.add("Starts anew", counters.restarts);
+  status.add("Starts anew", counters.restarts + clock_changes_);
   status.add("Reception less stamp [s]", timing.offset);
   status.add("Jitter of reception, 95 % [s]", timing.jitter);
   status.add("Unknown joint, refused", refusals_.unknown_joint);
   status.add("Names in the last of those", found_names_);
   status.add("Without position or effort, refused", refusals_.incomplete);
   status.add("Not finite, refused", refusals_.not_finite);
+  status.add("Too large, refused", too_large_.load());
+  status.add("Stamp far from the clock, refused", refusals_.far_stamp);
   status.add("Loads refused", refusals_.load);
   status.add("Rows without a told load", counters.without_load);
   if (last_load_)
   {
-    status.add("Load's stamp before the newest row's reception [s]", (last_received_ - last_load_->stamp).toSec());
+    status.add("Load's stamp before the newest row's reception [s]", toSeconds(last_received_ - last_load_->stamp));
   }
 }
 
@@ -321,7 +356,6 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
 {
   const CompanionCounters counters = companion_.counters();
   const std::optional<double> lag = companion_.lag();
-  status.summary(verdicts_[COMPARISON].level, verdicts_[COMPARISON].text);
   status.add("Residual of the current [A]", comparison_.current_residual);
   status.add("Its band [A]", comparison_.current_band);
   status.add("Residual of the position [rad]", comparison_.position_residual);
@@ -344,7 +378,6 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
 
 void CompanionNode::reportHealth(DiagnosticStatusWrapper& status) const
 {
-  status.summary(verdicts_[HEALTH].level, verdicts_[HEALTH].text);
   addAssessment(companion_.assessment(), status);
 }
 }  // namespace hjt

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -45,19 +44,23 @@ private:
     std::uint64_t incomplete{};
     std::uint64_t not_finite{};
     std::uint64_t load{};
+    std::uint64_t far_stamp{};
   };
 
   struct LoadAt
   {
-    ros::Time stamp;
-    double torque;  // [N.m]
+    Stamp stamp;     // [ns]
+    Stamp received;  // [ns]
+    double torque;   // [N.m]
   };
 
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
-  void receiveLoadNow(const std_msgs::Float64& message);
-  void giveLoad(const ros::Time& stamp, double torque);
-  double secondsFromStart(const ros::Time& time) const;
+  void receiveLoadNow(double torque);
+  void giveLoad(const LoadAt& load);
+  void passLoad(const LoadAt& load);
+  bool start(Stamp stamp);
+  double secondsFromStart(Stamp stamp) const { return toSeconds(stamp - *start_); }
   void publish();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
@@ -75,8 +78,11 @@ private:
   const Parameters parameters_;
   Companion companion_;
   LifePublisher life_;
-  std::optional<ros::Time> start_;  // stamp of the first row: the companion's zero
-  ros::Time last_received_;
+  std::optional<Stamp> start_;           // stamp of the first row: the companion's zero [ns]
+  Stamp last_received_{};                // [ns]
+  Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
+  std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
+  std::uint64_t clock_changes_{};        // starts anew because all stamps had moved far
   std::optional<LoadAt> last_load_;
   std::deque<LoadAt> early_loads_;  // told before there was a zero
   std::string found_names_;         // in the last message without this joint
@@ -84,21 +90,20 @@ private:
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;
   harmonic_joint_twin::Assessment assessment_;
-  std::int64_t indicators_period_;             // [ns]
-  std::int64_t indicators_due_{};              // how many periods have begun since the epoch
-  std::array<DiagnosticVerdict, 3> verdicts_;  // telemetry, comparison, health
+  std::int64_t indicators_period_;  // [ns]
+  std::int64_t indicators_due_{};   // how many periods have begun since the epoch
   RecentEvents recent_refusals_;
   RecentEvents recent_disorder_;
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
-  ros::WallTime last_report_;
   ros::Publisher comparison_publisher_;
   ros::Publisher indicators_publisher_;
   ros::Publisher assessment_publisher_;
-  diagnostic_updater::Updater updater_;
+  DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;
   ros::WallTimer timer_;
+  std::atomic<std::uint64_t> too_large_{ 0 };
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;
   ros::Subscriber load_torque_subscriber_;

@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
-#include <vector>
 
+#include "ros_io/printable.hpp"
 #include "ros_io/time.hpp"
 
 namespace hjt
@@ -17,20 +18,13 @@ namespace
 constexpr std::size_t MOTOR = 0;
 constexpr std::size_t JOINT = 1;
 
-// The arrays were sized by makeContactForces; a shorter source leaves the rest of the target as it was.
-void copyArray(const std::vector<double>& from, std::vector<double>& to) noexcept
-{
-  std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
-}
-
 EffortStatus readEffort(const sensor_msgs::JointState& message, const std::string& name, double& effort) noexcept
 {
-  const auto found = std::find(message.name.begin(), message.name.end(), name);
-  if (found == message.name.end())
+  const std::size_t index = placeOf(message, name);
+  if (index >= message.name.size())
   {
     return EffortStatus::UNKNOWN_JOINT;
   }
-  const auto index = static_cast<std::size_t>(found - message.name.begin());
   if (index >= message.effort.size())
   {
     return EffortStatus::MISSING_EFFORT;
@@ -39,91 +33,31 @@ EffortStatus readEffort(const sensor_msgs::JointState& message, const std::strin
   return EffortStatus::FOUND;
 }
 
-/// Where each indicator stands in the message.
-struct IndicatorField
+/// A number that may be missing: 0 and false where it is.
+template <class Flag>
+void fillOptional(double value, double& field, Flag& valid) noexcept
 {
-  double harmonic_joint_twin::Indicators::*field;
-  std::size_t indicator;
-};
-struct PhaseField
-{
-  double harmonic_joint_twin::Indicators::*field;
-  LineSignal signal;
-  Line line;
-};
-
-constexpr std::size_t lineIndex(LineSignal signal, Line line)
-{
-  return amplitudeIndex(signal, index(line));
+  valid = std::isfinite(value);
+  field = std::isfinite(value) ? value : 0.0;
 }
 
-constexpr LineSignal ERROR_LINE = LineSignal::KINEMATIC_ERROR;
-constexpr LineSignal TORQUE_LINE = LineSignal::MOTOR_TORQUE;
-using IndicatorsMessage = harmonic_joint_twin::Indicators;
-
-const std::array<IndicatorField, SCALAR_COUNT + LINE_SIGNALS * LINE_COUNT> INDICATOR_FIELDS{ {
-    { &IndicatorsMessage::ratio_deviation, indexOf(ScalarIndicator::RATIO_DEVIATION) },
-    { &IndicatorsMessage::kinematic_error, indexOf(ScalarIndicator::KINEMATIC_ERROR) },
-    { &IndicatorsMessage::torsional_stiffness, indexOf(ScalarIndicator::TORSIONAL_STIFFNESS) },
-    { &IndicatorsMessage::lost_motion, indexOf(ScalarIndicator::LOST_MOTION) },
-    { &IndicatorsMessage::hysteresis_area, indexOf(ScalarIndicator::HYSTERESIS_AREA) },
-    { &IndicatorsMessage::running_torque, indexOf(ScalarIndicator::RUNNING_TORQUE) },
-    { &IndicatorsMessage::coulomb_torque, indexOf(ScalarIndicator::COULOMB_TORQUE) },
-    { &IndicatorsMessage::viscous_friction, indexOf(ScalarIndicator::VISCOUS_FRICTION) },
-    { &IndicatorsMessage::efficiency, indexOf(ScalarIndicator::EFFICIENCY) },
-    { &IndicatorsMessage::residual_rms, indexOf(ScalarIndicator::RESIDUAL_RMS) },
-    { &IndicatorsMessage::residual_kurtosis, indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) },
-    { &IndicatorsMessage::residual_crest, indexOf(ScalarIndicator::RESIDUAL_CREST) },
-    { &IndicatorsMessage::error_wave_generator_1, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_1) },
-    { &IndicatorsMessage::error_wave_generator_2, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_2) },
-    { &IndicatorsMessage::error_wave_generator_4, lineIndex(ERROR_LINE, Line::WAVE_GENERATOR_4) },
-    { &IndicatorsMessage::error_circular_spline_2, lineIndex(ERROR_LINE, Line::CIRCULAR_SPLINE_2) },
-    { &IndicatorsMessage::error_cage, lineIndex(ERROR_LINE, Line::CAGE) },
-    { &IndicatorsMessage::error_cage_lobes, lineIndex(ERROR_LINE, Line::CAGE_LOBES) },
-    { &IndicatorsMessage::error_ball, lineIndex(ERROR_LINE, Line::BALL) },
-    { &IndicatorsMessage::error_ball_double, lineIndex(ERROR_LINE, Line::BALL_DOUBLE) },
-    { &IndicatorsMessage::error_outer, lineIndex(ERROR_LINE, Line::OUTER) },
-    { &IndicatorsMessage::error_outer_below, lineIndex(ERROR_LINE, Line::OUTER_BELOW) },
-    { &IndicatorsMessage::error_outer_above, lineIndex(ERROR_LINE, Line::OUTER_ABOVE) },
-    { &IndicatorsMessage::error_inner, lineIndex(ERROR_LINE, Line::INNER) },
-    { &IndicatorsMessage::error_inner_below, lineIndex(ERROR_LINE, Line::INNER_BELOW) },
-    { &IndicatorsMessage::error_inner_above, lineIndex(ERROR_LINE, Line::INNER_ABOVE) },
-    { &IndicatorsMessage::error_tooth_pass, lineIndex(ERROR_LINE, Line::TOOTH_PASS) },
-    { &IndicatorsMessage::error_tooth_pass_above, lineIndex(ERROR_LINE, Line::TOOTH_PASS_ABOVE) },
-    { &IndicatorsMessage::torque_wave_generator_1, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_1) },
-    { &IndicatorsMessage::torque_wave_generator_2, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_2) },
-    { &IndicatorsMessage::torque_wave_generator_4, lineIndex(TORQUE_LINE, Line::WAVE_GENERATOR_4) },
-    { &IndicatorsMessage::torque_circular_spline_2, lineIndex(TORQUE_LINE, Line::CIRCULAR_SPLINE_2) },
-    { &IndicatorsMessage::torque_cage, lineIndex(TORQUE_LINE, Line::CAGE) },
-    { &IndicatorsMessage::torque_cage_lobes, lineIndex(TORQUE_LINE, Line::CAGE_LOBES) },
-    { &IndicatorsMessage::torque_ball, lineIndex(TORQUE_LINE, Line::BALL) },
-    { &IndicatorsMessage::torque_ball_double, lineIndex(TORQUE_LINE, Line::BALL_DOUBLE) },
-    { &IndicatorsMessage::torque_outer, lineIndex(TORQUE_LINE, Line::OUTER) },
-    { &IndicatorsMessage::torque_outer_below, lineIndex(TORQUE_LINE, Line::OUTER_BELOW) },
-    { &IndicatorsMessage::torque_outer_above, lineIndex(TORQUE_LINE, Line::OUTER_ABOVE) },
-    { &IndicatorsMessage::torque_inner, lineIndex(TORQUE_LINE, Line::INNER) },
-    { &IndicatorsMessage::torque_inner_below, lineIndex(TORQUE_LINE, Line::INNER_BELOW) },
-    { &IndicatorsMessage::torque_inner_above, lineIndex(TORQUE_LINE, Line::INNER_ABOVE) },
-    { &IndicatorsMessage::torque_tooth_pass, lineIndex(TORQUE_LINE, Line::TOOTH_PASS) },
-    { &IndicatorsMessage::torque_tooth_pass_above, lineIndex(TORQUE_LINE, Line::TOOTH_PASS_ABOVE) },
-} };
-
-const std::array<PhaseField, LINE_SIGNALS * PHASE_LOCKED> PHASE_FIELDS{ {
-    { &IndicatorsMessage::error_wave_generator_1_phase, ERROR_LINE, Line::WAVE_GENERATOR_1 },
-    { &IndicatorsMessage::error_wave_generator_2_phase, ERROR_LINE, Line::WAVE_GENERATOR_2 },
-    { &IndicatorsMessage::error_wave_generator_4_phase, ERROR_LINE, Line::WAVE_GENERATOR_4 },
-    { &IndicatorsMessage::error_circular_spline_2_phase, ERROR_LINE, Line::CIRCULAR_SPLINE_2 },
-    { &IndicatorsMessage::torque_wave_generator_1_phase, TORQUE_LINE, Line::WAVE_GENERATOR_1 },
-    { &IndicatorsMessage::torque_wave_generator_2_phase, TORQUE_LINE, Line::WAVE_GENERATOR_2 },
-    { &IndicatorsMessage::torque_wave_generator_4_phase, TORQUE_LINE, Line::WAVE_GENERATOR_4 },
-    { &IndicatorsMessage::torque_circular_spline_2_phase, TORQUE_LINE, Line::CIRCULAR_SPLINE_2 },
-} };
+double optionalValue(double field, bool valid) noexcept
+{
+  return valid ? field : std::numeric_limits<double>::quiet_NaN();
+}
 }  // namespace
 
-sensor_msgs::JointState makeJointStates(const JointNames& names)
+std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept
 {
-  sensor_msgs::JointState message;
-  message.header.frame_id = names.joint;
+  const auto found = std::find(message.name.begin(), message.name.end(), name);
+  return found == message.name.end() ? std::numeric_limits<std::size_t>::max() :
+                                       static_cast<std::size_t>(found - message.name.begin());
+}
+
+sensor_msgs::JointState makeJointStates(const Parameters& parameters)
+{
+  const JointNames names(parameters.joint.name);
+  auto message = makeMessage<sensor_msgs::JointState>(parameters);
   message.name = { names.motor, names.joint };
   message.position.resize(2);
   message.velocity.resize(2);
@@ -131,9 +65,10 @@ sensor_msgs::JointState makeJointStates(const JointNames& names)
   return message;
 }
 
-void fillJointStates(const JointOutputs& outputs, const EncoderReadings& readings,
-                     sensor_msgs::JointState& message) noexcept
+bool fillJointStates(Twin& twin, Stamp /*since*/, sensor_msgs::JointState& message) noexcept
 {
+  const JointOutputs& outputs = twin.outputs();
+  const EncoderReadings readings = twin.encoders();
   message.header.stamp = toRosTime(outputs.stamp);
   message.position[MOTOR] = readings.motor_angle;
   message.position[JOINT] = readings.output_angle;
@@ -141,18 +76,13 @@ void fillJointStates(const JointOutputs& outputs, const EncoderReadings& reading
   message.velocity[JOINT] = readings.output_velocity;
   message.effort[MOTOR] = outputs.motor_torque;
   message.effort[JOINT] = outputs.joint_torque;
+  return true;
 }
 
-harmonic_joint_twin::Encoders makeEncoders(const JointNames& names)
+bool fillEncoders(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Encoders& message) noexcept
 {
-  harmonic_joint_twin::Encoders message;
-  message.header.frame_id = names.joint;
-  return message;
-}
-
-void fillEncoders(const JointOutputs& outputs, const EncoderReadings& readings,
-                  harmonic_joint_twin::Encoders& message) noexcept
-{
+  const JointOutputs& outputs = twin.outputs();
+  const EncoderReadings readings = twin.encoders();
   message.header.stamp = toRosTime(outputs.stamp);
   message.motor_count = readings.motor_count;
   message.motor_angle = readings.motor_angle;
@@ -160,43 +90,44 @@ void fillEncoders(const JointOutputs& outputs, const EncoderReadings& readings,
   message.output_count = readings.output_count;
   message.output_angle = readings.output_angle;
   message.output_angle_true = outputs.output_angle;
+  return true;
 }
 
-harmonic_joint_twin::ContactForces makeContactForces(const JointNames& names, int teeth)
+harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters)
 {
-  harmonic_joint_twin::ContactForces message;
-  message.header.frame_id = names.joint;
-  const auto size = static_cast<std::size_t>(teeth);
+  auto message = makeMessage<harmonic_joint_twin::ContactForces>(parameters);
   for (auto* array : { &message.wave_generator_force, &message.rim_tension, &message.bending_force, &message.mesh_force,
                        &message.tooth_x, &message.tooth_y })
   {
-    array->resize(size);
+    array->resize(static_cast<std::size_t>(parameters.gear.teeth_flexspline));
   }
   return message;
 }
 
-void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
-                       harmonic_joint_twin::ContactForces& message) noexcept
+bool fillContactForces(Twin& twin, Stamp /*since*/, harmonic_joint_twin::ContactForces& message) noexcept
 {
+  const JointOutputs& outputs = twin.outputs();
   message.header.stamp = toRosTime(outputs.stamp);
   message.wave_generator_angle = outputs.motor_angle;
   message.output_angle = outputs.output_angle;
-  copyArray(forces.wave_generator_force, message.wave_generator_force);
-  copyArray(forces.rim_tension, message.rim_tension);
-  copyArray(forces.bending_force, message.bending_force);
-  copyArray(forces.mesh_force, message.mesh_force);
-  copyArray(forces.tooth_x, message.tooth_x);
-  copyArray(forces.tooth_y, message.tooth_y);
+  // The twin writes into the message's own arrays.
+  ToothForces forces;
+  const auto swapArrays = [&forces, &message]
+  {
+    forces.wave_generator_force.swap(message.wave_generator_force);
+    forces.rim_tension.swap(message.rim_tension);
+    forces.bending_force.swap(message.bending_force);
+    forces.mesh_force.swap(message.mesh_force);
+    forces.tooth_x.swap(message.tooth_x);
+    forces.tooth_y.swap(message.tooth_y);
+  };
+  swapArrays();
+  const bool found = twin.toothForces(forces);
+  swapArrays();
+  return found;
 }
 
-harmonic_joint_twin::Health makeHealth(const JointNames& names)
-{
-  harmonic_joint_twin::Health message;
-  message.header.frame_id = names.joint;
-  return message;
-}
-
-void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept
+bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
   const HealthReport report = twin.health(since);
@@ -223,6 +154,7 @@ void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& mess
   message.solver_iterations = outputs.iterations;
   message.solver_residual = outputs.residual;
   message.solver_failures = twin.counters().solver_failures;
+  return true;
 }
 
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept
@@ -239,10 +171,9 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
   return length;
 }
 
-harmonic_joint_twin::Assessment makeAssessment(const JointNames& names)
+harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters)
 {
-  harmonic_joint_twin::Assessment message;
-  message.header.frame_id = names.joint;
+  auto message = makeMessage<harmonic_joint_twin::Assessment>(parameters);
   message.cause.assign(EVIDENCE_LENGTH, ' ');
   message.evidence.assign(EVIDENCE_LENGTH, ' ');
   return message;
@@ -262,10 +193,15 @@ void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_tw
   message.evidence.assign(text.data(), writeEvidence(assessment, text.data(), text.size()));
 }
 
-harmonic_joint_twin::Indicators makeIndicators(const JointNames& names)
+harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters)
 {
-  harmonic_joint_twin::Indicators message;
-  message.header.frame_id = names.joint;
+  auto message = makeMessage<harmonic_joint_twin::Indicators>(parameters);
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    message.names.emplace_back(indicatorName(i));
+  }
+  message.values.resize(INDICATOR_COUNT);
+  message.valid.resize(INDICATOR_COUNT);
   return message;
 }
 
@@ -277,35 +213,31 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   message.turns = indicators.turns;
   message.speed = indicators.point.speed;
   message.direction = indicators.point.direction;
-  message.load = indicators.point.load;
-  message.temperature = indicators.point.temperature;
-  for (const IndicatorField& entry : INDICATOR_FIELDS)
+  fillOptional(indicators.point.load, message.load, message.load_valid);
+  fillOptional(indicators.point.temperature, message.temperature, message.temperature_valid);
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    message.*entry.field = indicators.values[entry.indicator];
-  }
-  for (const PhaseField& entry : PHASE_FIELDS)
-  {
-    message.*entry.field = indicators.phase(entry.signal, entry.line);
+    fillOptional(indicators.values[i], message.values[i], message.valid[i]);
   }
 }
 
-SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message) noexcept
+SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message)
 {
   SignalIndicators indicators;
   indicators.stamp = fromRosTime(message.window_end);
   indicators.windows = message.windows;
   indicators.turns = message.turns;
-  indicators.point = { message.speed, message.direction, message.load, message.temperature };
-  for (const IndicatorField& entry : INDICATOR_FIELDS)
+  indicators.point = { message.speed, message.direction, optionalValue(message.load, message.load_valid),
+                       optionalValue(message.temperature, message.temperature_valid) };
+  const std::size_t count = std::min({ message.names.size(), message.values.size(), message.valid.size() });
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    indicators.values[entry.indicator] = message.*entry.field;
-  }
-  for (const PhaseField& entry : PHASE_FIELDS)
-  {
-    const std::size_t line = index(entry.line);
-    const double amplitude = indicators.values[amplitudeIndex(entry.signal, line)];
-    indicators.values[cosineIndex(entry.signal, line)] = amplitude * std::cos(message.*entry.field);
-    indicators.values[sineIndex(entry.signal, line)] = -amplitude * std::sin(message.*entry.field);
+    const auto name = std::find(message.names.begin(), message.names.end(), indicatorName(i));
+    const auto place = static_cast<std::size_t>(name - message.names.begin());
+    if (place < count)
+    {
+      indicators.values[i] = optionalValue(message.values[place], message.valid[place] != 0);
+    }
   }
   return indicators;
 }
@@ -333,7 +265,7 @@ std::string readFault(const harmonic_joint_twin::Fault& message, const Parameter
   const std::optional<FaultKind> kind = faultNamed(message.kind);
   if (!kind)
   {
-    return "kind = '" + message.kind + "' is unknown, allowed: " + faultNames();
+    return "kind = '" + printable(message.kind) + "' is unknown, allowed: " + faultNames();
   }
   fault = { *kind, message.severity, message.place, 0.0 };
   return faultErrors(fault, parameters, "");

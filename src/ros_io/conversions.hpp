@@ -25,40 +25,61 @@ struct JointNames
   std::string motor;
 };
 
-// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
+/// Place of a name in the message; beyond every array if it is not there.
+std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
+
+// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing. As
+// functions of a Channel they also get `since`, the instant of the topic's last message, and return false if there is nothing
+// to say.
+
+/// A message without arrays.
+template <class Message>
+Message makeMessage(const Parameters& parameters)
+{
+  Message message;
+  message.header.frame_id = parameters.joint.name;
+  return message;
+}
 
 /// Order of the entries: motor, joint.
-sensor_msgs::JointState makeJointStates(const JointNames& names);
+sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 
 /// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
-void fillJointStates(const JointOutputs& outputs, const EncoderReadings& readings,
-                     sensor_msgs::JointState& message) noexcept;
+bool fillJointStates(Twin& twin, Stamp since, sensor_msgs::JointState& message) noexcept;
 
-harmonic_joint_twin::Encoders makeEncoders(const JointNames& names);
-void fillEncoders(const JointOutputs& outputs, const EncoderReadings& readings,
-                  harmonic_joint_twin::Encoders& message) noexcept;
+bool fillEncoders(Twin& twin, Stamp since, harmonic_joint_twin::Encoders& message) noexcept;
 
 /// One entry per tooth in every array.
-harmonic_joint_twin::ContactForces makeContactForces(const JointNames& names, int teeth);
-void fillContactForces(const JointOutputs& outputs, const ToothForces& forces,
-                       harmonic_joint_twin::ContactForces& message) noexcept;
+harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
+/// False: the full ring found no equilibrium.
+bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForces& message) noexcept;
 
-harmonic_joint_twin::Health makeHealth(const JointNames& names);
-/// The solver's state of the steps after `since` [ns].
-void fillHealth(const Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
+/// The solver's state is that of the steps after `since`.
+bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 
-harmonic_joint_twin::Indicators makeIndicators(const JointNames& names);
+harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);
 void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
-/// All but the uncertainties, which the message does not tell.
-SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message) noexcept;
+inline bool fillIndicators(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Indicators& message) noexcept
+{
+  fillIndicators(twin.stamp(), twin.signalIndicators(), message);
+  return true;
+}
+/// All but the uncertainties, which the message does not hold; NaN where it says not valid. Unknown names are left out.
+SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message);
 
 constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closing zero included
 
 /// "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." into `text`; returns the length. Empty at level OK.
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
 
-harmonic_joint_twin::Assessment makeAssessment(const JointNames& names);
+harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters);
 void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
+inline bool fillAssessment(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Assessment& message) noexcept
+{
+  fillAssessment(twin.stamp(), twin.assessment(), message);
+  return true;
+}
+
 /// Allocates.
 harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
 

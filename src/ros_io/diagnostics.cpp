@@ -15,19 +15,12 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// Between two looks at the levels [s].
-constexpr double LOOK_PERIOD = 0.05;
 /// A clock that stands longer than this by the wall clock is said to stand [s].
 constexpr double CLOCK_STANDS_AFTER = 1.0;
 /// The twin is said to be behind beyond this [s].
 constexpr double LAG_WARNING = 1.0;
 /// Command stamps further ahead of the clock than this are said to be [s].
 constexpr double AHEAD_WARNING = 1.0;
-
-constexpr std::size_t DRIVE = 0;
-constexpr std::size_t INPUT = 1;
-constexpr std::size_t TIMING = 2;
-constexpr std::size_t HEALTH = 3;
 
 const char* stateText(LoopState state)
 {
@@ -42,11 +35,6 @@ const char* stateText(LoopState state)
   }
   return "";
 }
-
-/// Keys of one output's counters, in the order of `Output`.
-constexpr std::array<const char*, OUTPUT_COUNT> OUTPUT_NAMES{ "joint_states", "encoders",   "contact_forces",
-                                                              "health",       "indicators", "assessment" };
-
 }  // namespace
 
 std::string verdictText(const Assessment& assessment)
@@ -95,33 +83,23 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
   , command_timeout_(parameters.input.command_timeout)
   , deadline_(parameters.realtime.deadline)
   , clock_moved_(ros::WallTime::now())
+  , tasks_(parameters.joint.hardware_id)
 {
-  updater_.setHardwareID(parameters.joint.hardware_id);
-  updater_.add("Drive", [this](DiagnosticStatusWrapper& status) { reportDrive(status); });
-  updater_.add("Input", [this](DiagnosticStatusWrapper& status) { reportInput(status); });
-  updater_.add("Timing", [this](DiagnosticStatusWrapper& status) { reportTiming(status); });
-  updater_.add("Health", [this](DiagnosticStatusWrapper& status) { reportHealth(status); });
-  timer_ = node.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent&) { look(); });
-}
-
-void Diagnostics::look()
-{
-  readSnapshot();
-  logClockJumps();
-  const std::array<DiagnosticVerdict, 4> verdicts{ judgeDrive(), judgeInput(), judgeTiming(), judgeHealth() };
-  bool changed = false;
-  for (std::size_t task = 0; task < verdicts.size(); ++task)
-  {
-    changed = changed || verdicts[task].level != verdicts_[task].level;
-  }
-  verdicts_ = verdicts;
-  // By the wall clock: a simulated clock may stand, and that is one of the things to be said.
-  const ros::WallTime now = ros::WallTime::now();
-  if (changed || (now - last_report_).toSec() >= updater_.getPeriod())
-  {
-    last_report_ = now;
-    updater_.force_update();
-  }
+  tasks_.add(
+      "Drive", [this] { return judgeDrive(); }, [this](auto& status) { reportDrive(status); });
+  tasks_.add(
+      "Input", [this] { return judgeInput(); }, [this](auto& status) { reportInput(status); });
+  tasks_.add(
+      "Timing", [this] { return judgeTiming(); }, [this](auto& status) { reportTiming(status); });
+  tasks_.add(
+      "Health", [this] { return judgeHealth(); }, [this](auto& status) { reportHealth(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
+                                [this](const ros::WallTimerEvent&)
+                                {
+                                  readSnapshot();
+                                  logClockJumps();
+                                  tasks_.look();
+                                });
 }
 
 void Diagnostics::readSnapshot()
@@ -139,9 +117,10 @@ void Diagnostics::readSnapshot()
   clamps_.update(twin.torque_clamped + twin.load_clamped, now);
   late_inputs_.update(twin.input.late + twin.faults.late, now);
   timeouts_.update(twin.command_timeouts, now);
-  lost_inputs_.update(twin.input.overflow + twin.faults.no_room + snapshot_.overflow + loop.waiting_overflow, now);
+  lost_inputs_.update(twin.input.overflow + twin.faults.no_room + snapshot_.overflow, now);
   refusals_.update(snapshot_.not_finite + snapshot_.messages.unknown_joint + snapshot_.messages.missing_effort +
-                       snapshot_.messages.refused_fault + twin.faults.refused,
+                       snapshot_.messages.refused_fault + snapshot_.messages.too_large + twin.faults.refused +
+                       loop.far_stamps,
                    now);
   clock_jumps_.update(loop.clock_jumps, now);
   missed_deadlines_.update(loop.timing.missed_deadlines, now);
@@ -195,7 +174,10 @@ DiagnosticVerdict Diagnostics::judgeInput() const
 {
   if (refusals_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Inputs refused: not finite, not for this joint, or no such fault" };
+    return {
+      DiagnosticStatus::WARN,
+      "Inputs refused: not finite, not for this joint, no such fault, too large, or stamped far from the clock"
+    };
   }
   if (lost_inputs_.areRecent())
   {
@@ -274,7 +256,6 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
 {
   const JointOutputs& outputs = snapshot_.loop.outputs;
   const TwinCounters& counters = snapshot_.loop.counters;
-  status.summary(verdicts_[DRIVE].level, verdicts_[DRIVE].text);
   status.add("State", stateText(snapshot_.loop.state));
   status.add("Motor angle [rad]", outputs.motor_angle);
   status.add("Motor velocity [rad/s]", outputs.motor_velocity);
@@ -301,7 +282,6 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
 {
   const LoopStatus& loop = snapshot_.loop;
   const TwinCounters& counters = loop.counters;
-  status.summary(verdicts_[INPUT].level, verdicts_[INPUT].text);
   if (loop.command_seen)
   {
     status.add("Age of the last command [s]", toSeconds(loop.clock - loop.last_command));
@@ -311,9 +291,11 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Unknown joint, refused", snapshot_.messages.unknown_joint);
   status.add("Missing effort, refused", snapshot_.messages.missing_effort);
   status.add("Faults, refused", snapshot_.messages.refused_fault + counters.faults.refused);
+  status.add("Too large, refused", snapshot_.messages.too_large);
+  status.add("Stamp far from the clock, refused", loop.far_stamps);
   status.add("Faults without room", counters.faults.no_room);
   status.add("Too late for their stamp", counters.input.late + counters.faults.late);
-  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow + loop.waiting_overflow);
+  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);
   status.add("Steps with load torque clamped", counters.load_clamped);
   status.add("Command timeouts", counters.command_timeouts);
@@ -322,7 +304,6 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
 void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
 {
   const LoopStatus& loop = snapshot_.loop;
-  status.summary(verdicts_[TIMING].level, verdicts_[TIMING].text);
   status.add("Clock", ros::Time::isSimTime() ? "/clock" : "system");
   status.addf("Clock [s]", "%.4f", toSeconds(loop.clock));
   status.addf("Simulated instant [s]", "%.4f", toSeconds(loop.twin_stamp));
@@ -345,17 +326,15 @@ void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
   status.add("Cycles overrun", loop.overruns);
   status.add("Clock jumps back", loop.clock_jumps);
   status.add("Resets on request", loop.resets);
-  for (std::size_t output = 0; output < OUTPUT_COUNT; ++output)
+  for (const ChannelCounters& output : snapshot_.outputs)
   {
-    const std::string name = OUTPUT_NAMES[output];
-    status.add(name + " computed", snapshot_.outputs[output].computed);
-    status.add(name + " dropped", snapshot_.outputs[output].dropped);
+    status.add(std::string(output.name) + " computed", output.computed);
+    status.add(std::string(output.name) + " dropped", output.dropped);
   }
 }
 
 void Diagnostics::reportHealth(DiagnosticStatusWrapper& status) const
 {
-  status.summary(verdicts_[HEALTH].level, verdicts_[HEALTH].text);
   addAssessment(snapshot_.loop.assessment, status);
 }
 }  // namespace hjt

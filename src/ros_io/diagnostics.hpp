@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 #include <ros/wall_timer.h>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "ros_io/diagnostic_tasks.hpp"
 #include "ros_io/inbox.hpp"
 #include "ros_io/input_subscribers.hpp"
 #include "ros_io/output_publishers.hpp"
@@ -19,13 +19,6 @@
 
 namespace hjt
 {
-/// Level and text of one diagnostic task.
-struct DiagnosticVerdict
-{
-  std::uint8_t level{};
-  std::string text;
-};
-
 /// What the indicators say, whether or not they are up to date. A fault told once stands until windows say otherwise.
 std::string verdictText(const Assessment& assessment);
 
@@ -48,10 +41,9 @@ private:
     MessageCounters messages;
     std::uint64_t not_finite{};
     std::uint64_t overflow{};
-    std::array<ChannelCounters, OUTPUT_COUNT> outputs{};
+    std::array<ChannelCounters, CHANNEL_COUNT> outputs{};
   };
 
-  void look();
   void readSnapshot();
   void logClockJumps();
   DiagnosticVerdict judgeDrive() const;
@@ -71,7 +63,6 @@ private:
   const double command_timeout_;
   const double deadline_;
   Snapshot snapshot_;
-  std::array<DiagnosticVerdict, 4> verdicts_;  ///< drive, input, timing, health
   RecentEvents solver_failures_;
   RecentEvents step_cuts_;
   RecentEvents jumps_;
@@ -88,8 +79,7 @@ private:
   std::uint64_t logged_clock_jumps_{};
   Stamp last_clock_{};
   ros::WallTime clock_moved_;
-  ros::WallTime last_report_;
-  diagnostic_updater::Updater updater_;
+  DiagnosticTasks tasks_;
   ros::WallTimer timer_;
 };
 }  // namespace hjt

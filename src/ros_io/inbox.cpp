@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/inbox.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hjt
@@ -25,12 +26,14 @@ void Inbox::push(const Input& input)
 
 void Inbox::take(std::vector<Input>& inputs) noexcept
 {
-  inputs.clear();
   const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
-  if (lock.owns_lock())
+  if (!lock.owns_lock() || inputs_.empty())
   {
-    inputs_.swap(inputs);
+    return;
   }
+  const auto taken = inputs_.begin() + static_cast<std::ptrdiff_t>(std::min(inputs_.size(), CAPACITY - inputs.size()));
+  inputs.insert(inputs.end(), inputs_.begin(), taken);
+  inputs_.erase(inputs_.begin(), taken);
 }
 
 std::vector<Input> Inbox::makeBuffer()

@@ -2,9 +2,8 @@
 #include "ros_io/input_subscribers.hpp"
 
 #include <ros/console.h>
-#include <ros/transport_hints.h>
-#include <boost/function.hpp>
 
+#include "ros_io/input_topics.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
 
@@ -12,19 +11,8 @@ namespace hjt
 {
 namespace
 {
-/// Seconds of messages at 1 kHz: a fast bag brings chunks, and none may be lost.
-constexpr std::uint32_t QUEUE_SIZE = Inbox::CAPACITY;
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-
-template <class Message>
-ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, boost::function<void(const Message&)> receive)
-{
-  // Small messages at a high rate: without the delay that the transport would gather them with.
-  return node.subscribe<Message>(
-      topic, QUEUE_SIZE, [receive](const boost::shared_ptr<const Message>& message) { receive(*message); },
-      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
-}
 }  // namespace
 
 InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox)
@@ -32,17 +20,17 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& para
 {
   using sensor_msgs::JointState;
   using std_msgs::Float64;
-  motor_torque_subscriber_ =
-      subscribe<Float64>(node, topics::MOTOR_TORQUE_COMMAND,
-                         [this](const Float64& message) { receiveNow(InputKind::MOTOR_TORQUE, message); });
-  load_torque_subscriber_ = subscribe<Float64>(
-      node, topics::LOAD_TORQUE, [this](const Float64& message) { receiveNow(InputKind::LOAD_TORQUE, message); });
-  command_subscriber_ =
-      subscribe<JointState>(node, topics::COMMAND, [this](const JointState& message) { receiveCommand(message); });
-  load_subscriber_ =
-      subscribe<JointState>(node, topics::LOAD, [this](const JointState& message) { receiveLoad(message); });
-  fault_subscriber_ = subscribe<harmonic_joint_twin::Fault>(
-      node, topics::INJECT_FAULT, [this](const harmonic_joint_twin::Fault& message) { receiveFault(message); });
+  const InputTopics inputs{ node, too_large_ };
+  subscribers_ = {
+    inputs.subscribe<Float64>(topics::MOTOR_TORQUE_COMMAND,
+                              [this](const auto& event) { receiveNow(InputKind::MOTOR_TORQUE, *event.getMessage()); }),
+    inputs.subscribe<Float64>(topics::LOAD_TORQUE,
+                              [this](const auto& event) { receiveNow(InputKind::LOAD_TORQUE, *event.getMessage()); }),
+    inputs.subscribe<JointState>(topics::COMMAND, [this](const auto& event) { receiveCommand(*event.getMessage()); }),
+    inputs.subscribe<JointState>(topics::LOAD, [this](const auto& event) { receiveLoad(*event.getMessage()); }),
+    inputs.subscribe<harmonic_joint_twin::Fault>(topics::INJECT_FAULT,
+                                                 [this](const auto& event) { receiveFault(*event.getMessage()); }),
+  };
 }
 
 void InputSubscribers::receiveNow(InputKind kind, const std_msgs::Float64& message)
@@ -84,13 +72,12 @@ void InputSubscribers::receiveFault(const harmonic_joint_twin::Fault& message)
     ROS_WARN_STREAM("Refused a message on ~" << topics::INJECT_FAULT << ": " << errors);
     return;
   }
-  const ros::Time& stamp = message.header.stamp;
-  inbox_.push({ fromRosTime(stamp.isZero() ? ros::Time::now() : stamp), InputKind::FAULT, 0.0, fault });
+  inbox_.push({ stampOr(message.header.stamp, ros::Time::now()), InputKind::FAULT, 0.0, fault });
 }
 
 void InputSubscribers::receiveStamped(InputKind kind, const ros::Time& stamp, double torque)
 {
-  inbox_.push({ fromRosTime(stamp.isZero() ? ros::Time::now() : stamp), kind, torque });
+  inbox_.push({ stampOr(stamp, ros::Time::now()), kind, torque });
 }
 
 void InputSubscribers::refuse(EffortStatus status, const char* topic, const std::string& expected)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -21,6 +22,7 @@ struct MessageCounters
   std::uint64_t unknown_joint{};   ///< neither the joint nor, in a command, its motor was named
   std::uint64_t missing_effort{};  ///< named, but without an effort
   std::uint64_t refused_fault{};   ///< of unknown kind, or severity or place out of its range
+  std::uint64_t too_large{};       ///< of more bytes than InputTopics reads
 };
 
 /// Subscribes the topics of torques and faults and puts what they bring, stamped, into the inbox.
@@ -30,7 +32,7 @@ class InputSubscribers
 public:
   InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox);
 
-  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, refused_fault_ }; }
+  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, refused_fault_, too_large_ }; }
 
 private:
   void receiveNow(InputKind kind, const std_msgs::Float64& message);
@@ -46,10 +48,7 @@ private:
   std::atomic<std::uint64_t> unknown_joint_{ 0 };
   std::atomic<std::uint64_t> missing_effort_{ 0 };
   std::atomic<std::uint64_t> refused_fault_{ 0 };
-  ros::Subscriber motor_torque_subscriber_;
-  ros::Subscriber command_subscriber_;
-  ros::Subscriber load_torque_subscriber_;
-  ros::Subscriber load_subscriber_;
-  ros::Subscriber fault_subscriber_;
+  std::atomic<std::uint64_t> too_large_{ 0 };
+  std::array<ros::Subscriber, 5> subscribers_;
 };
 }  // namespace hjt

@@ -22,6 +22,17 @@ constexpr Stamp COUNT_PERIOD = 1'000'000;
 /// Between two stretches handed over [ns]; a longer gap between two instants is no use of the drive.
 constexpr Stamp STRETCH = 1'000'000'000;
 constexpr std::size_t STRETCH_SLOTS = 2;
+
+/// `path`, or PATH.1, PATH.2 ... where that exists: no file that was set aside is lost.
+std::string unusedName(const std::string& path)
+{
+  std::string name = path;
+  for (int number = 1; std::filesystem::exists(name); ++number)
+  {
+    name = path + "." + std::to_string(number);
+  }
+  return name;
+}
 }  // namespace
 
 LifePublisher::LifePublisher(ros::NodeHandle& node, const Parameters& parameters)
@@ -68,7 +79,7 @@ void LifePublisher::readRecord()
   }
   catch (const InputError& error)
   {
-    const std::string aside = path_ + ".unreadable";
+    const std::string aside = unusedName(path_ + ".unreadable");
     std::error_code refused;
     std::filesystem::rename(path_, aside, refused);
     ROS_ERROR_STREAM("The record of the drive's use cannot be read: "

@@ -2,37 +2,38 @@
 #pragma once
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include "ros_io/channels.hpp"
 #include "ros_io/slot_ring.hpp"
 
 namespace hjt
 {
 struct ChannelCounters
 {
+  const char* name{};
   std::uint64_t computed{};  ///< messages filled since start
   std::uint64_t dropped{};   ///< messages due but not filled: the publisher had fallen behind by the whole ring
 };
 
-/// One topic: filled by the loop into preallocated slots, published by another thread.
+/// Sink of a live topic: filled by the loop into preallocated slots, published by another thread.
 template <class Message>
 class OutputChannel
 {
 public:
-  OutputChannel(ros::NodeHandle& node, const std::string& topic, std::size_t slots, const Message& prototype)
-    : ring_(slots, prototype), publisher_(node.advertise<Message>(topic, static_cast<std::uint32_t>(slots)))
+  OutputChannel(ros::NodeHandle* node, const Channel<Message>& channel, const Message& first)
+    : ring_(channel.slots, first)
+    , publisher_(node->advertise<Message>(channel.name, static_cast<std::uint32_t>(channel.slots)))
   {
   }
 
   /// Loop: whether anybody listened when last looked.
-  bool isHeard() const noexcept { return heard_.load(std::memory_order_relaxed); }
+  bool isWanted() const noexcept { return heard_.load(std::memory_order_relaxed); }
 
-  /// Loop: lets `fill(Message&)` write the next message. A full ring drops it and counts.
+  /// Loop: lets `fill(Message&)` write the next message, unless it returns false. A full ring drops it and counts.
   template <class Fill>
   void write(Fill&& fill) noexcept
   {
@@ -42,9 +43,11 @@ public:
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    fill(*message);
-    ring_.commit();
-    computed_.fetch_add(1, std::memory_order_relaxed);
+    if (fill(*message))
+    {
+      ring_.commit();
+      computed_.fetch_add(1, std::memory_order_relaxed);
+    }
   }
 
   /// Publisher thread: publishes what is waiting.
@@ -60,7 +63,7 @@ public:
   /// Publisher thread: asks roscpp, which locks and counts, who listens.
   void refreshHeard() { heard_.store(publisher_.getNumSubscribers() > 0, std::memory_order_relaxed); }
 
-  ChannelCounters counters() const noexcept { return { computed_, dropped_ }; }
+  ChannelCounters counters(const char* name) const noexcept { return { name, computed_, dropped_ }; }
 
 private:
   SlotRing<Message> ring_;

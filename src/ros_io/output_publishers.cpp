@@ -5,8 +5,6 @@
 #include <limits>
 #include <sstream>
 
-#include "ros_io/topics.hpp"
-
 namespace hjt
 {
 namespace
@@ -17,26 +15,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds DRAIN_PERIOD{ 1 };
 /// How long a new subscriber may go unnoticed, in drain periods.
 constexpr int HEARD_REFRESH = 5;
-/// Slots for messages of a few numbers: seconds of joint states at 1 kHz.
-constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
-/// Slots for messages with per-tooth arrays.
-constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
 /// Slots for lists of faults: one more change has to wait for the next instant.
 constexpr std::size_t FAULT_SLOTS = 16;
 }  // namespace
 
 OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
-  : schedule_(twin.parameters())
-  , tooth_forces_(twin.makeToothForces())
-  , joint_states_(node, topics::JOINT_STATES, SMALL_MESSAGE_SLOTS,
-                  makeJointStates(JointNames(twin.parameters().joint.name)))
-  , encoders_(node, topics::ENCODERS, SMALL_MESSAGE_SLOTS, makeEncoders(JointNames(twin.parameters().joint.name)))
-  , contact_forces_(
-        node, topics::CONTACT_FORCES, LARGE_MESSAGE_SLOTS,
-        makeContactForces(JointNames(twin.parameters().joint.name), twin.parameters().gear.teeth_flexspline))
-  , health_(node, topics::HEALTH, SMALL_MESSAGE_SLOTS, makeHealth(JointNames(twin.parameters().joint.name)))
-  , indicators_(node, topics::INDICATORS, LARGE_MESSAGE_SLOTS, makeIndicators(JointNames(twin.parameters().joint.name)))
-  , assessment_(node, topics::ASSESSMENT, LARGE_MESSAGE_SLOTS, makeAssessment(JointNames(twin.parameters().joint.name)))
+  : outputs_(&node, twin.parameters())
   , names_(twin.parameters().joint.name)
   , faults_(FAULT_SLOTS, {})
   , faults_publisher_(node.advertise<harmonic_joint_twin::Faults>(topics::FAULTS, 1, true))
@@ -51,50 +35,10 @@ OutputPublishers::~OutputPublishers()
   thread_.join();
 }
 
-bool OutputPublishers::isWanted(Output output, bool heard, Stamp instant) const noexcept
-{
-  return heard && schedule_.isDue(output, instant);
-}
-
 void OutputPublishers::offer(Twin& twin) noexcept
 {
   offerFaults(twin);
-  const JointOutputs& outputs = twin.outputs();
-  const bool joint_states = isWanted(Output::JOINT_STATES, joint_states_.isHeard(), outputs.stamp);
-  const bool encoders = isWanted(Output::ENCODERS, encoders_.isHeard(), outputs.stamp);
-  if (joint_states || encoders)
-  {
-    const EncoderReadings readings = twin.encoders();
-    if (joint_states)
-    {
-      joint_states_.write([&](auto& message) { fillJointStates(outputs, readings, message); });
-    }
-    if (encoders)
-    {
-      encoders_.write([&](auto& message) { fillEncoders(outputs, readings, message); });
-    }
-  }
-  if (isWanted(Output::CONTACT_FORCES, contact_forces_.isHeard(), outputs.stamp) && twin.toothForces(tooth_forces_))
-  {
-    contact_forces_.write([&](auto& message) { fillContactForces(outputs, tooth_forces_, message); });
-  }
-  if (isWanted(Output::HEALTH, health_.isHeard(), outputs.stamp))
-  {
-    health_.write(
-        [&](auto& message)
-        {
-          fillHealth(twin, health_since_, message);
-          health_since_ = outputs.stamp;
-        });
-  }
-  if (isWanted(Output::INDICATORS, indicators_.isHeard(), outputs.stamp))
-  {
-    indicators_.write([&](auto& message) { fillIndicators(outputs.stamp, twin.signalIndicators(), message); });
-  }
-  if (isWanted(Output::ASSESSMENT, assessment_.isHeard(), outputs.stamp))
-  {
-    assessment_.write([&](auto& message) { fillAssessment(outputs.stamp, twin.assessment(), message); });
-  }
+  outputs_.offer(twin);
 }
 
 /// The list of faults, once after each change.
@@ -137,48 +81,35 @@ std::string OutputPublishers::activeFaults() const
   return active_faults_;
 }
 
-std::array<ChannelCounters, OUTPUT_COUNT> OutputPublishers::counters() const noexcept
+std::array<ChannelCounters, CHANNEL_COUNT> OutputPublishers::counters() const noexcept
 {
-  return { joint_states_.counters(), encoders_.counters(),   contact_forces_.counters(),
-           health_.counters(),       indicators_.counters(), assessment_.counters() };
+  return outputs_.collect([](const auto& channel, const auto& sink) { return sink.counters(channel.name); });
 }
 
 void OutputPublishers::run()
 {
+  const auto drain = [this]
+  {
+    outputs_.forEachSink([](auto& sink) { sink.drain(); });
+    drainFaults();
+  };
   for (int round = 0; !stopping_;)
   {
-    if (round == 0)
-    {
-      refreshHeard();
-    }
+    bool heard = false;
+    outputs_.forEachSink(
+        [round, &heard](auto& sink)
+        {
+          if (round == 0)
+          {
+            sink.refreshHeard();
+          }
+          heard = heard || sink.isWanted();
+        });
     drain();
     // While nobody hears there is nothing to drain: only to see whether somebody comes.
-    const bool heard = joint_states_.isHeard() || encoders_.isHeard() || contact_forces_.isHeard() ||
-                       health_.isHeard() || indicators_.isHeard() || assessment_.isHeard();
     std::this_thread::sleep_for(heard ? DRAIN_PERIOD : HEARD_REFRESH * DRAIN_PERIOD);
     round = heard ? (round + 1) % HEARD_REFRESH : 0;
   }
   drain();
-}
-
-void OutputPublishers::refreshHeard()
-{
-  joint_states_.refreshHeard();
-  encoders_.refreshHeard();
-  contact_forces_.refreshHeard();
-  health_.refreshHeard();
-  indicators_.refreshHeard();
-  assessment_.refreshHeard();
-}
-
-void OutputPublishers::drain()
-{
-  joint_states_.drain();
-  encoders_.drain();
-  contact_forces_.drain();
-  health_.drain();
-  indicators_.drain();
-  assessment_.drain();
-  drainFaults();
 }
 }  // namespace hjt

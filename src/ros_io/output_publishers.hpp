@@ -10,9 +10,7 @@
 #include <ros/node_handle.h>
 
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "ros_io/conversions.hpp"
 #include "ros_io/output_channel.hpp"
-#include "ros_io/output_schedule.hpp"
 
 namespace hjt
 {
@@ -32,8 +30,8 @@ public:
   /// The faults published last, for a human reader.
   std::string activeFaults() const;
 
-  /// Per `Output`.
-  std::array<ChannelCounters, OUTPUT_COUNT> counters() const noexcept;
+  /// In the order of CHANNELS.
+  std::array<ChannelCounters, CHANNEL_COUNT> counters() const noexcept;
 
 private:
   struct FaultsAt
@@ -43,20 +41,9 @@ private:
   };
   void offerFaults(const Twin& twin) noexcept;
   void drainFaults();
-  bool isWanted(Output output, bool heard, Stamp instant) const noexcept;
   void run();
-  void refreshHeard();
-  void drain();
 
-  OutputSchedule schedule_;
-  ToothForces tooth_forces_;
-  Stamp health_since_{};  // stamp of the last health message [ns]
-  OutputChannel<sensor_msgs::JointState> joint_states_;
-  OutputChannel<harmonic_joint_twin::Encoders> encoders_;
-  OutputChannel<harmonic_joint_twin::ContactForces> contact_forces_;
-  OutputChannel<harmonic_joint_twin::Health> health_;
-  OutputChannel<harmonic_joint_twin::Indicators> indicators_;
-  OutputChannel<harmonic_joint_twin::Assessment> assessment_;
+  Outputs<OutputChannel> outputs_;
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
   ros::Publisher faults_publisher_;

@@ -2,6 +2,8 @@
 #include "ros_io/parameter_server.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <ros/param.h>
@@ -25,25 +27,39 @@ T valueOf(XmlRpcValue& value)
   return static_cast<T&>(value);
 }
 
+using Value = decltype(ParameterValue::value);
+
+/// Nothing if `leaf` is no boolean, number or text.
+std::optional<Value> scalarValue(XmlRpcValue& leaf)
+{
+  switch (leaf.getType())
+  {
+    case XmlRpcValue::TypeBoolean:
+      return valueOf<bool>(leaf);
+    case XmlRpcValue::TypeInt:
+      return static_cast<std::int64_t>(valueOf<int>(leaf));
+    case XmlRpcValue::TypeDouble:
+      return valueOf<double>(leaf);
+    case XmlRpcValue::TypeString:
+      return valueOf<std::string>(leaf);
+    default:
+      return std::nullopt;
+  }
+}
+
 std::vector<double> readNumbers(const std::string& key, XmlRpcValue& list)
 {
   std::vector<double> numbers;
   for (int i = 0; i < list.size(); ++i)
   {
-    XmlRpcValue& entry = list[i];
-    if (entry.getType() == XmlRpcValue::TypeInt)
-    {
-      numbers.push_back(valueOf<int>(entry));
-    }
-    else if (entry.getType() == XmlRpcValue::TypeDouble)
-    {
-      numbers.push_back(valueOf<double>(entry));
-    }
-    else
+    const std::optional<Value> entry = scalarValue(list[i]);
+    const std::optional<double> number = entry ? numberOf(*entry) : std::nullopt;
+    if (!number)
     {
       throw ParameterError(key + ": entry " + std::to_string(i) +
                            " of the list on the parameter server is not a number");
     }
+    numbers.push_back(*number);
   }
   return numbers;
 }
@@ -64,28 +80,16 @@ void addFaults(XmlRpcValue& list, const std::string& origin, ParameterMap& map)
 
 void addLeaf(const std::string& key, XmlRpcValue& leaf, const std::string& origin, ParameterMap& map)
 {
-  ParameterValue& parameter = map[key];
-  parameter.origin = origin;
-  switch (leaf.getType())
+  std::optional<Value> value = scalarValue(leaf);
+  if (!value && leaf.getType() == XmlRpcValue::TypeArray)
   {
-    case XmlRpcValue::TypeBoolean:
-      parameter.value = valueOf<bool>(leaf);
-      break;
-    case XmlRpcValue::TypeInt:
-      parameter.value = static_cast<std::int64_t>(valueOf<int>(leaf));
-      break;
-    case XmlRpcValue::TypeDouble:
-      parameter.value = valueOf<double>(leaf);
-      break;
-    case XmlRpcValue::TypeString:
-      parameter.value = valueOf<std::string>(leaf);
-      break;
-    case XmlRpcValue::TypeArray:
-      parameter.value = readNumbers(key, leaf);
-      break;
-    default:
-      throw ParameterError(key + ": " + origin + " holds neither a number, a text, a boolean nor a list of numbers");
+    value = readNumbers(key, leaf);
   }
+  if (!value)
+  {
+    throw ParameterError(key + ": " + origin + " holds neither a number, a text, a boolean nor a list of numbers");
+  }
+  map[key] = { *value, origin };
 }
 
 void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& origin, ParameterMap& map)

@@ -14,20 +14,50 @@
 #include "ros_io/bag_file.hpp"
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
+#include "ros_io/time.hpp"
+#include "tracking/plausible.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 20.0;        // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;          // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;      // by which the delay of a message may differ from its neighbour's [s]
-constexpr double LARGEST_EFFORT = 1e4;  // current [A] or torque [N.m]
+constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
 
-bool isPlausible(double effort)
+/// Holds the angles and stamps of neighbouring rows against the velocities that the recording gives beside them.
+class VelocityCheck
 {
-  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
-}
+public:
+  /// `velocity`: recorded; NaN: none.
+  void add(double time, double position, double velocity)
+  {
+    const double step = time - time_;
+    const double mean = 0.5 * (velocity + velocity_);
+    if (step > MotionSmoother::SMALLEST_STEP && step < MotionSmoother::LONGEST_GAP && std::abs(mean) > SLOWEST)
+    {
+      products_ += (position - position_) / step * mean;
+      squares_ += mean * mean;
+      ++rows_;
+    }
+    time_ = time;
+    position_ = position;
+    velocity_ = velocity;
+  }
+
+  double ratio() const { return rows_ >= FEWEST_ROWS ? products_ / squares_ : 0.0; }
+
+private:
+  static constexpr double SLOWEST = 0.05;  // [rad/s]
+  static constexpr int FEWEST_ROWS = 50;
+
+  double time_{ -HUGE_VAL };
+  double position_{};
+  double velocity_{};
+  double products_{};
+  double squares_{};
+  int rows_{};
+};
 
 /// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
 /// tells whether it can be true.
@@ -48,10 +78,10 @@ public:
       return true;
     }
     const sensor_msgs::JointState& state = message_.state();
-    const ros::Time stamp = state.header.stamp.isZero() ? instance.getTime() : state.header.stamp;
+    const Stamp stamp = stampOr(state.header.stamp, instance.getTime());
     if (instance.getTopic() == source_.topic)
     {
-      return takeTelemetry(state, stamp, instance.getTime());
+      return takeTelemetry(state, stamp, fromRosTime(instance.getTime()));
     }
     readLoad(state, stamp);
     return true;
@@ -74,12 +104,14 @@ public:
     if (!start_)
     {
       start_ = held.stamp;
-      count_.start = held.stamp.toSec();
+      count_.start = toSeconds(held.stamp);
       count_.least_delay = count_.most_delay = held.delay();
     }
     MotionRow row = held.row;
-    row.time = (held.stamp - *start_).toSec();
-    row.received = (held.recorded - *start_).toSec();
+    row.time = toSeconds(held.stamp - *start_);
+    row.received = toSeconds(held.recorded - *start_);
+    check_.add(row.time, row.position, held.velocity);
+    count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -94,25 +126,21 @@ private:
   struct Held
   {
     MotionRow row;
-    ros::Time stamp;
-    ros::Time recorded;
+    double velocity{};  // as recorded; NaN: not at all [rad/s]
+    Stamp stamp{};
+    Stamp recorded{};
     bool agrees{};  // with a neighbour
 
-    double delay() const { return (recorded - stamp).toSec(); }
+    double delay() const { return toSeconds(recorded - stamp); }
   };
 
   static bool agree(const Held& a, const Held& b)
   {
-    const double time = std::abs((b.recorded - a.recorded).toSec()) + SLACK;
+    const double time = std::abs(toSeconds(b.recorded - a.recorded)) + SLACK;
     return std::abs(b.delay() - a.delay()) < CLOCK_STEP && std::abs(b.row.position - a.row.position) < FASTEST * time;
   }
 
-  static std::size_t find(const sensor_msgs::JointState& message, const std::string& name)
-  {
-    return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
-  }
-
-  bool takeTelemetry(const sensor_msgs::JointState& message, const ros::Time& stamp, const ros::Time& recorded)
+  bool takeTelemetry(const sensor_msgs::JointState& message, Stamp stamp, Stamp recorded)
   {
     Held held;
     const TelemetryStatus status = readTelemetry(message, names_, held.row);
@@ -121,16 +149,18 @@ private:
       others_.insert(message.name.begin(), message.name.end());
       return true;
     }
-    const std::size_t motor = find(message, names_.motor);
-    if (source_.current_per_motor_torque > 0.0 && motor < message.name.size() && motor < message.effort.size())
+    const std::size_t motor = placeOf(message, names_.motor);
+    if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())
     {
       held.row.current = source_.current_per_motor_torque * message.effort[motor];
     }
-    if (status != TelemetryStatus::FOUND || !isPlausible(held.row.current))
+    if (status != TelemetryStatus::FOUND || !isPlausibleEffort(held.row.current))
     {
       ++count_.corrupt;
       return true;
     }
+    const std::size_t joint = placeOf(message, names_.joint);
+    held.velocity = joint < message.velocity.size() ? message.velocity[joint] : std::nan("");
     held.row.load = load_;
     held.stamp = stamp;
     held.recorded = recorded;
@@ -146,10 +176,10 @@ private:
     return more;
   }
 
-  void readLoad(const sensor_msgs::JointState& message, const ros::Time& stamp)
+  void readLoad(const sensor_msgs::JointState& message, Stamp stamp)
   {
-    const std::size_t i = find(message, names_.joint);
-    if (i < message.name.size() && i < message.effort.size() && isPlausible(message.effort[i]))
+    const std::size_t i = placeOf(message, names_.joint);
+    if (i < message.effort.size() && isPlausibleEffort(message.effort[i]))
     {
       load_ = message.effort[i];
       if (waiting_ && stamp <= waiting_->stamp)
@@ -163,12 +193,13 @@ private:
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
   MotionCount count_;
+  VelocityCheck check_;
   JointNames names_;
   std::set<std::string> others_;  // joints in messages that do not name this one
   std::optional<Held> waiting_;
   std::optional<Held> last_;  // as it came, true or not
   std::uint64_t seen_{};      // the only row has no neighbour to disagree with
-  std::optional<ros::Time> start_;
+  std::optional<Stamp> start_;
   double load_{};
 };
 
@@ -206,12 +237,13 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   return rows.count();
 }
 
-using CsvTable = NumberTable<4>;
+using CsvTable = NumberTable<5>;
 
 CsvTable openCsv(const MotionSource& source)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
-  return CsvTable(source.path, { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n }, 1);
+  return CsvTable(source.path,
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n }, 2);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
@@ -219,7 +251,9 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 {
   CsvTable table = openCsv(source);
   MotionCount count;
-  std::array<double, 4> row{};
+  VelocityCheck check;
+  std::array<double, 5> row{};
+  row[4] = std::nan("");
   while (table.read(row))
   {
     if (count.rows++ == 0)
@@ -230,12 +264,14 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     count.duration = std::max(count.duration, time);
     MotionRow motion{ time, row[1], row[2], row[3] };
     motion.received = time;
+    check.add(time, row[1], row[4]);
     if (!visit(motion))
     {
       break;
     }
   }
   progress(1.0);
+  count.velocity_ratio = check.ratio();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");

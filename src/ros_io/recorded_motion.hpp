@@ -30,6 +30,8 @@ struct MotionCount
   double start{};           ///< stamp of the first row [s]
   double least_delay{};     ///< bag: of the recording behind the stamps [s]
   double most_delay{};      ///< [s]
+  /// Change of the angles by the stamps, over the recorded velocities; 1: they agree, 0: too little motion to tell.
+  double velocity_ratio{};
 };
 
 /// What was found, and what stood in the way.

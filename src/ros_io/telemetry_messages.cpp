@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/telemetry_messages.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ros_io/time.hpp"
+
 namespace hjt
 {
-namespace
-{
-/// Place of a name in the message; the number of names if it is not there.
-std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept
-{
-  return static_cast<std::size_t>(std::find(message.name.begin(), message.name.end(), name) - message.name.begin());
-}
-}  // namespace
-
 TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const JointNames& names, MotionRow& row) noexcept
 {
   const std::size_t joint = placeOf(message, names.joint);
-  if (joint == message.name.size())
+  if (joint >= message.name.size())
   {
     return TelemetryStatus::UNKNOWN_JOINT;
   }
@@ -34,23 +26,14 @@ TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const Join
   row.position = message.position[joint];
   row.current = message.effort[joint];
   const std::size_t motor = placeOf(message, names.motor);
-  row.motor_angle = motor < message.name.size() && motor < message.position.size() ?
-                        message.position[motor] :
-                        std::numeric_limits<double>::quiet_NaN();
+  row.motor_angle =
+      motor < message.position.size() ? message.position[motor] : std::numeric_limits<double>::quiet_NaN();
   return TelemetryStatus::FOUND;
 }
 
-harmonic_joint_twin::Comparison makeComparison(const JointNames& names)
+void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept
 {
-  harmonic_joint_twin::Comparison message;
-  message.header.frame_id = names.joint;
-  return message;
-}
-
-void fillComparison(const ros::Time& stamp, const Comparison& comparison,
-                    harmonic_joint_twin::Comparison& message) noexcept
-{
-  message.header.stamp = stamp;
+  message.header.stamp = toRosTime(stamp);
   message.position_measured = comparison.position.measured;
   message.position_predicted = comparison.position.predicted;
   message.position_residual = comparison.position.residual();

@@ -22,8 +22,6 @@ enum class TelemetryStatus
 /// Times and load of the row stay as they are.
 TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const JointNames& names, MotionRow& row) noexcept;
 
-harmonic_joint_twin::Comparison makeComparison(const JointNames& names);
-/// @param stamp of the row.
-void fillComparison(const ros::Time& stamp, const Comparison& comparison,
-                    harmonic_joint_twin::Comparison& message) noexcept;
+/// @param stamp of the row [ns].
+void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept;
 }  // namespace hjt

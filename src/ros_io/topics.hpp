@@ -3,7 +3,8 @@
 
 namespace hjt
 {
-/// Names of the twin's topics, relative to the node's private namespace, live and in bags.
+/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Those of CHANNELS that nothing else
+/// uses stand there.
 namespace topics
 {
 constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< in, std_msgs/Float64 [N.m]
@@ -13,9 +14,6 @@ constexpr const char* LOAD = "load";                                  ///< in, s
 constexpr const char* INJECT_FAULT = "inject_fault";                  ///< in, harmonic_joint_twin/Fault
 constexpr const char* MEASURED = "joint_states_measured";             ///< in, sensor_msgs/JointState, effort in A
 constexpr const char* JOINT_STATES = "joint_states";                  ///< out, sensor_msgs/JointState
-constexpr const char* ENCODERS = "encoders";                          ///< out, harmonic_joint_twin/Encoders
-constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, harmonic_joint_twin/ContactForces
-constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
 constexpr const char* INDICATORS = "indicators";                      ///< out, harmonic_joint_twin/Indicators
 constexpr const char* ASSESSMENT = "assessment";                      ///< out, harmonic_joint_twin/Assessment
 constexpr const char* COMPARISON = "comparison";                      ///< out, harmonic_joint_twin/Comparison

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -66,7 +67,6 @@ TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, 
   , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
   , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
   , arrived_(Inbox::makeBuffer())
-  , waiting_(Inbox::makeBuffer())
   , thread_([this] { run(); })
 {
 }
@@ -117,13 +117,19 @@ void TwinLoop::cycle() noexcept
     return;
   }
   // The inputs first, then the clock: what came after a jump back is not mistaken for what came before it.
+  std::size_t waiting = arrived_.size();
   inbox_.take(arrived_);
-  readClock(clock_());
+  if (readClock(clock_()))
+  {
+    forgetInputs(waiting);
+    waiting = 0;
+  }
+  stampInputs(waiting);
   const Stamp limit = std::max<Stamp>(status_.clock - hold_back_, 0);
-  answerRequests(limit);
-  sortInputs();
+  answerRequests(limit, waiting);
   if (status_.state == LoopState::RUNNING || tryStart(limit))
   {
+    handOverInputs();
     catchUp(limit);
   }
   status_.twin_stamp = twin_.stamp();
@@ -132,53 +138,52 @@ void TwinLoop::cycle() noexcept
   status_.assessment = twin_.assessment();
 }
 
-void TwinLoop::readClock(Stamp now) noexcept
+/// @returns whether the clock has jumped back.
+bool TwinLoop::readClock(Stamp now) noexcept
 {
-  if (now + CLOCK_JUMP_TOLERANCE < status_.clock)
+  const bool back = now + CLOCK_JUMP_TOLERANCE < status_.clock;
+  if (back)
   {
     ++status_.clock_jumps;
     status_.state = LoopState::WAITING_FOR_CLOCK;
     status_.clock = now;
     status_.lag = 0;
-    waiting_.clear();
   }
   status_.clock = std::max(status_.clock, now);
+  return back;
 }
 
-void TwinLoop::answerRequests(Stamp limit) noexcept
+void TwinLoop::answerRequests(Stamp limit, std::size_t waiting) noexcept
 {
   const std::uint64_t requested = resets_requested_;
   if (requested != resets_done_)
   {
-    waiting_.clear();
+    forgetInputs(waiting);
     start(limit);
     ++status_.resets;
     resets_done_ = requested;
   }
 }
 
-void TwinLoop::sortInputs() noexcept
+/// Those that had arrived before this cycle: the first `count`.
+void TwinLoop::forgetInputs(std::size_t count) noexcept
 {
-  for (Input& input : arrived_)
+  arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(std::min(count, arrived_.size())));
+}
+
+/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes now;
+/// one far from the clock is refused.
+void TwinLoop::stampInputs(std::size_t waiting) noexcept
+{
+  const auto fresh = arrived_.begin() + static_cast<std::ptrdiff_t>(waiting);
+  for (auto input = fresh; input != arrived_.end(); ++input)
   {
-    // Stamped before there was a time: as good as now.
-    if (input.stamp == 0)
-    {
-      input.stamp = status_.clock;
-    }
-    if (status_.state == LoopState::RUNNING)
-    {
-      handOver(input);
-    }
-    else if (waiting_.size() < Inbox::CAPACITY)
-    {
-      waiting_.push_back(input);
-    }
-    else
-    {
-      ++status_.waiting_overflow;
-    }
+    input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
   }
+  const auto kept_end = std::remove_if(
+      fresh, arrived_.end(), [this](const Input& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+  status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
+  arrived_.erase(kept_end, arrived_.end());
 }
 
 bool TwinLoop::tryStart(Stamp limit) noexcept
@@ -191,7 +196,7 @@ bool TwinLoop::tryStart(Stamp limit) noexcept
   // Several topics may bring the first input, in any order: the earliest stamp counts once the clock has passed it.
   status_.state = LoopState::WAITING_FOR_INPUT;
   Stamp first = std::numeric_limits<Stamp>::max();
-  for (const Input& input : waiting_)
+  for (const Input& input : arrived_)
   {
     if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
     {
@@ -217,23 +222,25 @@ void TwinLoop::start(Stamp stamp) noexcept
   released_ = status_.clock;
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
-  for (Input& input : waiting_)
+  // The twin was not there yet when these were due: they act from its first instant and are not late.
+  for (Input& input : arrived_)
   {
-    // The twin was not there yet when these were due: they act from its first instant and are not late.
     input.stamp = std::max(input.stamp, stamp);
-    handOver(input);
   }
-  waiting_.clear();
 }
 
-void TwinLoop::handOver(const Input& input) noexcept
+void TwinLoop::handOverInputs() noexcept
 {
-  twin_.give(input);
-  if (input.kind == InputKind::MOTOR_TORQUE)
+  for (const Input& input : arrived_)
   {
-    status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
-    status_.command_seen = true;
+    twin_.give(input);
+    if (input.kind == InputKind::MOTOR_TORQUE)
+    {
+      status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
+      status_.command_seen = true;
+    }
   }
+  arrived_.clear();
 }
 
 void TwinLoop::catchUp(Stamp limit) noexcept

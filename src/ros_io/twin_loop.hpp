@@ -61,12 +61,12 @@ struct LoopStatus
   Stamp lag{};          ///< how far the twin is behind the instant it should have reached [ns]
   Stamp largest_lag{};  ///< since the last start or reset [ns]
   std::uint64_t cycles{};
-  std::uint64_t overruns{};          ///< cycles whose work took longer than their period
-  std::uint64_t clock_jumps{};       ///< times the clock jumped back
-  std::uint64_t resets{};            ///< resets on request
-  std::uint64_t waiting_overflow{};  ///< inputs dropped because too many came before the start
-  bool command_seen{};               ///< a motor torque command has come since the last start or reset
-  Stamp last_command{};              ///< latest stamp of one [ns]
+  std::uint64_t overruns{};     ///< cycles whose work took longer than their period
+  std::uint64_t clock_jumps{};  ///< times the clock jumped back
+  std::uint64_t resets{};       ///< resets on request
+  std::uint64_t far_stamps{};   ///< inputs refused: stamped further than FAR_STAMP from the clock
+  bool command_seen{};          ///< a motor torque command has come since the last start or reset
+  Stamp last_command{};         ///< latest stamp of one [ns]
   JointOutputs outputs;
   TwinCounters counters;
   Assessment assessment;
@@ -101,12 +101,13 @@ public:
 private:
   void run();
   void cycle() noexcept;
-  void readClock(Stamp now) noexcept;
-  void answerRequests(Stamp limit) noexcept;
-  void sortInputs() noexcept;
+  bool readClock(Stamp now) noexcept;
+  void answerRequests(Stamp limit, std::size_t waiting) noexcept;
+  void forgetInputs(std::size_t count) noexcept;
+  void stampInputs(std::size_t waiting) noexcept;
   bool tryStart(Stamp limit) noexcept;
   void start(Stamp stamp) noexcept;
-  void handOver(const Input& input) noexcept;
+  void handOverInputs() noexcept;
   void catchUp(Stamp limit) noexcept;
   void judgeLateness(Stamp due) noexcept;
   void keepTimes(std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) noexcept;
@@ -120,8 +121,7 @@ private:
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;
-  std::vector<Input> arrived_;
-  std::vector<Input> waiting_;  ///< what arrived before the start
+  std::vector<Input> arrived_;  ///< not yet given to the twin, which takes them once it has started
   Stamp released_{};            ///< no instant simulated now was due before this time of the clock [ns]
   Stamp start_stamp_{};         ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;

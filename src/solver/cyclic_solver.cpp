@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/cyclic_solver.hpp"
 
+#include <algorithm>
+
 namespace hjt
 {
 using arcs::BORDER;
@@ -10,8 +12,8 @@ CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
   : kernels_(kernels)
   , layout_{ (teeth - 2 * COUNT + COUNT - 1) / COUNT, {}, {} }
   , separator_{}
-  , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * layout_.steps))
-  , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * layout_.steps))
+  , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * std::max(layout_.steps, 1)))
+  , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * std::max(layout_.steps, 1)))
   , corner_{}
   , cup_(Separators::Zero())
 {

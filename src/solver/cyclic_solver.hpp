@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "elements/ring_forces.hpp"
+#include "elements/ring_tangent.hpp"
 #include "solver/arc_elimination.hpp"
 
 namespace hjt
@@ -69,7 +69,7 @@ private:
   const arcs::Kernels& kernels_;
   arcs::Layout layout_;
   std::array<int, arcs::COUNT> separator_;  // first tooth of each
-  Entries factors_;
+  Entries factors_;                         // never empty: their first lanes are handed on
   Entries rows_;
   arcs::CornerFactors corner_;  // of the separators, the cup eliminated
   Separators cup_;              // its column

@@ -12,7 +12,6 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
-  , running_(2 * model.ring.rest.teeth())
   , temperature_(inputs.temperature)
   , viscosity_(model.bearing.viscosity(temperature_))
 {
@@ -24,11 +23,18 @@ SolveStatus JointDynamics::settle() noexcept
   SolveStatus result = ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude });
   // Gravity changes with the output angle; the joint is stiff, so taking it as constant and repeating converges fast.
   double torque = 0.0;
-  for (int i = 0; i < MAX_ITERATIONS && result.ok(); ++i)
+  for (int i = 0; result.ok(); ++i)
   {
     const double wanted = inputs.load_torque - model_.load.gravityTorque(ring_.position().output_angle);
-    if (i > 0 && std::abs(wanted - torque) < 1e-9)
+    if (i > 0 && std::abs(wanted - torque) <= balanceTolerance(ring_))
     {
+      break;
+    }
+    if (i == MAX_ITERATIONS)
+    {
+      result.code = SolveCode::UNBALANCED;
+      result.stage = SolveStage::BALANCE;
+      result.unbalanced_torque = wanted - torque;
       break;
     }
     torque = wanted;
@@ -125,12 +131,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
   SolveStatus result = ring_.moveTo(target);
   if (!result.ok() && std::isfinite(motor_angle) && std::isfinite(output_angle))
   {
-    const SolveStatus again = ring_.reinsert(target);
-    result.code = again.code;
-    result.residual = again.residual;
-    result.iterations += again.iterations;
-    result.cuts += again.cuts;
-    result.jumps = again.jumps;
+    result = ring_.reinsert(target).addEffort(result);
   }
   status.iterations += result.iterations;
   status.cuts += result.cuts;
@@ -139,6 +140,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
   if (!result.ok())
   {
     status.code = result.code;
+    status.stage = result.stage;
   }
   return result;
 }
@@ -151,12 +153,12 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     surface_->friction(place_, ring_friction);
     // The rim turns with the torque that it leans on the housing with.
     const double cup_stiffness =
-        model_.ring.cup.stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
-    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, speeds, inputs, viscosity(), friction_);
+        model_.ring.of<CupTorsion>().stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
+    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, { speeds, inputs, viscosity() }, friction_);
     return;
   }
-  const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.shape(), ring_.forces(), rates, follow(), speeds, inputs, viscosity(), running_, friction_);
+  const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
+  model_.friction(ring_.forces(), rates, follow(), { speeds, inputs, viscosity() }, friction_);
 }
 
 /// Of the bearing's grease, at the present temperature.

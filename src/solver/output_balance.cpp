@@ -4,47 +4,91 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 
 namespace hjt
 {
+namespace
+{
+double toothSpace(const RingEquilibrium& ring) noexcept
+{
+  return TWO_PI / ring.model().gear.teeth_circular_spline;
+}
+
+SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
+{
+  DrivePosition target = ring.position();
+  const double turn = angle - target.wave_generator_angle;
+  if (turn == 0.0)
+  {
+    return {};
+  }
+  target.wave_generator_angle = angle;
+  // The output follows at constant load; one that hangs free in its backlash is carried along with the teeth.
+  const double stiffness = ring.stiffness()(1, 1);
+  target.output_angle +=
+      stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
+  return ring.moveTo(target);
+}
+
+SolveCode codeOfFailure(const RingEquilibrium& ring, double load_torque) noexcept
+{
+  if (!std::isfinite(load_torque))
+  {
+    return SolveCode::NOT_FINITE;
+  }
+  return ring.forces().output_torque == 0.0 ? SolveCode::DISENGAGED : SolveCode::UNBALANCED;
+}
+}  // namespace
+
+double balanceTolerance(const RingEquilibrium& ring) noexcept
+{
+  constexpr double SHARE = 1e-11;  // of a tooth space: a few roundings of an angle of some radians
+  return std::max(SHARE * toothSpace(ring) * ring.stiffness()(1, 1),
+                  ring.rounding() * ring.model().gear.flexspline_inner_radius);
+}
+
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
-  constexpr int MAX_ITERATIONS = 60;
-  constexpr double MAX_STEP = 2e-4;          // rad, a few flank clearances
-  constexpr double TORQUE_TOLERANCE = 1e-8;  // N.m
-  SolveStatus total;
-  DrivePosition target = ring.position();
-  const double turn = wave_generator_angle - target.wave_generator_angle;
-  if (turn != 0.0)
+  constexpr int MAX_IDLE = 20;          // iterations in a row that come no closer
+  constexpr double CLOSER = 0.999;      // of the least excess before
+  constexpr double FIRST_REACH = 0.01;  // of a tooth space
+  constexpr double MOST_REACH = 0.25;   // farther, teeth would pair with other spaces
+  SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);
+  double reach = FIRST_REACH * toothSpace(ring);
+  double excess = ring.forces().output_torque - load_torque;
+  double least = std::abs(excess);
+  for (int idle = 0; total.ok() && !(std::abs(excess) <= balanceTolerance(ring));)
   {
-    target.wave_generator_angle = wave_generator_angle;
-    // The output follows at constant load; one that hangs free in its backlash is carried along with the teeth.
     const double stiffness = ring.stiffness()(1, 1);
-    target.output_angle +=
-        stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
-    total = ring.moveTo(target);
-  }
-  for (int i = 0; i < MAX_ITERATIONS && total.ok(); ++i)
-  {
-    const double excess = ring.forces().output_torque - load_torque;
-    if (std::abs(excess) <= TORQUE_TOLERANCE)
+    const double step = stiffness > 0.0 ? excess / stiffness : std::copysign(reach, excess);
+    DrivePosition target = ring.position();
+    target.output_angle += std::clamp(step, -reach, reach);
+    const SolveStatus moved = ring.moveTo(target);
+    total.iterations += moved.iterations;
+    total.cuts += moved.cuts;
+    total.jumps += moved.jumps;
+    total.residual = moved.residual;
+    const double before = std::abs(excess);
+    excess = ring.forces().output_torque - load_torque;
+    idle = std::abs(excess) < CLOSER * least ? 0 : idle + 1;
+    least = std::min(least, std::abs(excess));
+    reach =
+        moved.ok() && std::abs(excess) <= before ? std::min(2.0 * reach, MOST_REACH * toothSpace(ring)) : 0.5 * reach;
+    if (idle > MAX_IDLE)
     {
-      return total;
+      total.code = codeOfFailure(ring, load_torque);
+      total.stage = SolveStage::BALANCE;
+      total.unbalanced_torque = -excess;
     }
-    const double stiffness = ring.stiffness()(1, 1);
-    const double step = stiffness > 0.0 ? excess / stiffness : std::copysign(MAX_STEP, excess);
-    target.output_angle = ring.position().output_angle + std::clamp(step, -MAX_STEP, MAX_STEP);
-    const SolveStatus status = ring.moveTo(target);
-    total.iterations += status.iterations;
-    total.cuts += status.cuts;
-    total.residual = status.residual;
-    total.code = status.code;
-  }
-  if (total.ok())
-  {
-    total.code = SolveCode::NOT_CONVERGED;
   }
   return total;
+}
+
+SolveStatus insertUnderLoad(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
+{
+  const SolveStatus status = ring.insert({ 0.0, 0.0, ring.model().gear.wave_amplitude });
+  return status.ok() ? balanceOutput(ring, wave_generator_angle, load_torque).addEffort(status) : status;
 }
 }  // namespace hjt

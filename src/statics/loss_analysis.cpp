@@ -18,7 +18,6 @@ public:
   LossMeter(const Parameters& parameters, int positions)
     : walk_(parameters, positions)
     , friction_(parameters.gear.teeth_flexspline)
-    , running_(2 * parameters.gear.teeth_flexspline)
     , temperature_(parameters.input.temperature)
   {
   }
@@ -32,20 +31,22 @@ public:
     const Eigen::Vector2d rates(1.0, follow);  // of both angles by the motor's
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
-    const RingRates by_angle{ ring.byWaveGenerator(), ring.byOutput() };
-    running_ = by_angle.by_motor + follow * by_angle.by_output;
+    const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
+    const auto& contact = ring.forces().of<WaveGeneratorContact>();
+    friction_.running = by_angle.by_motor + follow * by_angle.by_output;
     LossShares shares;
-    shares.bearing = model.bearing.torque(speed, ring.forces().contact_force.sum(), temperature_);
-    shares.interface = model.interface_friction.torque(ring.shape(), ring.forces(), running_);
+    shares.bearing = model.bearing.torque(speed, contact.force.sum(), temperature_);
+    shares.interface = model.interface_friction.torque(ring.shape(), contact, friction_.running);
     shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
                    model.load.viscousFriction() * follow * follow * std::abs(speed);
     friction_.setZero();
-    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), by_angle, speed * rates, friction_);
+    model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), by_angle, speed * rates,
+                                 friction_);
     shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
-    model.cup_friction.addTerm(ring.shape(), by_angle, friction_);
+    model.cup_friction.addTerm(by_angle, friction_);
     shares.cup = friction_.dryPower(rates);
-    model.damping.add(ring.shape(), ring.forces(), by_angle, friction_);
+    model.damping.add(contact, by_angle, friction_);
     shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
     return shares;
   }
@@ -53,7 +54,6 @@ public:
 private:
   PitchWalk walk_;
   JointFriction friction_;
-  Eigen::VectorXd running_;
   double temperature_;
 };
 
@@ -100,8 +100,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
                        });
     for (std::size_t i = first; i < rows.size(); ++i)
     {
-      rows[i].converged = meter.status().ok();
-      rows[i].residual = meter.status().residual;
+      rows[i].status = meter.status();
       const double asked = std::abs(rows[i].load_reduced);
       rows[i].gear_efficiency = asked > 0.0 ? asked / (asked + rows[i].loss.gear()) : 0.0;
     }
@@ -123,15 +122,20 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
   // The load that the friction just holds: friction grows slowly with the load, so repeating converges.
   const double ratio = nominalRatio(parameters.gear);
   double load = ratio * result.starting;
-  for (int i = 0; i < MAX_ITERATIONS && !result.converged && meter.status().ok(); ++i)
+  double change = load;
+  for (int i = 0; i < MAX_ITERATIONS && meter.status().ok() && std::abs(change) > ENOUGH * load; ++i)
   {
-    const double next = ratio * breakaway(meter, load);
-    result.converged = std::abs(next - load) <= ENOUGH * next;
-    load = next;
+    change = ratio * breakaway(meter, load) - load;
+    load += change;
   }
   result.back_driving = load;
-  result.converged = result.converged && meter.status().ok();
-  result.residual = meter.status().residual;
+  result.status = meter.status();
+  if (result.status.ok() && std::abs(change) > ENOUGH * load)
+  {
+    result.status.code = SolveCode::UNBALANCED;
+    result.status.stage = SolveStage::BALANCE;
+    result.status.unbalanced_torque = change;
+  }
   return result;
 }
 }  // namespace hjt

@@ -27,11 +27,11 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
     table.tooth_y.push_back(point.y());
     table.radius.push_back(point.norm());
     table.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
-    table.wave_generator_force.push_back(ring.forces().contact_force[i]);
-    table.rim_tension.push_back(model.tension.tension(shape, i));
-    table.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
-    table.mesh_force.push_back(ring.forces().flank_force[i]);
-    const ToothPlace place = model.mesh.place(shape, ring.position(), i);
+    table.wave_generator_force.push_back(ring.forces().of<WaveGeneratorContact>().force[i]);
+    table.rim_tension.push_back(model.of<RimTension>().tension(shape, i));
+    table.bending_force.push_back(model.of<RimBending>().bendingForce(shape, ring.forces().of<RimBending>(), i));
+    table.mesh_force.push_back(ring.forces().of<ToothMesh>().flank_force[i]);
+    const ToothPlace place = model.of<ToothMesh>().place(shape, ring.position(), i);
     table.across.push_back(place.across);
     table.depth.push_back(place.depth);
     table.tilt.push_back(place.tilt);
@@ -43,7 +43,7 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
 /// Of the housing on the flexspline [N.m].
 double housingTorque(const RingEquilibrium& ring)
 {
-  return -ring.model().cup.torque(ring.forces().cup_rotation);
+  return -ring.model().of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);
 }
 
 double sum(const std::vector<double>& values)
@@ -60,15 +60,12 @@ double sum(const std::vector<double>& values)
 InsertionResult analyseInsertion(const Parameters& parameters)
 {
   RingModel model(parameters);
-  model.meshed = false;
+  model.setMeshed(false);
   InsertionResult result;
   const auto start = std::chrono::steady_clock::now();
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  const SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  result.status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
   result.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.converged = status.ok();
-  result.iterations = status.iterations;
-  result.residual = status.residual;
   result.teeth = tabulateTeeth(ring);
   const ToothTable& teeth = result.teeth;
   const auto force = std::minmax_element(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end());
@@ -89,39 +86,50 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   return result;
 }
 
+FitCheck checkFit(const Parameters& parameters)
+{
+  FitCheck check;
+  for (const bool meshed : { false, true })
+  {
+    RingModel model(parameters);
+    model.setMeshed(meshed);
+    RingEquilibrium ring(model, staticSolver(parameters.solver));
+    check.status = meshed ? insertUnderLoad(ring, 0.0, 0.0) : ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+    if (!check.status.ok())
+    {
+      break;
+    }
+    (meshed ? check.wave_generator_force : check.wave_generator_force_insertion) =
+        ring.forces().of<WaveGeneratorContact>().force.sum();
+    check.teeth_loaded = static_cast<int>((ring.forces().of<ToothMesh>().flank_force.array() != 0.0).count());
+  }
+  return check;
+}
+
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques)
 {
   const RingModel model(parameters);
-  RingEquilibrium ring(model, staticSolver(parameters.solver));
-  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
-  if (status.ok())
-  {
-    status = balanceOutput(ring, wave_generator_angle, 0.0);
-  }
-  const double unloaded = ring.position().output_angle;
+  RingEquilibrium unloaded(model, staticSolver(parameters.solver));
+  const SolveStatus status = insertUnderLoad(unloaded, wave_generator_angle, 0.0);
   std::vector<StiffnessRow> rows;
   for (const double torque : torques)
   {
-    if (status.ok())
-    {
-      status = balanceOutput(ring, wave_generator_angle, torque);
-    }
+    RingEquilibrium ring = unloaded;
     StiffnessRow row;
-    row.converged = status.ok();
+    row.status = status.ok() ? balanceOutput(ring, wave_generator_angle, torque) : status;
     row.torque = torque;
-    row.output_angle = ring.position().output_angle - unloaded;
+    row.output_angle = ring.position().output_angle - unloaded.position().output_angle;
     row.wave_generator_torque = ring.forces().wave_generator_torque;
     row.housing_torque = housingTorque(ring);
-    row.cup_rotation = ring.forces().cup_rotation;
-    row.residual = status.residual;
+    row.cup_rotation = ring.forces().of<CupTorsion>().rotation;
     row.teeth = tabulateTeeth(ring);
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
-      const double mesh = std::abs(ring.forces().flank_force[i]);
+      const double mesh = std::abs(ring.forces().of<ToothMesh>().flank_force[i]);
       row.teeth_loaded += mesh > 0.0 ? 1 : 0;
       row.mesh_force_max = std::max(row.mesh_force_max, mesh);
-      row.wave_generator_force_sum += ring.forces().contact_force[i];
+      row.wave_generator_force_sum += ring.forces().of<WaveGeneratorContact>().force[i];
     }
     rows.push_back(row);
   }
@@ -143,8 +151,8 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
       status = balanceOutput(ring, angle, load_torque);
     }
     const double output_angle = ring.position().output_angle;
-    rows.push_back({ status.ok(), angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
-                     ring.forces().wave_generator_torque, housingTorque(ring), status.residual });
+    rows.push_back({ status, angle, output_angle, output_angle - angle / nominalRatio(parameters.gear),
+                     ring.forces().wave_generator_torque, housingTorque(ring) });
     if (progress)
     {
       progress(i);

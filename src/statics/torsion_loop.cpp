@@ -34,31 +34,25 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
   JointFriction friction(parameters.gear.teeth_flexspline);
   TorsionLoop loop;
-  SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
-  if (status.ok())
-  {
-    status = balanceOutput(ring, 0.0, 0.0);
-  }
+  loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
   std::vector<TorsionPoint> up;    // load growing, torque ascending
   std::vector<TorsionPoint> down;  // load falling
-  for (int i = 0; i <= steps && status.ok(); ++i)
+  for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {
     const double elastic = amplitude * (2.0 * i / steps - 1.0);
-    status = balanceOutput(ring, 0.0, elastic);
+    loop.status = balanceOutput(ring, 0.0, elastic);
     friction.setZero();
-    const RingRates rates{ ring.byWaveGenerator(), ring.byOutput() };
-    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), rates, Eigen::Vector2d::Zero(),
+    const RingRates rates{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
+    model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), rates, { 0.0, 0.0 },
                                  friction);
-    model.cup_friction.addTerm(ring.shape(), rates, friction);
+    model.cup_friction.addTerm(rates, friction);
     const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;
     up.push_back({ elastic + drag, angle });
     down.push_back({ elastic - drag, angle });
   }
-  loop.converged = status.ok();
-  loop.residual = status.residual;
-  if (loop.converged)
+  if (loop.status.ok())
   {
     loop.points.assign(down.rbegin(), down.rend());
     loop.points.insert(loop.points.end(), up.begin(), up.end());

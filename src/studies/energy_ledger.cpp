@@ -43,11 +43,12 @@ LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& 
   RandomDrive drive(settings, parameters);
   LedgerResult result;
   const auto steps = static_cast<long>(std::lround(duration * parameters.solver.rate));
-  for (long i = 0; i < steps && result.converged; ++i)
+  bool converged = true;
+  for (long i = 0; i < steps && converged; ++i)
   {
     const double angle = stepper.motorAngle();
     const double speed = stepper.speeds()[0];
-    result.converged = stepper.step(drive.next(model.motor, speed));
+    converged = stepper.step(drive.next(model.motor, speed));
     result.residual = std::max(result.residual, std::abs(stepper.energyResidual()));
     result.travel += std::abs(stepper.motorAngle() - angle);
     result.top_speed = std::max(result.top_speed, std::abs(stepper.speeds()[0]));
@@ -57,7 +58,7 @@ LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& 
       progress(static_cast<double>(i + 1) / static_cast<double>(steps));
     }
   }
-  result.force_residual = stepper.status().residual;
+  result.status = stepper.status();
   result.throughput = stepper.energyThroughput();
   return result;
 }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "model/joint_model.hpp"
 
 namespace hjt
@@ -40,13 +41,12 @@ private:
 /// What the books of a random motion say.
 struct LedgerResult
 {
-  bool converged{ true };
-  double force_residual{};  ///< of the ring in the last step [N]
-  double throughput{};      ///< sum of |work| of motor, load and friction [J]
-  double residual{};        ///< largest energy in - stored - dissipated on the way [J]
-  double travel{};          ///< of the motor, both ways added [rad]
-  double top_speed{};       ///< of the motor [rad/s]
-  int reversals{};          ///< of the motor
+  SolveStatus status;   ///< of the last step
+  double throughput{};  ///< sum of |work| of motor, load and friction [J]
+  double residual{};    ///< largest energy in - stored - dissipated on the way [J]
+  double travel{};      ///< of the motor, both ways added [rad]
+  double top_speed{};   ///< of the motor [rad/s]
+  int reversals{};      ///< of the motor
 };
 
 /// `duration` [s] from rest. `progress` is told the part done.

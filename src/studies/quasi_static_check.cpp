@@ -65,10 +65,11 @@ public:
     double mesh_square = 0.0;
     for (int i = 0; i < ring.teeth(); ++i)
     {
-      contact_.add(now.contact_force[i], should.contact_force[i]);
-      mesh_.add(now.flank_force[i], should.flank_force[i]);
-      contact_square += std::pow(now.contact_force[i] - should.contact_force[i], 2);
-      mesh_square += std::pow(now.flank_force[i] - should.flank_force[i], 2);
+      contact_.add(now.of<WaveGeneratorContact>().force[i], should.of<WaveGeneratorContact>().force[i]);
+      mesh_.add(now.of<ToothMesh>().flank_force[i], should.of<ToothMesh>().flank_force[i]);
+      contact_square +=
+          std::pow(now.of<WaveGeneratorContact>().force[i] - should.of<WaveGeneratorContact>().force[i], 2);
+      mesh_square += std::pow(now.of<ToothMesh>().flank_force[i] - should.of<ToothMesh>().flank_force[i], 2);
     }
     for (Eigen::Index k = 0; k < rest_.size(); ++k)
     {
@@ -81,8 +82,9 @@ public:
     torsion_.add(torsion, balanced_torsion);
     result.rows.push_back({ time, torsion, balanced_torsion, now.wave_generator_torque, should.wave_generator_torque,
                             std::sqrt(contact_square / ring.teeth()), std::sqrt(mesh_square / ring.teeth()) });
-    result.last = { time, toVector(now.contact_force), toVector(should.contact_force), toVector(now.flank_force),
-                    toVector(should.flank_force) };
+    result.last = { time, toVector(now.of<WaveGeneratorContact>().force),
+                    toVector(should.of<WaveGeneratorContact>().force), toVector(now.of<ToothMesh>().flank_force),
+                    toVector(should.of<ToothMesh>().flank_force) };
   }
 
   void sumUp(QuasiStaticResult& result) const
@@ -120,7 +122,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   const double amplitude = parameters.gear.wave_amplitude;
   RingEquilibrium balanced(model.ring, staticSolver(parameters.solver));
   QuasiStaticResult result;
-  if (!balanced.insert({ 0.0, 0.0, amplitude }).ok() || !balanceOutput(balanced, 0.0, setup.load).ok())
+  if (result.status = insertUnderLoad(balanced, 0.0, setup.load); !result.status.ok())
   {
     return result;
   }
@@ -133,7 +135,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
   ring.setSpaces(balanced.shape().space);
   const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver, setup.tolerance);
   RingMotion motion(ring.coordinates());
-  if (!travelInEquilibrium(balanced, setup.speed, setup.load, motion))
+  if (result.status = travelInEquilibrium(balanced, setup.speed, setup.load, motion); !result.status.ok())
   {
     return result;
   }
@@ -162,7 +164,12 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
     }
     ring.evaluate(motion.q, motion.v, motion.time);
     const DrivePosition& position = ring.position();
-    if (!same.moveTo(position).ok() || !balanceOutput(balanced, position.wave_generator_angle, setup.load).ok())
+    result.status = same.moveTo(position);
+    if (result.status.ok())
+    {
+      result.status = balanceOutput(balanced, position.wave_generator_angle, setup.load);
+    }
+    if (!result.status.ok())
     {
       return result;
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "studies/ring_method.hpp"
 
 namespace hjt
@@ -67,6 +68,7 @@ enum class QuasiStaticOutcome
 struct QuasiStaticResult
 {
   QuasiStaticOutcome outcome{ QuasiStaticOutcome::NO_EQUILIBRIUM };
+  SolveStatus status;                  ///< of the equilibrium looked for last
   double stopped_at{};                 ///< [s]
   DynamicError contact_force;          ///< per tooth [N]
   DynamicError mesh_force;             ///< per tooth; size over the loaded ones [N]

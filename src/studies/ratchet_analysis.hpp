@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -32,7 +33,7 @@ enum class RatchetEnd
 
 struct RatchetResult
 {
-  bool converged{};  ///< found the drive at no load
+  SolveStatus status;  ///< at no load
   RatchetEnd end{};
   RatchetRow peak;  ///< of the largest torque: the jump, unless the limit was reached
   std::vector<RatchetRow> rows;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -27,10 +28,9 @@ struct ShapeError
 /// The bending terms are those of the law `curvature`, and hold while the ring touches all round.
 struct SmallWaveRow
 {
-  bool converged{};
+  SolveStatus status;
   double wave_amplitude{};  ///< w [m]
   int teeth_in_contact{};
-  double residual{};           ///< [N]
   double contact_force_min{};  ///< smallest on a tooth [N]
   double contact_force_max{};  ///< [N]
   ShapeError thin_ring;

@@ -14,13 +14,6 @@ namespace hjt
 {
 namespace
 {
-/// The ring under `load`, wave generator at `angle`.
-SolveStatus bringTo(RingEquilibrium& ring, double angle, double load)
-{
-  const SolveStatus status = ring.insert({ 0.0, 0.0, ring.model().gear.wave_amplitude });
-  return status.ok() ? balanceOutput(ring, angle, load) : status;
-}
-
 /// `there` against `here` turned by `pitches` tooth pitches, tooth i taking the place of tooth i + pitches.
 RingDifference renumberedDifference(const RingEquilibrium& here, const RingEquilibrium& there, int pitches)
 {
@@ -35,10 +28,10 @@ RingDifference renumberedDifference(const RingEquilibrium& here, const RingEquil
     const Eigen::Vector2d expected = turn * here.shape().points.segment<2>(2 * i);
     const auto off = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return std::abs(a[i] - b[j]); };
     difference.position = std::max(difference.position, (expected - there.shape().points.segment<2>(2 * j)).norm());
-    difference.contact_force =
-        std::max(difference.contact_force, off(here.forces().contact_force, there.forces().contact_force));
-    difference.flank_force =
-        std::max(difference.flank_force, off(here.forces().flank_force, there.forces().flank_force));
+    difference.contact_force = std::max(difference.contact_force, off(here.forces().of<WaveGeneratorContact>().force,
+                                                                      there.forces().of<WaveGeneratorContact>().force));
+    difference.flank_force = std::max(difference.flank_force, off(here.forces().of<ToothMesh>().flank_force,
+                                                                  there.forces().of<ToothMesh>().flank_force));
   }
   return difference;
 }
@@ -73,7 +66,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   const RingModel model(parameters);
   StateInvariants state;
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  const SolveStatus status = bringTo(ring, angle, load);
+  const SolveStatus status = insertUnderLoad(ring, angle, load);
   const DrivePosition& position = ring.position();
   const double pitch = model.rest.pitchAngle();
   const double output_shift = pitches * (pitch - TWO_PI / model.gear.teeth_circular_spline);
@@ -88,7 +81,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   {
     shifted_status = shifted.moveTo(there);
   }
-  state.converged = status.ok() && shifted_status.ok();
+  state.status = status.ok() ? shifted_status : status;
   state.load = load;
   state.wave_generator_angle = position.wave_generator_angle;
   state.output_angle = position.output_angle;
@@ -96,14 +89,14 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   state.residual =
       std::max(ring.forces().teeth.lpNorm<Eigen::Infinity>(), shifted.forces().teeth.lpNorm<Eigen::Infinity>());
   state.softest_stiffness = softestStiffness(ring);
-  state.contact_force_max = ring.forces().contact_force.maxCoeff();
-  state.flank_force_max = ring.forces().flank_force.lpNorm<Eigen::Infinity>();
+  state.contact_force_max = ring.forces().of<WaveGeneratorContact>().force.maxCoeff();
+  state.flank_force_max = ring.forces().of<ToothMesh>().flank_force.lpNorm<Eigen::Infinity>();
   state.half_turn = renumberedDifference(ring, ring, model.rest.teeth() / 2);
   state.pitch_shift = renumberedDifference(ring, shifted, pitches);
   state.pitch_shift_energy = shifted.forces().energy / ring.forces().energy - 1.0;
   state.wave_generator_torque = ring.forces().wave_generator_torque;
   state.output_torque = ring.forces().output_torque;
-  state.cup_torque = model.cup.torque(ring.forces().cup_rotation);
+  state.cup_torque = model.of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);
   return state;
 }
 
@@ -112,7 +105,7 @@ std::vector<PotentialRow> analysePotential(const Parameters& parameters, double 
 {
   const RingModel model(parameters);
   RingEquilibrium ring(model, staticSolver(parameters.solver));
-  SolveStatus status = bringTo(ring, angle, load);
+  SolveStatus status = insertUnderLoad(ring, angle, load);
   const DrivePosition centre = ring.position();
   const Eigen::Vector2d torque(ring.forces().wave_generator_torque, ring.forces().output_torque);
   const double stiffness = ring.stiffness()(0, 1);
@@ -148,8 +141,7 @@ std::vector<PotentialRow> analysePotential(const Parameters& parameters, double 
     row.output_difference = (output_behind.energy - output_ahead.energy) / (2.0 * row.output_step) - torque[1];
     row.wave_generator_by_output = (output_ahead.torque[0] - output_behind.torque[0]) / (2.0 * row.output_step);
     row.output_by_wave_generator = (ahead.torque[1] - behind.torque[1]) / (2.0 * step);
-    row.converged = status.ok();
-    row.residual = status.residual;
+    row.status = status;
     rows.push_back(row);
   }
   return rows;

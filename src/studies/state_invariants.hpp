@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -18,7 +19,7 @@ struct RingDifference
 /// A state at rest under load, and what has to hold in it whatever the parameters.
 struct StateInvariants
 {
-  bool converged{};
+  SolveStatus status;
   double load{};                   ///< on the circular spline [N.m]
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
@@ -42,8 +43,7 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
 /// Torques against the differences of the stored energy of neighbouring equilibria, and the torques' own differences.
 struct PotentialRow
 {
-  bool converged{};
-  double residual{};                   ///< [N]
+  SolveStatus status;
   double wave_generator_step{};        ///< to either side [rad]
   double output_step{};                ///< the same, the joint's share of it [rad]
   double wave_generator_torque{};      ///< [N.m]

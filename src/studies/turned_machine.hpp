@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -32,8 +33,7 @@ struct TurnedBending
 
 struct TurnedMachine
 {
-  bool converged{};
-  double residual{};  ///< [N]
+  SolveStatus status;
   std::vector<TurnedElement> elements;
   std::vector<TurnedBending> bending;
 };

@@ -22,7 +22,7 @@ struct DepartureBuild
 /// of v [rad].
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
-/// size of the departures: half a per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
+/// size of the departures: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
 DepartureBuild buildDepartures(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress);

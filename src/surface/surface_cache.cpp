@@ -7,19 +7,26 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <random>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "base/whole_file.hpp"
+#include "gear/angle.hpp"
+#include "params/field_table.hpp"
+#include "params/variants.hpp"
 #include "surface/departure_builder.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
@@ -30,61 +37,20 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// First line of a file. To be changed whenever the table, or what the ring does with its parameters, changes.
-constexpr const char* FORMAT = "harmonic_joint_twin response surface 3\n";
-/// Sections and keys that the tables do not depend on: the ring in equilibrium does not know them, and what they bring to
-/// the friction is added when the surface is read.
-constexpr std::array<const char*, 30> OTHER_KEYS{ "joint.",
-                                                  "fault",
-                                                  "brake.",
-                                                  "solver.",
-                                                  "sensors.",
-                                                  "health.",
-                                                  "indicators.",
-                                                  "telemetry.",
-                                                  "observer.",
-                                                  "comparison.",
-                                                  "life.",
-                                                  "input.",
-                                                  "publish.",
-                                                  "realtime.",
-                                                  "ring.mass",
-                                                  "mesh.friction_kinetic",
-                                                  "mesh.stribeck_velocity",
-                                                  "cup.friction_torque",
-                                                  "bearing.lubricant_factor",
-                                                  "bearing.viscosity",
-                                                  "motor.rotor_inertia",
-                                                  "motor.wave_generator_inertia",
-                                                  "motor.coulomb_torque",
-                                                  "motor.viscous_friction",
-                                                  "motor.speed_limit",
-                                                  "output.circular_spline_inertia",
-                                                  "output.load_inertia",
-                                                  "output.viscous_friction",
-                                                  "output.gravity_torque",
-                                                  "output.gravity_angle" };
+/// First line of a file, before the hash of the code that made it.
+constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
+/// No table is larger; the shipped gear's has 51 MB [bytes].
+constexpr std::size_t LARGEST_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Format and every parameter that the ring may depend on.
-std::string parametersOfTheRing(const Parameters& parameters)
-{
-  std::istringstream lines(describeParameters(parameters));
-  std::string text = FORMAT;
-  for (std::string line; std::getline(lines, line);)
-  {
-    const bool other =
-        std::any_of(OTHER_KEYS.begin(), OTHER_KEYS.end(), [&](const char* key) { return line.rfind(key, 0) == 0; });
-    text += other ? "" : line.substr(0, line.find("  #")) + '\n';
-  }
-  return text;
-}
-
-/// The same with the faults, and with what stands in files that the parameters name.
+/// What a file must begin with: all that its table depends on. Code, parameters, faults, and what stands in files that the
+/// parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
-  std::string text = parametersOfTheRing(parameters) + faults + '\n';
+  std::string text =
+      FORMAT + std::string(surfaceSourceHash()) + '\n' + describeSurfaceParameters(parameters, !faults.empty());
+  text += faults + '\n';
   for (const std::string& path :
        { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })
   {
@@ -93,20 +59,6 @@ std::string header(const Parameters& parameters, const std::string& faults)
     text += '\n';
   }
   return text;
-}
-
-/// These parameters with teeth and spaces that are all equal.
-Parameters withEqualTeeth(Parameters parameters)
-{
-  ManufactureParameters& errors = parameters.manufacture;
-  for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
-  {
-    pitch->deviation = 0.0;
-    pitch->table = NO_FILE;
-  }
-  errors.circular_spline_eccentricity = {};
-  errors.circular_spline_ellipticity = {};
-  return parameters;
 }
 
 template <class T>
@@ -193,9 +145,11 @@ bool finite(const std::vector<SurfaceTable::Node>& nodes)
                      { return std::all_of(node.begin(), node.end(), [](double x) { return std::isfinite(x); }); });
 }
 
+/// Each above the one before, all finite.
 bool ascending(const std::vector<double>& lines)
 {
-  return std::is_sorted(lines.begin(), lines.end(), std::less_equal<>());
+  return std::all_of(lines.begin(), lines.end(), [](double line) { return std::isfinite(line); }) &&
+         std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) == lines.end();
 }
 
 bool parseBody(std::string_view bytes, SurfaceTable& table)
@@ -208,7 +162,9 @@ bool parseBody(std::string_view bytes, SurfaceTable& table)
   table.columns = static_cast<int>(columns);
   reader.vector(table.lines, lines);
   reader.vector(table.nodes, lines * (columns + 1));
-  return reader.complete() && ascending(table.lines) && finite(table.nodes);
+  // Written so that NaN fails.
+  return reader.complete() && table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 &&
+         std::isfinite(table.ratio) && ascending(table.lines) && finite(table.nodes);
 }
 
 bool parseBody(std::string_view bytes, DepartureTable& table)
@@ -229,44 +185,61 @@ bool parseBody(std::string_view bytes, DepartureTable& table)
   return good && reader.complete();
 }
 
+/// The bytes of a regular file of this user that others cannot write, if it is not too large; else nothing. Opening it does
+/// not wait, as it would for the writer of a FIFO.
+std::optional<std::string> readOwnFile(const std::string& path)
+{
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0)
+  {
+    return std::nullopt;
+  }
+  struct stat status = {};
+  std::optional<std::string> bytes;
+  if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+      (status.st_mode & S_IWOTH) == 0 && static_cast<std::size_t>(status.st_size) <= LARGEST_FILE)
+  {
+    bytes.emplace(static_cast<std::size_t>(status.st_size), '\0');
+    std::size_t done = 0;
+    for (ssize_t got = 1; got > 0 && done < bytes->size(); done += static_cast<std::size_t>(std::max<ssize_t>(got, 0)))
+    {
+      got = read(descriptor, bytes->data() + done, bytes->size() - done);
+    }
+    bytes->resize(done);
+  }
+  close(descriptor);
+  return bytes;
+}
+
+/// A file holds the header, the body and the hash of both.
 template <class Table>
 bool readFile(const std::string& path, const std::string& wanted, Table& table)
 {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::optional<std::string> bytes = readOwnFile(path);
   std::uint64_t sum = 0;
-  if (!file || bytes.size() < wanted.size() + sizeof(sum) || bytes.compare(0, wanted.size(), wanted) != 0)
+  if (!bytes || bytes->size() < wanted.size() + sizeof(sum) || bytes->compare(0, wanted.size(), wanted) != 0)
   {
     return false;
   }
-  const std::string_view rest = std::string_view(bytes).substr(wanted.size());
-  const std::string_view values = rest.substr(0, rest.size() - sizeof(sum));
-  std::memcpy(&sum, rest.data() + values.size(), sizeof(sum));
-  return sum == textHash(values) && parseBody(values, table);
+  const std::string_view summed(bytes->data(), bytes->size() - sizeof(sum));
+  std::memcpy(&sum, summed.data() + summed.size(), sizeof(sum));
+  return sum == textHash(summed) && parseBody(summed.substr(wanted.size()), table);
 }
 
 /// @returns what went wrong, or nothing.
-std::string writeFile(const std::string& path, const std::string& bytes)
+std::string writeFile(const std::string& path, std::string bytes)
 {
-  std::error_code error;
-  fs::create_directories(fs::path(path).parent_path(), error);
-  const std::string temporary = path + '.' + std::to_string(std::random_device{}());
+  const std::uint64_t sum = textHash(bytes);
+  append(bytes, &sum, 1);
+  try
   {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file)
-    {
-      fs::remove(temporary, error);
-      return "cannot write " + temporary;
-    }
+    fs::create_directories(fs::path(path).parent_path());
+    writeTextFile(path, bytes);
+    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
   }
-  fs::rename(temporary, path, error);
-  if (error)
+  catch (const std::exception& error)  // of the file system, or InputError
   {
-    const std::string reason = error.message();
-    fs::remove(temporary, error);
-    return "cannot write " + path + ": " + reason;
+    return error.what();
   }
   return {};
 }
@@ -305,10 +278,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   }
   if (kept)
   {
-    std::string bytes = body(built.table);
-    const std::uint64_t sum = textHash(bytes);
-    append(bytes, &sum, 1);
-    const std::string problem = writeFile(path, key + bytes);
+    const std::string problem = writeFile(path, key + body(built.table));
     if (!problem.empty())
     {
       tell(source, "response surface not kept: " + problem);
@@ -372,44 +342,6 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
     tables.departures = std::move(*departures);
   }
   return tables;
-}
-
-SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
-{
-  std::promise<Surface> promise;
-  std::shared_future<Surface> surface;
-  bool mine = false;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const auto found =
-        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.first == key; });
-    mine = found == entries_.end();
-    if (mine)
-    {
-      entries_.emplace_front(key, promise.get_future().share());
-      if (entries_.size() > kept_)
-      {
-        entries_.pop_back();
-      }
-    }
-    else
-    {
-      entries_.splice(entries_.begin(), entries_, found);
-    }
-    surface = entries_.front().second;
-  }
-  if (mine)
-  {
-    try
-    {
-      promise.set_value(make());
-    }
-    catch (...)
-    {
-      promise.set_exception(std::current_exception());
-    }
-  }
-  return surface.get();
 }
 
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,

@@ -1,44 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <future>
-#include <list>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "model/joint_model.hpp"
 #include "solver/response_surface.hpp"
+#include "surface/surface_pool.hpp"
 
 namespace hjt
 {
-/// Surfaces in memory for the twins of one process, one for each set of parameters. Safe to use from several threads:
-/// who asks for one that is being made waits for it, and who asks for another does not.
-class SurfacePool
-{
-public:
-  using Surface = std::shared_ptr<const ResponseSurface>;
-
-  /// `kept`: so many of those asked for last, at least one, stay in memory, 50 MB each, also while no twin uses them.
-  explicit SurfacePool(std::size_t kept) : kept_(kept) {}
-
-  /// The surface under this key, made by `make` if it is not there; may be none.
-  Surface obtain(const std::string& key, const std::function<Surface()>& make);
-
-private:
-  using Entry = std::pair<std::string, std::shared_future<Surface>>;
-
-  std::size_t kept_;
-  std::mutex mutex_;
-  std::list<Entry> entries_;  // those asked for last in front
-};
-
 /// A surface's tables.
 struct SurfaceTables
 {
@@ -50,8 +23,12 @@ struct SurfaceTables
 ///
 /// `model`: the joint of these parameters with its faults; `faults`: names what they changed in it, for the cache; empty: none.
 /// Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as departure from one
-/// of equal teeth. A file counts only if it names this format, holds the very same parameters and faults and its sum is
-/// right; else it is built anew and written over. Files appear whole or not at all.
+/// of equal teeth.
+///
+/// A file counts only if it is a regular file of this user that others cannot write, not larger than 1 GB, begins with the
+/// hash of this very code, the same parameters and faults, ends with the hash of all its bytes, and holds finite numbers on
+/// ascending lines; else the table is built again and the file replaced. That finds damage and other builds, not a table
+/// that this user has forged. Files appear whole or not at all.
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source);
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "base/number_text.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "model/faults/joint_faults.hpp"
 
 namespace hjt
@@ -22,23 +21,14 @@ struct GivenUp : std::exception
 {
 };
 
-/// The faults and what their severities mean, for the cache of surfaces; empty without faults.
-std::string keyOf(const FaultList& faults, const Parameters& parameters)
+/// The faults, for the cache of surfaces; empty without.
+std::string keyOf(const FaultList& faults)
 {
-  if (faults.empty())
-  {
-    return "";
-  }
   std::ostringstream text;
   for (const ActiveFault& active : faults)
   {
     text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place
          << '\n';
-  }
-  std::istringstream lines(describeParameters(parameters));
-  for (std::string line; std::getline(lines, line);)
-  {
-    text << (line.rfind("fault_scale.", 0) == 0 ? line + '\n' : "");
   }
   return text.str();
 }
@@ -63,9 +53,7 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
     }
     return nullptr;
   }
-  JointModel model(parameters);
-  JointFaults(parameters, model).apply(faults);
-  return sharedSurface(parameters, model, keyOf(faults, parameters), source);
+  return sharedSurface(parameters, JointFaults(parameters, faults).model(), keyOf(faults), source);
 }
 
 SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source)

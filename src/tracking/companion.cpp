@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/observer.hpp"
+#include "tracking/plausible.hpp"
 #include "tracking/torque_driven.hpp"
 
 namespace hjt
@@ -17,16 +18,6 @@ namespace
 {
 /// Half width of a band, in deviations.
 constexpr double DEVIATIONS = 3.0;
-/// Beyond these a message was damaged [rad], [A].
-constexpr double LARGEST_ANGLE = 1.0e4;
-constexpr double LARGEST_CURRENT = 1.0e4;
-
-bool isPlausible(const MotionRow& row)
-{
-  return std::isfinite(row.time) && std::abs(row.position) < LARGEST_ANGLE && std::abs(row.current) < LARGEST_CURRENT &&
-         !(std::abs(row.motor_angle) > LARGEST_ANGLE * LARGEST_ANGLE);
-}
-
 class TorqueFollower : public Companion::Follower
 {
 public:
@@ -108,7 +99,8 @@ std::unique_ptr<Companion::Follower> makeFollower(const Parameters& parameters, 
     throw ParameterError(
         "telemetry.load = target_moment holds the weight already, but output.gravity_torque = " +
         numberText(parameters.output.gravity_torque) +
-        " [N.m]: give config/recorded_load.yaml after the joint's own file, or telemetry.load = model");
+        " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
+        "joint's own file");
   }
   if (mode == InputMode::TORQUE)
   {
@@ -124,10 +116,8 @@ Companion::Companion(const Parameters& parameters, InputMode mode, const Surface
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
-  , temperature_(parameters.input.temperature)
   , follower_(makeFollower(parameters, mode, surface_source))
-  , signals_(parameters)
-  , assessor_(parameters)
+  , watch_(parameters)
 {
 }
 
@@ -143,8 +133,7 @@ void Companion::reset() noexcept
   outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
-  signals_.reset();
-  assessor_.reset();
+  watch_.reset();
 }
 
 void Companion::giveLoad(double time, double torque) noexcept
@@ -205,8 +194,7 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
 
   const std::optional<double> told = loadAt(sample->time);
   const bool is_all = told && load_source_ == LoadSource::TARGET_MOMENT;
-  const double modelled = load_.inertia() * sample->acceleration - load_.gravityTorque(sample->position);
-  sample->load = told.value_or(0.0) + (is_all ? 0.0 : modelled);
+  sample->load = told.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
   // What of the motor's inertia a controller reckons with is not there a second time.
   const double external =
       told.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample->acceleration : 0.0);
@@ -222,7 +210,7 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
   follower_->follow(*sample, external, now);
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  watch(*sample, sample->load);
+  watch_.take(*sample);
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
@@ -235,24 +223,6 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
   counters_.outside += now.isOutside() ? 1 : 0;
   counters_.without_load += load_source_ != LoadSource::MODEL && !told ? 1 : 0;
   return now;
-}
-
-/// Health from the measured signals.
-void Companion::watch(const MotionSample& sample, double load) noexcept
-{
-  SignalSample signal;
-  signal.stamp = std::llround(1e9 * sample.time);
-  signal.motor_angle = sample.motor_angle;
-  signal.output_angle = sample.position;
-  signal.motor_velocity = ratio_ * sample.velocity;
-  signal.motor_torque = telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_;
-  // The monitor adds the weight that is configured.
-  signal.load_torque = load + load_.gravityTorque(sample.position);
-  signal.temperature = temperature_;
-  if (signals_.update(signal))
-  {
-    assessor_.take(signals_.indicators());
-  }
 }
 
 CompanionCounters Companion::counters() const noexcept

@@ -9,11 +9,10 @@
 #include <optional>
 
 #include "elements/load.hpp"
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/signal_monitor.hpp"
 #include "surface/surface_cache.hpp"
 #include "tracking/lag_estimate.hpp"
 #include "tracking/motion_smoother.hpp"
+#include "tracking/signal_watch.hpp"
 #include "tracking/stream_timing.hpp"
 
 namespace hjt
@@ -97,8 +96,8 @@ public:
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Health of the measured joint, from its own signals.
-  const SignalIndicators& signalIndicators() const noexcept { return signals_.indicators(); }
-  const Assessment& assessment() const noexcept { return assessor_.assessment(); }
+  const SignalIndicators& signalIndicators() const noexcept { return watch_.indicators(); }
+  const Assessment& assessment() const noexcept { return watch_.assessor().assessment(); }
 
   /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the weight and
   /// inertia that are configured; the whole is in the sample [N.m]
@@ -117,14 +116,12 @@ private:
     double torque;
   };
   std::optional<double> loadAt(double time) const noexcept;
-  void watch(const MotionSample& sample, double load) noexcept;
 
   InputMode mode_;
   LoadSource load_source_;
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;
   std::unique_ptr<Follower> follower_;
   MotionSmoother smoother_;
   bool restarted_{};
@@ -135,8 +132,7 @@ private:
   double last_compared_{};  // [s]
   StreamTiming timing_;
   LagEstimate lag_;
-  SignalMonitor signals_;
-  Assessor assessor_;
+  SignalWatch watch_;
   CompanionCounters counters_;
   CompanionCounters earlier_;  // refused before the smoother, and by it before the last restart
 };

@@ -10,6 +10,12 @@
 
 namespace hjt
 {
+/// What weight and inertia of a load take to make a motion, > 0 resists positive motion [N.m].
+inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
+{
+  return load.inertia() * sample.acceleration - load.gravityTorque(sample.position);
+}
+
 /// What a healthy joint takes to make a motion.
 struct MotionPrediction
 {
@@ -37,10 +43,7 @@ public:
   MotionPrediction step(const MotionSample& sample) noexcept;
 
   /// Weight and inertia of what the joint is configured to carry, where a recording does not tell the load [N.m].
-  double modelledLoad(const MotionSample& sample) const noexcept
-  {
-    return load_.inertia() * sample.acceleration - load_.gravityTorque(sample.position);
-  }
+  double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
 private:
   FrictionMap friction_;

@@ -2,24 +2,19 @@
 #include "tracking/observer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "base/number_text.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "harmonic_joint_twin/statics/static_analysis.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double DAMPING = 0.02;  // of the torsional swing, of critical [-]
-constexpr std::array<double, 9> CURVE{ 0.0, 5.0, 14.0, 25.0, 48.0, 75.0, 110.0, 150.0, 200.0 };  // [N.m]
-constexpr double DEVIATIONS = 3.0;                                                               // of a band
+constexpr double DAMPING = 0.02;    // of the torsional swing, of critical [-]
+constexpr double DEVIATIONS = 3.0;  // of a band
 // Of the first state, rms.
 constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
 constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
@@ -75,61 +70,20 @@ Observer::Observer(const Parameters& parameters)
   , noise_(parameters.observer)
   , ratio_(nominalRatio(parameters.gear))
   , temperature_(parameters.input.temperature)
+  , curve_(parameters)
 {
-  const std::vector<StiffnessRow> rows =
-      analyseStiffness(parameters, 0.0, std::vector<double>(CURVE.begin(), CURVE.end()));
   const Eigen::Vector2d inertia(Motor(parameters.motor).inertia(), load_.inertia());
-  for (const StiffnessRow& row : rows)
+  for (const TorsionCurve::Piece& piece : curve_.pieces())
   {
-    if (!row.converged)
-    {
-      throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
-                           " N.m at the output");
-    }
-    curve_.push_back({ -row.output_angle, row.torque });
-    if (curve_.size() > 1)
-    {
-      const CurvePoint& last = curve_[curve_.size() - 2];
-      const double slope = (curve_.back().torque - last.torque) / (curve_.back().torsion - last.torsion);
-      pieces_.push_back(makeObserverPiece(inertia, ratio_, slope, STEP, noise_));
-    }
+    pieces_.push_back(makeObserverPiece(inertia, ratio_, piece.stiffness, STEP, noise_));
   }
-}
-
-/// The piece of the curve that holds a torsion; the last one goes on for ever.
-std::size_t Observer::pieceAt(double torsion) const noexcept
-{
-  std::size_t piece = 0;
-  while (piece + 1 < pieces_.size() && curve_[piece + 1].torsion < std::abs(torsion))
-  {
-    ++piece;
-  }
-  return piece;
-}
-
-double Observer::torque(double torsion) const noexcept
-{
-  const std::size_t piece = pieceAt(torsion);
-  const CurvePoint& low = curve_[piece];
-  return std::copysign(low.torque + pieces_[piece].stiffness * (std::abs(torsion) - low.torsion), torsion);
-}
-
-double Observer::torsionUnder(double torque) const noexcept
-{
-  std::size_t piece = 0;
-  while (piece + 1 < pieces_.size() && curve_[piece + 1].torque < std::abs(torque))
-  {
-    ++piece;
-  }
-  const CurvePoint& low = curve_[piece];
-  return std::copysign(low.torsion + (std::abs(torque) - low.torque) / pieces_[piece].stiffness, torque);
 }
 
 /// At rest under the load; what the first rows say of speed and disturbance is believed at once.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
-  const double motor_angle = ratio_ * (measurement.output_angle + torsionUnder(load));
+  const double motor_angle = ratio_ * (measurement.output_angle + curve_.torsion(load));
   motor_zero_ = measurement.motor_angle - motor_angle;
   state_ << motor_angle, 0.0, measurement.output_angle, 0.0, 0.0;
   Vector deviation;
@@ -144,8 +98,8 @@ void Observer::start(const Measurement& measurement) noexcept
 void Observer::predict(double motor_torque, double load_torque) noexcept
 {
   const double torsion = state_[0] / ratio_ - state_[2];
-  const double gear = torque(torsion);
-  const ObserverPiece& piece = pieces_[pieceAt(torsion)];
+  const double gear = curve_.torque(torsion);
+  const ObserverPiece& piece = pieces_[curve_.pieceAt(torsion)];
 
   // The curve's own torque where the linear piece gives stiffness times torsion.
   const double beyond = gear - piece.stiffness * torsion;
@@ -214,7 +168,7 @@ Observation Observer::step(const Measurement& measurement) noexcept
   now.motor_velocity = state_[1];
   now.output_angle = state_[2];
   now.output_velocity = state_[3];
-  now.joint_torque = torque(state_[0] / ratio_ - state_[2]);
+  now.joint_torque = curve_.torque(state_[0] / ratio_ - state_[2]);
   now.friction_torque = friction_now_;
   now.residual_torque = state_[4];
   now.residual_band = DEVIATIONS * std::sqrt(covariance_(4, 4));

@@ -7,6 +7,7 @@
 
 #include "elements/load.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "statics/torsion_curve.hpp"
 #include "tracking/friction_map.hpp"
 
 namespace hjt
@@ -87,14 +88,6 @@ public:
   Observation step(const Measurement& measurement) noexcept;
 
 private:
-  struct CurvePoint
-  {
-    double torsion;  // [rad]
-    double torque;   // [N.m]
-  };
-  std::size_t pieceAt(double torsion) const noexcept;
-  double torque(double torsion) const noexcept;
-  double torsionUnder(double torque) const noexcept;
   void start(const Measurement& measurement) noexcept;
   void predict(double motor_torque, double load_torque) noexcept;
   double correct(ObserverPiece::State angle, double measured, double noise) noexcept;
@@ -104,8 +97,8 @@ private:
   ObserverParameters noise_;
   double ratio_;
   double temperature_;
-  std::vector<CurvePoint> curve_;  // for torsion >= 0, ascending
-  std::vector<ObserverPiece> pieces_;
+  TorsionCurve curve_;
+  std::vector<ObserverPiece> pieces_;  // of the curve
   ObserverPiece::Vector state_;
   ObserverPiece::Matrix covariance_;
   Measurement last_;

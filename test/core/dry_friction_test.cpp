@@ -17,13 +17,13 @@ constexpr double FOLLOW = 1.0 / 101.0;
 /// A step of random friction: a shaft, many flanks, viscous terms.
 struct RandomStep
 {
-  explicit RandomStep(std::mt19937& random) : friction(200)
+  explicit RandomStep(std::mt19937& random, int flanks = 12) : friction(200)
   {
     std::uniform_real_distribution<double> part(-1.0, 1.0);
     const auto size = [&] { return std::pow(10.0, 2.0 * part(random) - 1.0); };
     inertia = { 1.7e-4 * size() * 10.0, 0.5 * size() * 10.0 };
     friction.terms.push_back({ 0.2 * size(), { 1.0, 0.0 } });
-    for (int i = 0; i < 12; ++i)
+    for (int i = 0; i < flanks; ++i)
     {
       friction.terms.push_back({ 100.0 * size(), { 1e-4 * part(random), 1e-2 * part(random) } });
     }
@@ -103,6 +103,34 @@ TEST(DryFriction, IsTheMinimumFoundByBruteForce)
   }
   EXPECT_GT(stuck, 3);
   EXPECT_LT(stuck, 57);
+}
+
+TEST(DryFriction, SlidesAsItIsSolved)
+{
+  constexpr unsigned SEED = 64;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  int slid = 0;
+  for (int k = 0; k < 20000; ++k)
+  {
+    const RandomStep step(random, 1 + k % 7);
+    const DryFriction dry(step.inertia, WIDTH);
+    Eigen::Vector2d v(1e9, 1e9);
+    if (!dry.slide(step.friction, FOLLOW, step.old, step.free, STEP, v))
+    {
+      EXPECT_EQ(v, Eigen::Vector2d(1e9, 1e9)) << k;
+      continue;
+    }
+    ++slid;
+    const Eigen::Vector2d solved = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    // The tails of the regularisation: 1e-9 of the friction; and what `solve` leaves, 1e-12 of the speeds.
+    const Eigen::Vector2d friction =
+        (step.inertia.cwiseProduct(solved - step.free)).cwiseAbs() + Eigen::Vector2d::Constant(1e-12);
+    const Eigen::Vector2d error = step.inertia.cwiseProduct(v - solved).cwiseAbs();
+    EXPECT_LE(error[0], 1e-8 * friction[0] + 1e-10 * step.inertia[0] * std::abs(solved[0])) << k;
+    EXPECT_LE(error[1], 1e-8 * friction[1] + 1e-10 * step.inertia[1] * std::abs(solved[1])) << k;
+  }
+  EXPECT_GT(slid, 2000);
 }
 
 TEST(DryFriction, LeavesNoForceUnbalanced)

@@ -73,6 +73,51 @@ TEST(ClosestPointOfEllipse, AgreesWithBruteForceOnTheWaveGenerator)
   }
 }
 
+TEST(ClosestPointNearEllipse, IsTheClosestPoint)
+{
+  constexpr unsigned SEED = 33;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  std::uniform_real_distribution<double> angle(-PI, PI);
+  std::uniform_real_distribution<double> exponent(-9.0, std::log10(0.039));
+  const GearParameters gear = shippedParameters().gear;
+  const double a = gear.flexspline_inner_radius + gear.wave_amplitude;
+  const double b = gear.flexspline_inner_radius - gear.wave_amplitude;
+  for (int k = 0; k < 4000; ++k)
+  {
+    const double q = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent(random));
+    const double t = angle(random);
+    const double x = std::sqrt(1.0 + q) * a * std::cos(t);
+    const double y = std::sqrt(1.0 + q) * b * std::sin(t);
+    ASSERT_TRUE(isNear(a, b, x, y)) << q << " " << t;
+    const EllipseFoot near = closestPointNear(a, b, x, y);
+    const EllipseFoot exact = closestPoint(a, b, x, y);
+    // The start is off by the relative depth times the squared eccentricity, 0.046; a Newton step squares that, times
+    // 0.02. The length of the unit vector is off by the first term that its series leaves out.
+    const double start = 0.5 * std::abs(q) * 0.05;
+    const double angle_error = 0.02 * start * start + 1e-15;
+    const double length_error = 0.28 * std::pow(q, 4.0) + 1e-15;
+    ASSERT_NEAR(near.normal_x, exact.normal_x, angle_error) << q << " " << t;
+    ASSERT_NEAR(near.normal_y, exact.normal_y, angle_error) << q << " " << t;
+    ASSERT_NEAR(near.depth, exact.depth, a * length_error) << q << " " << t;
+    ASSERT_NEAR(near.curvature, exact.curvature, exact.curvature * (4.0 * length_error + angle_error)) << q << " " << t;
+  }
+}
+
+TEST(ClosestPointNearEllipse, EndsWhereItSays)
+{
+  for (int k = 0; k < 16; ++k)
+  {
+    const double t = TWO_PI * k / 16.0;
+    const auto near = [&](double q) {
+      return isNear(31e-3, 30e-3, std::sqrt(1.0 + q) * 31e-3 * std::cos(t), std::sqrt(1.0 + q) * 30e-3 * std::sin(t));
+    };
+    EXPECT_TRUE(near(0.0399) && near(-0.0399)) << t;
+    EXPECT_FALSE(near(0.0401) || near(-0.0401)) << t;
+  }
+  EXPECT_FALSE(isNear(31e-3, 30e-3, std::nan(""), 0.0));
+}
+
 TEST(ClosestPointOfEllipse, IsExactOnTheAxes)
 {
   for (const double side : { 1.0, -1.0 })

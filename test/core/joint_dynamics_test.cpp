@@ -35,7 +35,7 @@ double energyResidual(const Parameters& parameters, unsigned seed, bool brake)
 {
   SCOPED_TRACE("seed " + std::to_string(seed));
   const LedgerResult result = runLedger(parameters, randomDrive(seed, brake), 1.0);
-  EXPECT_TRUE(result.converged);
+  EXPECT_TRUE(result.status.ok());
   EXPECT_GT(result.travel, 5.0);
   EXPECT_GT(result.reversals, 3);
   const double residual = result.residual / result.throughput;

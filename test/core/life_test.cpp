@@ -338,7 +338,7 @@ TEST(UseRecord, IsTheSameAfterItsFile)
   EXPECT_THROW(UseRecord(shippedLife(), path), InputError);
 }
 
-TEST(DutyCycle, RefusesAFileWithoutMotion)
+TEST(DutyCycle, RefusesNumbersThatNoDriveHas)
 {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "duty.csv").string();
@@ -348,6 +348,13 @@ TEST(DutyCycle, RefusesAFileWithoutMotion)
   EXPECT_THROW(DutyCycle::fromFile(path), InputError);
   write("0,10,5,20\n");
   EXPECT_THROW(DutyCycle::fromFile(path), InputError);
+  for (const char* row :
+       { "1e308,10,5,20\n", "10,1e308,5,20\n", "10,-1e308,5,20\n", "10,10,1e308,20\n", "10,10,5,1e308\n" })
+  {
+    write(row);
+    EXPECT_THROW(DutyCycle::fromFile(path), InputError) << row;
+    EXPECT_THROW(UseRecord(shippedLife(), path), InputError) << row;
+  }
   write("10,-62.83185307179586,5,20\n10,0,0,20\n");
   EXPECT_NEAR(DutyCycle::fromFile(path).turnsPerHour(), 5.0 * 3600.0, 1e-6);
 }

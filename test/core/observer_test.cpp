@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -14,6 +15,7 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "statics/torsion_curve.hpp"
 #include "tracking/observer.hpp"
 
 namespace hjt
@@ -244,6 +246,30 @@ TEST(Observer, DoesNotWindUpWhileFrictionHoldsTheMotor)
   }
 }
 
+/// While friction holds the motor it stands still, to rounding, and its noise goes into nothing else.
+TEST(Observer, KnowsThatAMotorThatSticksStandsStill)
+{
+  const Parameters joint = shippedParameters(JOINT);
+  // The innovation's band is that of the encoders and of a joint that stands: bounds 5 % above it [rad].
+  for (const auto& [rows, bound] :
+       std::vector<std::pair<Rows, double>>{ { Rows{}, 1.07e-4 }, { Rows{ 0.008, Encoders::OUTPUT }, 1.34e-4 } })
+  {
+    int stuck = 0;
+    double widest = 0.0;
+    for (const Seen& at : observe(joint, joint, 3.0, standAndTurn, rows))
+    {
+      if (at.time > 1.0 && at.sticking)
+      {
+        ++stuck;
+        widest = std::max(widest, at.innovation_band);
+        ASSERT_LT(std::abs(at.motor_velocity), 1e-12) << at.time << " s";
+      }
+    }
+    EXPECT_GT(stuck, 200);
+    EXPECT_LT(widest, bound);
+  }
+}
+
 TEST(Observer, IsNotHeldByFrictionThatTheRobotDoesNotHave)
 {
   // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes later.
@@ -267,6 +293,26 @@ TEST(Observer, BeginsAnewAfterAGap)
   EXPECT_NEAR(anew.output_angle, -1.2, 1e-9);
   EXPECT_NEAR(anew.motor_angle, -1.2 * nominalRatio(joint.gear), 0.1);
   EXPECT_EQ(anew.residual_torque, 0.0);
+}
+
+TEST(TorsionCurve, HasTheStiffnessOfTheCatalogueInEverySize)
+{
+  struct Size
+  {
+    std::vector<std::string> overlays;
+    double first_slope;  // of the catalogue, up to the first breakpoint [N.m/rad]
+  };
+  for (const Size& size : { Size{ {}, 31.0e3 }, Size{ { "size_14" }, 4.7e3 } })
+  {
+    const Parameters parameters = shippedParameters({}, size.overlays);
+    const TorsionCurve curve(parameters);
+    const double torque = parameters.cup.torsion_breakpoints[0];
+    EXPECT_NEAR(torque / curve.torsion(torque), size.first_slope, 0.03 * size.first_slope);
+    for (const double share : { -1.3, -0.4, 0.01, 0.4, 1.0, 2.0, 30.0 })
+    {
+      EXPECT_NEAR(curve.torque(curve.torsion(share * torque)), share * torque, 1e-9 * torque);
+    }
+  }
 }
 }  // namespace
 }  // namespace hjt

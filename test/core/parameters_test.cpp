@@ -10,8 +10,8 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "test/support/temporary_folder.hpp"
 #include "params/field_table.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace hjt
 {
@@ -22,16 +22,14 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path CONFIG(HJT_TEST_CONFIG_DIR);
-const std::vector<std::string> STAGES{ "gear",    "manufacture", "elements", "joint",  "solver",
-                                       "sensors", "health",      "life",     "faults", "node" };
-
-ParameterMap defaultMap()
+const ParameterMap& defaultMap()
 {
-  ParameterMap map;
-  for (const std::string& stage : STAGES)
+  static const ParameterMap map = []
   {
-    readYamlFile(CONFIG / (stage + ".yaml"), map);
-  }
+    ParameterMap read;
+    readDefaultConfiguration(CONFIG, read);
+    return read;
+  }();
   return map;
 }
 
@@ -121,9 +119,10 @@ TEST(ShippedConfiguration, EveryOverlayIsValidOverTheDefaults)
 TEST(ShippedConfiguration, TellsUnitAndRangeOfEveryKeyAboveIt)
 {
   std::string text;
-  for (const std::string& stage : STAGES)
+  std::ifstream stages(CONFIG / "stages");
+  for (std::string stage; std::getline(stages, stage);)
   {
-    std::ifstream file(CONFIG / (stage + ".yaml"));
+    std::ifstream file(CONFIG / stage);
     std::string section;
     std::string comment;
     for (std::string line; std::getline(file, line);)
@@ -147,7 +146,7 @@ TEST(ShippedConfiguration, TellsUnitAndRangeOfEveryKeyAboveIt)
   visitFields(parameters,
               [&](const std::string& key, const auto&... rest)
               {
-                const auto expected = [&](const char* unit, const auto&, const Range& range, const char*)
+                const auto expected = [&](const char* unit, const auto&, const Range& range, const Meaning&)
                 { return "[" + std::string(unit) + "]; " + rangeText(range); };
                 if constexpr (sizeof...(rest) == 4)
                 {
@@ -186,57 +185,73 @@ TEST(Parameters, EveryKeyIsRequired)
   }
 }
 
+/// What is said about the defaults with this number for a key whose field is `field`.
+template <class Field>
+std::string complaintOf(const std::string& key, const Field& field, double number)
+{
+  ParameterMap map = defaultMap();
+  if constexpr (std::is_same_v<Field, int>)
+  {
+    map[key] = { static_cast<std::int64_t>(number), "here" };
+  }
+  else if constexpr (std::is_same_v<Field, double>)
+  {
+    map[key] = { number, "here" };
+  }
+  else
+  {
+    map[key] = { std::vector<double>(field.size(), number), "here" };
+  }
+  try
+  {
+    parseParameters(map);
+  }
+  catch (const ParameterError& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(Parameters, EveryRangeIsHeldAtBothEnds)
 {
   const Parameters parameters;
-  visitFields(
-      parameters,
-      [&](const std::string& key, const auto&... rest)
-      {
-        if constexpr (sizeof...(rest) == 4)
-        {
-          const auto check = [&](const char* unit, const auto& value, const Range& range, const char*)
-          {
-            std::vector<double> outside{ range.min - std::max(1.0, std::abs(range.min)), HUGE_VAL, std::nan("") };
-            if (range.max < 1e300)
-            {
-              outside.push_back(range.max + std::max(1.0, std::abs(range.max)));
-            }
-            for (const double number : outside)
-            {
-              ParameterMap map = defaultMap();
-              if constexpr (std::is_same_v<std::decay_t<decltype(value)>, int>)
+  visitFields(parameters,
+              [&](const std::string& key, const auto&... rest)
               {
-                if (!std::isfinite(number))
+                if constexpr (sizeof...(rest) == 4)
                 {
-                  continue;
+                  const auto check = [&](const char* unit, const auto& value, const Range& range, const Meaning&)
+                  {
+                    const bool whole = std::is_same_v<std::decay_t<decltype(value)>, int>;
+                    const auto beyond = [whole](double end, double side)
+                    { return whole ? end + std::copysign(1.0, side) : std::nextafter(end, side); };
+                    std::vector<double> outside{ beyond(range.min, -HUGE_VAL), HUGE_VAL, std::nan("") };
+                    std::vector<double> ends{ range.min };
+                    if (range.max < 1e300)
+                    {
+                      outside.push_back(beyond(range.max, HUGE_VAL));
+                      ends.push_back(range.max);
+                    }
+                    for (const double number : outside)
+                    {
+                      if (!whole || std::isfinite(number))
+                      {
+                        EXPECT_THAT(complaintOf(key, value, number),
+                                    AllOf(HasSubstr("here: " + key + " = "), HasSubstr("[" + std::string(unit) + "]"),
+                                          HasSubstr(rangeText(range))))
+                            << number;
+                      }
+                    }
+                    for (const double number : ends)
+                    {
+                      EXPECT_THAT(complaintOf(key, value, number), Not(HasSubstr("out of range")))
+                          << key << ' ' << number;
+                    }
+                  };
+                  check(rest...);
                 }
-                map[key].value = static_cast<std::int64_t>(number);
-              }
-              else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-              {
-                map[key].value = number;
-              }
-              else
-              {
-                map[key].value = std::vector<double>(value.size(), number);
-              }
-              map[key].origin = "here";
-              try
-              {
-                parseParameters(map);
-                ADD_FAILURE() << key << " accepted " << number;
-              }
-              catch (const ParameterError& error)
-              {
-                EXPECT_THAT(error.what(), AllOf(HasSubstr("here: " + key + " = "),
-                                                HasSubstr("[" + std::string(unit) + "]"), HasSubstr(rangeText(range))));
-              }
-            }
-          };
-          check(rest...);
-        }
-      });
+              });
 }
 
 TEST(Parameters, OutOfRangeNamesPlaceKeyValueUnitAndRange)
@@ -263,18 +278,6 @@ TEST(Parameters, MisspeltKeyIsRefusedWithTheNearestOne)
   EXPECT_THAT(complaint({ "motor.bananas=1" }), AllOf(HasSubstr("unknown"), Not(HasSubstr("did you mean"))));
 }
 
-TEST(Parameters, NumbersMustBeSpeltAsRosparamUnderstandsThem)
-{
-  for (const std::string text : { "1e-3", "1e3", "1e+3", "1.0e4", "-.5e+0" })
-  {
-    EXPECT_THAT(complaint({ "output.load_inertia=" + text }),
-                AllOf(HasSubstr("output.load_inertia = '" + text + "'"), HasSubstr("[kg.m^2]"), HasSubstr("write ")));
-  }
-  EXPECT_THAT(complaint({ "output.load_inertia=1e-5" }), HasSubstr("write 1.0e-5 "));
-  EXPECT_THAT(complaint({ "cup.torsion_breakpoints=[14, 1e2]" }), HasSubstr("write 100.0"));
-  EXPECT_THAT(complaint({ "output.load_inertia='1.0'" }), HasSubstr("no quotes"));
-}
-
 TEST(Parameters, TreacherousSpellingsAreRefused)
 {
   for (const std::string text : { "010", "0x10", "0b1", "1_000", "1:30" })
@@ -285,13 +288,35 @@ TEST(Parameters, TreacherousSpellingsAreRefused)
 
 TEST(Parameters, AcceptedSpellingsGiveTheirNumber)
 {
-  for (const auto& [text, number] : std::vector<std::pair<std::string, double>>{
-           { "5", 5.0 }, { "5.", 5.0 }, { ".5", 0.5 }, { "1.0e-3", 1e-3 }, { "1.5E+2", 150.0 }, { "deg(180)", M_PI } })
+  for (const auto& [text, number] : std::vector<std::pair<std::string, double>>{ { "5", 5.0 },
+                                                                                 { "5.", 5.0 },
+                                                                                 { ".5", 0.5 },
+                                                                                 { "1.0e-3", 1e-3 },
+                                                                                 { "1.5E+2", 150.0 },
+                                                                                 { "1e-06", 1e-6 },
+                                                                                 { "1e3", 1e3 },
+                                                                                 { "1e+3", 1e3 },
+                                                                                 { "1.0e4", 1e4 },
+                                                                                 { "+.5e0", 0.5 },
+                                                                                 { "'1e-3'", 1e-3 },
+                                                                                 { "deg(180)", M_PI },
+                                                                                 { "deg(9e1)", M_PI_2 } })
   {
     ParameterMap map = defaultMap();
     readAssignment("output.load_inertia=" + text, map);
     EXPECT_DOUBLE_EQ(parseParameters(map).output.load_inertia, number) << text;
+    const YamlFile file("output:\n  load_inertia: " + text + "\ncup:\n  torsion_breakpoints: [" + text + ", 1e5]\n");
+    readYamlFile(file.path(), map);
+    EXPECT_DOUBLE_EQ(parseParameters(map).output.load_inertia, number) << text;
+    EXPECT_DOUBLE_EQ(parseParameters(map).cup.torsion_breakpoints[0], number) << text;
+    EXPECT_EQ(parseParameters(map).cup.torsion_breakpoints[1], 1e5) << text;
   }
+  for (const std::string text : { "1e", "e5", ".", "1e-", "1e5 m", "1,5", "nan", "inf", "- 1", "--1" })
+  {
+    EXPECT_THAT(complaint({ "output.load_inertia=" + text }), HasSubstr("must be a number [kg.m^2]")) << text;
+  }
+  EXPECT_THAT(complaint({ "output.load_inertia=1e400" }), HasSubstr("not a finite number"));
+  EXPECT_THAT(complaint({ "gear.teeth_flexspline=2e2" }), HasSubstr("must be a whole number"));
 }
 
 TEST(Parameters, WrongTypesAreRefused)
@@ -309,21 +334,106 @@ TEST(Parameters, WrongTypesAreRefused)
   EXPECT_THAT(complaint({ "motor.torque_limit=[1.0]" }), HasSubstr("motor.torque_limit = [1.0] must be a number"));
 }
 
-TEST(Parameters, ContradictionsAreRefused)
+/// One check of cross_checks.cpp: what breaks it and nothing else, what is said, and what just keeps to it.
+struct Contradiction
 {
-  EXPECT_THAT(complaint({ "gear.teeth_circular_spline=204" }), HasSubstr("must be two more than"));
-  EXPECT_THAT(complaint({ "gear.teeth_flexspline=201", "gear.teeth_circular_spline=203" }), HasSubstr("must be even"));
-  EXPECT_THAT(complaint({ "cup.torsion_breakpoints=[48.0, 14.0]" }), HasSubstr("must ascend"));
-  EXPECT_THAT(complaint({ "gear.wave_amplitude=5.0e-3", "gear.flexspline_inner_radius=4.0e-3" }),
-              HasSubstr("must be less than"));
-  EXPECT_THAT(complaint({ "mesh.friction_kinetic=0.2" }), HasSubstr("must not exceed"));
-  EXPECT_THAT(complaint({ "solver.rate=3000" }), HasSubstr("whole nanoseconds"));
-  for (const std::string topic : { "joint_states", "encoders", "contact_forces", "health" })
+  std::vector<std::string> broken;
+  std::string text;
+  std::vector<std::string> kept;
+};
+
+const std::vector<Contradiction>& contradictionTable()
+{
+  static const std::vector<Contradiction> table{
+    { { "gear.teeth_flexspline=201", "gear.teeth_circular_spline=203" },
+      "gear.teeth_flexspline = 201 [-] must be even",
+      { "gear.teeth_flexspline=202", "gear.teeth_circular_spline=204" } },
+    { { "gear.teeth_circular_spline=204" }, "gear.teeth_circular_spline = 204 [-] must be two more than", {} },
+    { { "gear.teeth_circular_spline=201" }, "gear.teeth_circular_spline = 201 [-] must be two more than", {} },
+    { { "gear.wave_amplitude=4.0e-3", "gear.flexspline_inner_radius=4.0e-3", "gear.tip_radius_circular_spline=8.0e-3" },
+      "gear.wave_amplitude = 0.004 [m] must be less than",
+      { "gear.wave_amplitude=3.9e-3", "gear.flexspline_inner_radius=4.0e-3",
+        "gear.tip_radius_circular_spline=8.0e-3" } },
+    { { "manufacture.flexspline_pitch_table=pitch.csv" },
+      "manufacture.flexspline_pitch_table = 'pitch.csv' must be an absolute path",
+      { "manufacture.flexspline_pitch_table=/pitch.csv" } },
+    { { "manufacture.flexspline_pitch_table=/pitch.csv", "manufacture.flexspline_pitch_deviation=1e-9" },
+      "manufacture.flexspline_pitch_deviation = 1.0e-9 [m] must be 0",
+      { "manufacture.flexspline_pitch_deviation=1e-9" } },
+    { { "manufacture.circular_spline_pitch_table=pitch.csv" },
+      "manufacture.circular_spline_pitch_table = 'pitch.csv' must be an absolute path",
+      { "manufacture.circular_spline_pitch_table=/pitch.csv" } },
+    { { "manufacture.circular_spline_pitch_table=/pitch.csv", "manufacture.circular_spline_pitch_deviation=1e-9" },
+      "manufacture.circular_spline_pitch_deviation = 1.0e-9 [m] must be 0",
+      { "manufacture.circular_spline_pitch_deviation=1e-9" } },
+    { { "cup.torsion_breakpoints=[14.0, 14.0]" },
+      "cup.torsion_breakpoints = [14.0, 14.0] [N.m] must ascend",
+      { "cup.torsion_breakpoints=[14.0, 14.001]" } },
+    { { "mesh.profile=involute", "gear.tip_radius_circular_spline=0.5" },
+      "mesh.profile needs teeth that reach into the circular spline",
+      { "mesh.profile=trapezoid", "gear.tip_radius_circular_spline=0.5" } },
+    { { "mesh.friction_static=0.1", "mesh.friction_kinetic=0.1001" },
+      "mesh.friction_kinetic = 0.1001 [-] must not exceed",
+      { "mesh.friction_static=0.1", "mesh.friction_kinetic=0.1" } },
+    { { "bearing.ball_diameter=0.05", "bearing.pitch_diameter=0.05" },
+      "bearing.ball_diameter = 0.05 [m] must be less than",
+      { "bearing.ball_diameter=0.0499", "bearing.pitch_diameter=0.05" } },
+    { { "life.use_record=use.yaml" },
+      "life.use_record = 'use.yaml' must be an absolute path",
+      { "life.use_record=/use.yaml" } },
+    { { "life.bearing_l10=7000", "life.bearing_l50=7000" },
+      "life.bearing_l10 = 7000.0 [h] must be less than",
+      { "life.bearing_l10=7000", "life.bearing_l50=7001" } },
+    { { "life.flank_wear_limit=2e-5", "fault_scale.tooth_wear_depth=1.9e-5" },
+      "life.flank_wear_limit = 2.0e-5 [m] must not exceed fault_scale.tooth_wear_depth",
+      { "life.flank_wear_limit=2e-5", "fault_scale.tooth_wear_depth=2e-5" } },
+    { { "life.interface_wear_limit=2e-5", "fault_scale.interface_wear_depth=1.9e-5" },
+      "life.interface_wear_limit = 2.0e-5 [m] must not exceed fault_scale.interface_wear_depth",
+      { "life.interface_wear_limit=2e-5", "fault_scale.interface_wear_depth=2e-5" } },
+    { { "solver.rate=30000", "publish.joint_states_rate=100", "publish.encoders_rate=100",
+        "publish.contact_forces_rate=100", "publish.health_rate=100", "publish.indicators_rate=1" },
+      "solver.rate = 30000.0 [Hz] must make a step of whole nanoseconds",
+      { "solver.rate=20000" } },
+    { { "publish.joint_states_rate=300" }, "publish.joint_states_rate = 300.0 [Hz] must divide", {} },
+    { { "publish.joint_states_rate=20000" }, "publish.joint_states_rate = 20000.0 [Hz] must divide", {} },
+    { { "publish.encoders_rate=300" }, "publish.encoders_rate = 300.0 [Hz] must divide", {} },
+    { { "publish.contact_forces_rate=300" }, "publish.contact_forces_rate = 300.0 [Hz] must divide", {} },
+    { { "publish.health_rate=300" }, "publish.health_rate = 300.0 [Hz] must divide", { "publish.health_rate=0.1" } },
+    { { "publish.indicators_rate=300" }, "publish.indicators_rate = 300.0 [Hz] must divide", {} },
+  };
+  return table;
+}
+
+TEST(Contradictions, EachCheckRefusesWhatBreaksItAndNothingElse)
+{
+  for (const Contradiction& row : contradictionTable())
   {
-    EXPECT_THAT(complaint({ "publish." + topic + "_rate=300" }), HasSubstr("must divide solver.rate"));
-    EXPECT_THAT(complaint({ "publish." + topic + "_rate=20000" }), HasSubstr("must divide solver.rate"));
+    const std::string said = complaint(row.broken);
+    EXPECT_THAT(said, HasSubstr(row.text));
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    EXPECT_EQ(complaint(row.kept), "") << row.text;
   }
-  EXPECT_EQ(complaint({ "publish.health_rate=0.1" }), "");
+}
+
+/// Faults are a list, which no assignment gives.
+TEST(Contradictions, FaultsMustBeValidAndNotTooMany)
+{
+  const auto listOf = [](std::size_t count, const std::string& fault)
+  {
+    std::string text = "faults:\n";
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      text += "  - " + fault + "\n";
+    }
+    return YamlFile(text).complaint();
+  };
+  const std::string wear = "{kind: tooth_wear, severity: 0.1, place: -1, onset: 0.0}";
+  EXPECT_EQ(listOf(MOST_FAULTS, wear), "");
+  const std::string many = listOf(MOST_FAULTS + 1, wear);
+  EXPECT_THAT(many, HasSubstr("more than " + std::to_string(MOST_FAULTS) + " faults"));
+  EXPECT_EQ(many.find('\n'), std::string::npos) << many;
+  EXPECT_EQ(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 199, onset: 0.0}"), "");
+  EXPECT_THAT(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 200, onset: 0.0}"), HasSubstr("place = 200"));
 }
 
 TEST(Parameters, AllThatIsWrongIsSaidAtOnce)

@@ -5,27 +5,42 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/source_hash.hpp"
+#include "base/text_hash.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
+#include "params/field_table.hpp"
 #include "solver/joint_dynamics.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
+#include "surface/surface_builder.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "test/support/temporary_folder.hpp"
@@ -107,6 +122,43 @@ TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
   const double by_motor =
       (housing(at(motor + 10.0 * STEP, output)) - housing(at(motor - 10.0 * STEP, output))) / (20.0 * STEP);
   EXPECT_NEAR(stiffness[0], by_motor, 1e-3 * std::abs(by_motor));
+}
+
+/// Why there is no table for the shipped gear with these parameters; empty: there is one.
+std::string obstacleOf(const std::vector<std::string>& assignments)
+{
+  std::vector<std::string> all{ "solver.scene=auto" };
+  all.insert(all.end(), assignments.begin(), assignments.end());
+  const Parameters parameters = shippedParameters(all);
+  return buildSurface(parameters, JointModel(parameters), {}).obstacle;
+}
+
+TEST(ResponseSurface, IsNotBuiltBeyondABoundedNumberOfPoints)
+{
+  EXPECT_THAT(obstacleOf({ "gear.wave_amplitude=2.0e-3" }), testing::HasSubstr("more than 500000 points"));
+}
+
+TEST(ResponseSurface, NeedsOneTorqueLimit)
+{
+  EXPECT_EQ(obstacleOf({ "motor.torque_limit=0.0" }), "");
+  EXPECT_THAT(obstacleOf({ "motor.torque_limit=0.0", "output.load_torque_limit=0.0" }),
+              testing::HasSubstr("are both 0"));
+}
+
+TEST(ResponseSurface, MotorStiffnessIsTheTorquesDerivative)
+{
+  constexpr double STEP = 1e-7;
+  for (const double motor : { 0.3, 1.7, -2.2 })
+  {
+    for (const double v : { -3.1e-3, 1.7e-3, 4.3e-3 })
+    {
+      const double output = motor / 101.0 + v;
+      const double by_motor =
+          (at(motor + STEP, output).wave_generator_torque - at(motor - STEP, output).wave_generator_torque) /
+          (2.0 * STEP);
+      EXPECT_NEAR(at(motor, output).motor_stiffness, -by_motor, 1e-3 * std::abs(by_motor)) << motor << " " << v;
+    }
+  }
 }
 
 TEST(ResponseSurface, IsTheSameAgainAfterEveryPitch)
@@ -298,11 +350,9 @@ constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
 JointModel brokenModel()
 {
   const Parameters parameters = surfaceParameters();
-  JointModel model(parameters);
   FaultList faults;
   faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
-  JointFaults(parameters, model).apply(faults);
-  return model;
+  return JointFaults(parameters, faults).model();
 }
 
 /// What a broken tooth changes, at the same angles: to a hundredth of its largest effect, root mean square.
@@ -573,6 +623,134 @@ TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
   {
     EXPECT_EQ(surfaceCacheFile(shippedParameters({ other }), "x"), surfaceCacheFile(shippedParameters(), "x"));
   }
+}
+
+/// Thrown when a surface begins to be built.
+struct Building : std::exception
+{
+};
+
+/// Whether the surface of the shipped gear is taken from this file in place of its own.
+bool isTaken(const std::function<void(const std::string&)>& makeFile)
+{
+  const std::string folder = cacheDirectory() + "/other";
+  fs::create_directories(folder);
+  makeFile(surfaceCacheFile(surfaceParameters(), folder));
+  const auto refuse = [](double) { throw Building(); };
+  bool taken = true;
+  try
+  {
+    obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", { folder, refuse, {} });
+  }
+  catch (const Building&)
+  {
+    taken = false;
+  }
+  fs::remove_all(folder);
+  return taken;
+}
+
+TEST(SurfaceCache, TakesOnlyRegularFilesThatNobodyElseWrites)
+{
+  surface();
+  const std::string good = surfaceCacheFile(surfaceParameters(), cacheDirectory());
+  EXPECT_EQ(fs::status(good).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_TRUE(isTaken([&](const std::string& path) { fs::copy_file(good, path); }));
+  EXPECT_FALSE(isTaken([](const std::string& path) { ASSERT_EQ(mkfifo(path.c_str(), 0600), 0); }));
+  EXPECT_FALSE(isTaken([](const std::string& path) { fs::create_symlink("/dev/zero", path); }));
+  EXPECT_FALSE(isTaken([&](const std::string& path) { fs::create_symlink(good, path); }));
+  EXPECT_FALSE(isTaken([](const std::string& path) { fs::create_directory(path); }));
+  EXPECT_FALSE(isTaken(
+      [&](const std::string& path)
+      {
+        fs::copy_file(good, path);
+        fs::permissions(path, fs::perms::others_write, fs::perm_options::add);
+      }));
+  EXPECT_FALSE(isTaken(
+      [&](const std::string& path)
+      {
+        fs::copy_file(good, path);
+        fs::resize_file(path, (std::uintmax_t{ 1 } << 30) + 1);  // a hole: takes no room
+      }));
+}
+
+/// Numbers that are no table's are refused also where the hash of the file fits them.
+TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
+{
+  surface();
+  std::ifstream file(surfaceCacheFile(surfaceParameters(), cacheDirectory()), std::ios::binary);
+  const std::string good((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto bytesOf = [](double number)
+  { return std::string(reinterpret_cast<const char*>(&number), sizeof(number)); };
+  const std::size_t body = good.find(bytesOf(TWO_PI / 200) + bytesOf(101.0));  // pitch, ratio, columns, lines, values
+  ASSERT_NE(body, std::string::npos);
+  const auto isTakenWith = [&](std::size_t place, double number)
+  {
+    std::string bytes = good.substr(0, good.size() - sizeof(std::uint64_t));
+    bytes.replace(body + place * sizeof(number), sizeof(number), bytesOf(number));
+    const std::uint64_t sum = textHash(bytes);
+    bytes.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
+    return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << bytes; });
+  };
+  constexpr std::size_t FIRST_LINE = 4;
+  double first_line = 0.0;
+  std::memcpy(&first_line, good.data() + body + FIRST_LINE * sizeof(double), sizeof(double));
+  EXPECT_TRUE(isTakenWith(FIRST_LINE, first_line));
+  for (const auto& [place, number] : std::vector<std::pair<std::size_t, double>>{ { 0, -TWO_PI / 200 },
+                                                                                  { 1, 0.0 },
+                                                                                  { 2, 1e18 },
+                                                                                  { 3, 2.0 },
+                                                                                  { FIRST_LINE, 1.0 },
+                                                                                  { FIRST_LINE + 1, first_line },
+                                                                                  { FIRST_LINE + 1, std::nan("") },
+                                                                                  { 20000, HUGE_VAL } })
+  {
+    EXPECT_FALSE(isTakenWith(place, number)) << place << ": " << number;
+  }
+}
+
+/// A parameter is in the key unless the table of fields says that it shapes no surface.
+TEST(SurfaceCache, TheKeyHasEveryParameterThatShapesTheSurface)
+{
+  const Parameters parameters = shippedParameters();
+  const std::string sound = describeSurfaceParameters(parameters, false);
+  const std::string faulty = describeSurfaceParameters(parameters, true);
+  visitFields(parameters,
+              [&](const std::string& key, const auto&... rest)
+              {
+                const Meaning meaning = std::get<sizeof...(rest) - 1>(std::forward_as_tuple(rest...));
+                EXPECT_EQ(sound.find(key + ": ") != std::string::npos, meaning.shapes == Shapes::SURFACE) << key;
+                EXPECT_EQ(faulty.find(key + ": ") != std::string::npos, meaning.shapes != Shapes::OTHERS) << key;
+              });
+  EXPECT_NE(sound.find("mesh.stiffness: "), std::string::npos);
+  EXPECT_EQ(sound.find("joint.name: "), std::string::npos);
+  EXPECT_EQ(sound.find("fault_scale."), std::string::npos);
+  EXPECT_EQ(std::string(surfaceSourceHash()).size(), 16U);
+}
+
+TEST(SurfacePool, TriesAgainWhereTheMakerFailed)
+{
+  SurfacePool pool(2);
+  std::atomic<bool> failing{ false };
+  const auto fail = [&]() -> SurfacePool::Surface
+  {
+    failing = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    throw std::runtime_error("given up");
+  };
+  const auto make = [] {
+    return std::make_shared<const ResponseSurface>(SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, { {}, {}, {}, {} } });
+  };
+  EXPECT_THROW(pool.obtain("a", fail), std::runtime_error);
+  EXPECT_TRUE(pool.obtain("a", make));
+  failing = false;
+  std::thread other([&] { EXPECT_THROW(pool.obtain("b", fail), std::runtime_error); });
+  while (!failing)
+  {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(pool.obtain("b", make));  // waits for the other's, then makes its own
+  other.join();
 }
 
 TEST(SurfacePool, MakesEachSurfaceOnceForAllThreads)

@@ -471,5 +471,31 @@ TEST(TwinsIndicators, FollowPhysicalEdits)
   const SignalIndicators worn_teeth = twinIndicators({ "mesh.flank_clearance=5.0e-6" });
   EXPECT_GT(worn_teeth[ScalarIndicator::LOST_MOTION], healthy[ScalarIndicator::LOST_MOTION]);
 }
+
+TEST(OperatingBin, StepsWithTheGearsTorqueAndTakesAnyNumber)
+{
+  const Parameters parameters = shippedParameters();
+  const Parameters wrist = shippedParameters({}, { "size_14" });
+  OperatingPoint point;
+  point.speed = 100.0;
+  const auto bin_at = [&](const Parameters& gear, double share)
+  {
+    point.load = share * gear.life.rated_torque;
+    return binOf(point, loadStep(gear)).load;
+  };
+  for (const double share : { -1.3, 0.1, 0.5, 2.0 })
+  {
+    EXPECT_EQ(bin_at(parameters, share), bin_at(wrist, share)) << share;
+  }
+  EXPECT_LT(loadStep(wrist), 0.2 * loadStep(parameters));
+  for (const double huge : { 6.7e305, -6.7e305, HUGE_VAL, std::nan("") })
+  {
+    point.load = point.temperature = point.speed = huge;
+    const OperatingBin bin = binOf(point, loadStep(parameters));
+    EXPECT_LE(std::abs(bin.load), 1'000'000) << huge;
+    EXPECT_LE(std::abs(bin.temperature), 1'000'000) << huge;
+    EXPECT_LE(std::abs(bin.speed), 1100) << huge;
+  }
+}
 }  // namespace
 }  // namespace hjt

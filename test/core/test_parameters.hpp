@@ -13,12 +13,10 @@ inline Parameters shippedParameters(const std::vector<std::string>& assignments 
                                     const std::vector<std::string>& overlays = {})
 {
   ParameterMap map;
-  std::vector<std::string> files{ "gear",    "manufacture", "elements", "joint",  "solver",
-                                  "sensors", "health",      "life",     "faults", "node" };
-  files.insert(files.end(), overlays.begin(), overlays.end());
-  for (const std::string& file : files)
+  readDefaultConfiguration(HJT_TEST_CONFIG_DIR, map);
+  for (const std::string& overlay : overlays)
   {
-    readYamlFile(HJT_TEST_CONFIG_DIR "/" + file + ".yaml", map);
+    readYamlFile(HJT_TEST_CONFIG_DIR "/" + overlay + ".yaml", map);
   }
   for (const std::string& assignment : assignments)
   {

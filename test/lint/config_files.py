@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""config/: numbers are spelt so that rosparam takes them for numbers, and each key says its unit in the comment above.
+"""config/: numbers are spelt so that rosparam takes them for numbers, each key says its unit in the comment above, and
+the launch file loads the stages of the default configuration.
 
-To YAML 1.1, which rosparam reads, 1.0e-3 is a number and 1e-3, 1e3 and 1.0e4 are texts: a node would not find the
-number it looks for.
+To YAML 1.1, which rosparam reads, 1.0e-3 is a number and 1e-3, 1e3 and 1.0e4 are texts. A node
+reads those as well, but `rosparam get` would show them in quotes.
 """
+import os
 import re
 
 import yaml
@@ -11,6 +13,7 @@ import yaml
 import project
 
 UNIT = re.compile(r"\[[^\]]+\]")
+LAUNCHED = re.compile(r'file="\$\(arg config\)/(\w+\.yaml)"')
 
 
 def is_number(text):
@@ -43,6 +46,16 @@ def comment_above(all_lines, line):
     return " ".join(comment)
 
 
+def check_stages(root):
+    """The launch file's list beside that of every other reader."""
+    if not os.path.exists(os.path.join(root, "config/stages")):
+        return []
+    stages = [line for line in project.text(root, "config/stages").splitlines() if not line.startswith("#")]
+    loaded = LAUNCHED.findall(project.text(root, "launch/twin.launch"))
+    return [] if loaded == stages else [f"launch/twin.launch: loads {', '.join(loaded)}; "
+                                        f"config/stages lists {', '.join(stages)}"]
+
+
 def check(root):
     problems = []
     paths = project.files(root, "config", [".yaml"])
@@ -61,6 +74,7 @@ def check(root):
                                     "which wants a dot and a signed exponent: 1.0e-3")
             if not UNIT.search(comment_above(content.splitlines(), line)):
                 problems.append(f"{path}:{line + 1}: {key}: no [unit] in the comment above it")
+    problems += check_stages(root)
     return problems if paths else ["config: no YAML files found"]
 
 

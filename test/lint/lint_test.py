@@ -142,6 +142,15 @@ class ConfigFiles(Tree):
         self.yaml("0.25", comment="# Length.")
         self.assert_fault(config_files.check, "config/a.yaml:3", "unit")
 
+    def test_launch_file_with_other_stages(self):
+        self.yaml("0.25")
+        self.write("config/stages", "# Files.\na.yaml\nb.yaml\n")
+        load = '<rosparam command="load" file="$(arg config)/{}.yaml"/>'
+        self.write("launch/twin.launch", load.format("a") + load.format("b"))
+        self.assert_clean(config_files.check)
+        self.write("launch/twin.launch", load.format("b") + load.format("a"))
+        self.assert_fault(config_files.check, "launch/twin.launch", "stages")
+
 
 class MessageComments(Tree):
     def test_units(self):

@@ -2,11 +2,13 @@
 #include "ros_io/conversions.hpp"
 
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include <gtest/gtest.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/output_schedule.hpp"
+#include "ros_io/channels.hpp"
 #include "ros_io/time.hpp"
 #include "test/core/test_parameters.hpp"
 
@@ -34,70 +36,136 @@ TEST(Time, GoesThereAndBackToTheNanosecond)
   EXPECT_DOUBLE_EQ(toSeconds(250'000'000), 0.25);
 }
 
-TEST(JointStates, CarryEncoderAnglesAndTorquesUnderBothNames)
+TEST(Time, OfAnyMessageCanBeHadAndComesBackInRange)
 {
-  JointOutputs outputs;
-  outputs.stamp = 5'000'000'001;
-  outputs.motor_angle = 100.0;
-  outputs.motor_torque = 0.5;
-  outputs.joint_torque = 40.0;
-  EncoderReadings readings;
-  readings.motor_angle = 99.0;
-  readings.motor_velocity = 3.0;
-  readings.output_angle = 0.98;
-  readings.output_velocity = 0.03;
-  auto message = makeJointStates(NAMES);
-  fillJointStates(outputs, readings, message);
+  ros::Time wire;
+  wire.sec = wire.nsec = 4'294'967'295;  // more than a second of nanoseconds: it may come like that
+  EXPECT_EQ(fromRosTime(wire), LAST_ROS_STAMP);
+  EXPECT_EQ(toRosTime(fromRosTime(wire)), ros::Time(4'294'967'295, 999'999'999));
+  EXPECT_EQ(toRosTime(std::numeric_limits<Stamp>::max()), ros::Time(4'294'967'295, 999'999'999));
+  EXPECT_EQ(toRosTime(-1), ros::Time(0, 0));
+  for (const double duration : { 1e10, 1e300, std::numeric_limits<double>::infinity(), std::nan("") })
+  {
+    EXPECT_EQ(toStampLength(duration), LONGEST_STAMP_LENGTH) << duration;
+  }
+  EXPECT_GT(LAST_ROS_STAMP + LONGEST_STAMP_LENGTH, LAST_ROS_STAMP);
+}
+
+class Messages : public testing::Test
+{
+protected:
+  Messages()
+  {
+    twin_.commandMotorTorque(0, 0.5);
+    while (twin_.step(100'000'000))
+    {
+    }
+  }
+
+  Parameters parameters_ = shippedParameters({ "joint.name=\"elbow\"" });
+  Twin twin_{ parameters_ };
+};
+
+TEST_F(Messages, CarryEncoderAnglesAndTorquesUnderBothNames)
+{
+  auto message = makeJointStates(parameters_);
+  EXPECT_TRUE(fillJointStates(twin_, 0, message));
+  const EncoderReadings readings = twin_.encoders();
   EXPECT_EQ(message.header.frame_id, "elbow");
-  EXPECT_EQ(message.header.stamp, ros::Time(5, 1));
+  EXPECT_EQ(message.header.stamp, ros::Time(0, 100'000'000));
   EXPECT_EQ(message.name, (std::vector<std::string>{ "elbow_motor", "elbow" }));
-  EXPECT_EQ(message.position, (std::vector<double>{ 99.0, 0.98 }));
-  EXPECT_EQ(message.velocity, (std::vector<double>{ 3.0, 0.03 }));
-  EXPECT_EQ(message.effort, (std::vector<double>{ 0.5, 40.0 }));
+  EXPECT_EQ(message.position, (std::vector<double>{ readings.motor_angle, readings.output_angle }));
+  EXPECT_EQ(message.velocity, (std::vector<double>{ readings.motor_velocity, readings.output_velocity }));
+  EXPECT_EQ(message.effort, (std::vector<double>{ twin_.outputs().motor_torque, twin_.outputs().joint_torque }));
+  EXPECT_GT(message.position[0], 0.1);
 }
 
-TEST(ContactForces, KeepOneEntryPerTooth)
+TEST_F(Messages, HoldTheForcesOfEveryTooth)
 {
-  auto message = makeContactForces(NAMES, 4);
-  ToothForces forces;
-  forces.mesh_force = { 1.0, -2.0, 3.0, 4.0 };
-  forces.tooth_y = { 0.1, 0.2, 0.3, 0.4 };
-  fillContactForces(JointOutputs{}, forces, message);
+  auto message = makeContactForces(parameters_);
+  const double* const place = message.mesh_force.data();
+  EXPECT_TRUE(fillContactForces(twin_, 0, message));
+  ToothForces forces = twin_.makeToothForces();
+  twin_.toothForces(forces);
+  EXPECT_EQ(message.wave_generator_force, forces.wave_generator_force);
+  EXPECT_EQ(message.rim_tension, forces.rim_tension);
+  EXPECT_EQ(message.bending_force, forces.bending_force);
   EXPECT_EQ(message.mesh_force, forces.mesh_force);
+  EXPECT_EQ(message.tooth_x, forces.tooth_x);
   EXPECT_EQ(message.tooth_y, forces.tooth_y);
-  EXPECT_EQ(message.rim_tension.size(), 4U);
+  EXPECT_EQ(message.mesh_force.data(), place) << "its own array, not another";
 }
 
-TEST(Indicators, GoIntoTheMessageAndBack)
+SignalIndicators someIndicators()
 {
   SignalIndicators indicators;
   indicators.stamp = 5'000'000'001;
   indicators.windows = 7;
   indicators.turns = 101.0;
-  indicators.point = { 100.0, -1.0, 30.0, 25.0 };
+  indicators.point = { 100.0, -1.0, std::nan(""), 25.0 };
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     indicators.values[i] = 1.0 + 0.01 * static_cast<double>(i);
   }
-  for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
-  {
-    for (std::size_t line = 0; line < PHASE_LOCKED; ++line)  // the message has amplitude and phase
-    {
-      indicators.values[amplitudeIndex(signal, line)] =
-          std::hypot(indicators.values[cosineIndex(signal, line)], indicators.values[sineIndex(signal, line)]);
-    }
-  }
-  auto message = makeIndicators(NAMES);
+  indicators.values[indexOf(ScalarIndicator::LOST_MOTION)] = std::nan("");
+  return indicators;
+}
+
+TEST(Indicators, GoIntoTheMessageAndBack)
+{
+  const SignalIndicators indicators = someIndicators();
+  auto message = makeIndicators(shippedParameters());
   fillIndicators(indicators.stamp, indicators, message);
   const SignalIndicators back = readIndicators(message);
   EXPECT_EQ(back.stamp, indicators.stamp);
   EXPECT_EQ(back.windows, indicators.windows);
   EXPECT_EQ(back.turns, indicators.turns);
-  EXPECT_EQ(back.point.load, indicators.point.load);
+  EXPECT_EQ(back.point.temperature, 25.0);
+  EXPECT_TRUE(std::isnan(back.point.load));
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    EXPECT_NEAR(back.values[i], indicators.values[i], 1e-12) << indicatorName(i);
+    const bool given = std::isfinite(indicators.values[i]);
+    EXPECT_EQ(std::isfinite(back.values[i]), given) << indicatorName(i);
+    EXPECT_TRUE(!given || back.values[i] == indicators.values[i]) << indicatorName(i);
   }
+}
+
+TEST(Indicators, AreFiniteInTheMessageAndMarkedWhereTheyAreNotGiven)
+{
+  auto message = makeIndicators(shippedParameters());
+  fillIndicators(0, someIndicators(), message);
+  EXPECT_FALSE(message.load_valid);
+  EXPECT_EQ(message.load, 0.0);
+  EXPECT_TRUE(message.temperature_valid);
+  ASSERT_EQ(message.names.size(), message.values.size());
+  ASSERT_EQ(message.names.size(), message.valid.size());
+  for (std::size_t i = 0; i < message.names.size(); ++i)
+  {
+    EXPECT_TRUE(std::isfinite(message.values[i])) << message.names[i];
+    EXPECT_EQ(message.valid[i] == 0, message.names[i] == "lost_motion") << message.names[i];
+  }
+}
+
+TEST(Indicators, AreReadByNameWhateverTheirOrder)
+{
+  auto message = makeIndicators(shippedParameters());
+  fillIndicators(0, someIndicators(), message);
+  message.names = { "torque_outer", "of_tomorrow", "efficiency" };
+  const SignalIndicators back = readIndicators(message);
+  EXPECT_EQ(back.values[amplitudeIndex(LineSignal::MOTOR_TORQUE, index(Line::OUTER))], message.values[0]);
+  EXPECT_EQ(back[ScalarIndicator::EFFICIENCY], message.values[2]);
+  EXPECT_TRUE(std::isnan(back[ScalarIndicator::KINEMATIC_ERROR]));
+}
+
+TEST(Fault, OfUnknownKindIsNamedInOneShortLine)
+{
+  harmonic_joint_twin::Fault message;
+  message.kind = "tooth_wear\n[FATAL] [0.0]: forged " + std::string(1000, 'x');
+  Fault fault;
+  const std::string errors = readFault(message, shippedParameters(), fault);
+  EXPECT_EQ(errors.find('\n'), std::string::npos);
+  EXPECT_EQ(errors.rfind("kind = 'tooth_wear?[FATAL] [0.0]: forged xxx", 0), 0U) << errors;
+  EXPECT_EQ(errors.find(std::string(61, 'x')), std::string::npos);
 }
 
 TEST(MotorTorque, IsTheEffortOfTheJointOrElseOfItsMotor)
@@ -121,13 +189,53 @@ TEST(MotorTorque, IsNotTakenFromAMessageThatDoesNotGiveIt)
   EXPECT_EQ(torque, -1.0);
 }
 
-TEST(OutputSchedule, CountsPeriodsFromTheEpoch)
+TEST(PublishPeriod, IsAWholeNumberOfSteps)
 {
-  const OutputSchedule schedule(shippedParameters({ "publish.health_rate=10" }));
-  EXPECT_EQ(schedule.period(Output::JOINT_STATES), 1'000'000);
-  EXPECT_EQ(schedule.period(Output::HEALTH), 100'000'000);
-  EXPECT_TRUE(schedule.isDue(Output::HEALTH, 1'700'000'000'100'000'000));
-  EXPECT_FALSE(schedule.isDue(Output::HEALTH, 1'700'000'000'100'100'000));
+  EXPECT_EQ(publishPeriod(10.0, 10'000.0), 100'000'000);
+  EXPECT_EQ(publishPeriod(1000.0, 3000.0), 999'999) << "of steps of 333 333 ns, so that an instant can be a multiple";
+}
+
+/// Keeps the instants at which each channel was filled.
+template <class Message>
+class Noted
+{
+public:
+  Noted(std::map<std::string, std::vector<Stamp>>* instants, const Channel<Message>& channel, Message first)
+    : instants_((*instants)[channel.name]), message_(std::move(first))
+  {
+  }
+  bool isWanted() const { return true; }
+
+  template <class Fill>
+  void write(Fill&& fill)
+  {
+    if (fill(message_))
+    {
+      instants_.push_back(fromRosTime(message_.header.stamp));
+    }
+  }
+
+private:
+  std::vector<Stamp>& instants_;
+  Message message_;
+};
+
+TEST(Outputs, AreDueAtMultiplesOfTheirPeriodFromTheEpochOn)
+{
+  Twin twin(shippedParameters({ "publish.health_rate=100", "publish.contact_forces_rate=10" }));
+  std::map<std::string, std::vector<Stamp>> instants;
+  Outputs<Noted> outputs(&instants, twin.parameters());
+  twin.reset(1'700'000'000'015'000'000);
+  while (twin.step(1'700'000'000'045'000'000))
+  {
+    outputs.offer(twin);
+  }
+  EXPECT_EQ(instants.size(), CHANNEL_COUNT);
+  EXPECT_EQ(instants["health"],
+            (std::vector<Stamp>{ 1'700'000'000'020'000'000, 1'700'000'000'030'000'000, 1'700'000'000'040'000'000 }));
+  EXPECT_EQ(instants["joint_states"].size(), 30U);
+  EXPECT_TRUE(instants["contact_forces"].empty());
+  EXPECT_TRUE(instants["indicators"].empty()) << "the signals are not watched";
 }
 }  // namespace
 }  // namespace hjt

@@ -92,6 +92,19 @@ class Life(unittest.TestCase):
         self.assertEqual(node.stop(signal.SIGINT)[0], 0)
         self.assertGreater(len(self.rows()), 1)
 
+    def test_records_set_aside_do_not_replace_each_other(self):
+        asides = [self.record + end for end in (".unreadable", ".unreadable.1", ".unreadable.2")]
+        for number, aside in enumerate(asides):
+            with open(self.record, "w") as file:
+                # No number a drive can have, and not one that may end the node.
+                file.write(f"duration,motor_speed,load_torque,temperature\n1.0e+308,1.0e+308,5.0,{number}.0\n")
+            node = self.start()
+            wait_until(lambda path=aside: os.path.exists(path), aside)
+            self.assertEqual(node.stop(signal.SIGINT)[0], 0)
+        for number, aside in enumerate(asides):
+            with open(aside) as file:
+                self.assertIn(f"5.0,{number}.0", file.read())
+
 
 if __name__ == "__main__":
     rospy.init_node("life_test")

@@ -13,7 +13,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Timing
-from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, wait_until
+from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, listen_to_all, numbers_in, wait_until
 
 NODE = "/joint_twin"
 JOINT = "elbow_joint"
@@ -26,15 +26,6 @@ PERIODS = {               # of the published topics [ns]
     "contact_forces": (ContactForces, 10_000_000),
     "health": (Health, 100_000_000),
 }
-
-
-def numbers_in(message):
-    """Every floating-point number of a message, in arrays too."""
-    for slot in message.__slots__:
-        value = getattr(message, slot)
-        for entry in value if isinstance(value, (list, tuple)) else [value]:
-            if isinstance(entry, float):
-                yield entry
 
 
 class Live(unittest.TestCase):
@@ -84,6 +75,20 @@ class Live(unittest.TestCase):
         self.assertNotEqual(encoders.motor_count, 0)
         self.assertAlmostEqual(encoders.motor_angle, encoders.motor_angle_true, delta=2.0 * math.pi / 4320)
         for listener in listeners.values():
+            listener.close()
+
+    def test_every_number_on_every_topic_is_finite(self):
+        # From the reset on: nothing is known of most indicators yet.
+        listeners = listen_to_all(NODE)
+        self.assertLessEqual({*PERIODS, "indicators", "assessment", "timing", "faults"}, set(listeners))
+        self.drive(0.4, 2.0)
+        for name in (*PERIODS, "indicators", "assessment", "timing"):
+            listeners[name].wait_for(2)
+        for name, listener in listeners.items():
+            with self.subTest(topic=name):
+                wrong = [message for message in listener.messages()
+                         if not all(math.isfinite(number) for number in numbers_in(message))]
+                self.assertEqual(wrong, [])
             listener.close()
 
     def test_the_timing_of_the_loop_comes_once_a_second(self):

@@ -3,6 +3,7 @@
 """What the node reads from the parameter server: every shipped file starts it, every bad value ends it at once."""
 import signal
 import sys
+import tempfile
 import unittest
 
 import rosgraph
@@ -101,8 +102,18 @@ class Parameters(unittest.TestCase):
     def test_a_parameter_out_of_range_is_named_with_value_unit_and_range(self):
         self.check_refusal({"mesh/flank_angle": 17.0}, "mesh.flank_angle", "17", "[rad]", "0 ... 1.4")
 
-    def test_a_number_that_yaml_reads_as_text_is_named(self):
-        self.check_refusal({"motor/rotor_inertia": "1e-3"}, "motor.rotor_inertia", "1e-3", "[kg.m^2]")
+    def test_numbers_that_yaml_reads_as_texts_are_numbers(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("mesh: {stiffness: 5e7}\nmotor: {rotor_inertia: 1e-04}\ncup: {torsion_breakpoints: [14, "
+                       "4.8e1]}\n")
+            file.flush()
+            self.check_start(configuration_files("elbow", [file.name]))
+        self.check_clean_exit(signal.SIGINT)
+        self.check_output("mesh.stiffness: 5.0e+7", "motor.rotor_inertia: 0.0001",
+                          "cup.torsion_breakpoints: [14.0, 48.0]")
+
+    def test_a_text_for_a_number_is_named(self):
+        self.check_refusal({"motor/rotor_inertia": "1e-3 kg"}, "motor.rotor_inertia", "1e-3 kg", "[kg.m^2]")
 
     def test_a_text_for_a_truth_value_is_named(self):
         self.check_refusal({"brake/engaged_at_start": "false"}, "brake.engaged_at_start", "false")
@@ -114,7 +125,7 @@ class Parameters(unittest.TestCase):
         self.check_refusal({"ring/bending_law": "straight"}, "ring.bending_law", "straight", "curvature")
 
     def test_a_list_with_a_text_in_it_is_named(self):
-        self.check_refusal({"cup/torsion_breakpoints": [14.0, "48"]}, "cup.torsion_breakpoints", "not a number")
+        self.check_refusal({"cup/torsion_breakpoints": [14.0, "high"]}, "cup.torsion_breakpoints", "not a number")
 
     def test_a_list_of_the_wrong_length_is_named(self):
         self.check_refusal({"cup/torsion_stiffness": [31.0e3, 50.0e3]}, "cup.torsion_stiffness", "[N.m/rad]")

@@ -7,6 +7,7 @@ import subprocess
 import threading
 import time
 
+import roslib.message
 import roslib.packages
 import rosgraph
 import rosparam
@@ -66,6 +67,23 @@ class Listener:
         self._subscriber.unregister()
 
 
+def numbers_in(message):
+    """Every floating-point number of a message, in its arrays and in the messages below it."""
+    for slot in message.__slots__:
+        value = getattr(message, slot)
+        for entry in value if isinstance(value, (list, tuple)) else [value]:
+            if isinstance(entry, float):
+                yield entry
+            elif hasattr(entry, "__slots__"):
+                yield from numbers_in(entry)
+
+
+def listen_to_all(node):
+    """A listener for each topic that a node publishes below its name."""
+    return {name[len(node) + 1:]: Listener(name, roslib.message.get_message_class(kind))
+            for name, kind in rospy.get_published_topics(node)}
+
+
 class Diagnostics:
     """What one node says on /diagnostics."""
 
@@ -101,8 +119,9 @@ class Diagnostics:
 
 
 def configuration_files(joint="elbow", overlays=()):
-    stages = ["gear", "manufacture", "elements", "joint", "solver", "sensors", "health", "life", "faults", "node"]
-    names = [f"{stage}.yaml" for stage in stages] + [f"joints/{joint}.yaml", *overlays]
+    with open(package_path("config", "stages"), encoding="utf-8") as file:
+        stages = [line.strip() for line in file if not line.startswith("#")]
+    names = [*stages, f"joints/{joint}.yaml", *overlays]
     return [package_path("config", name) for name in names]
 
 

@@ -15,6 +15,7 @@
 #include "ros_io/conversions.hpp"
 #include "ros_io/latency_histogram.hpp"
 #include "ros_io/slot_ring.hpp"
+#include "ros_io/time.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 
@@ -214,12 +215,41 @@ TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
   EXPECT_EQ(loop_->status().timing.lateness.count(), 0U);
 }
 
+TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
+{
+  start(false);
+  setClock(100'000 * SECOND);
+  waitForCycles(2);
+  for (const Stamp stamp : { Stamp{ 1 }, 100'000 * SECOND + FAR_STAMP + SECOND, LAST_ROS_STAMP })
+  {
+    inbox_.push({ stamp, InputKind::MOTOR_TORQUE, 0.5 });
+  }
+  inbox_.push({ 100'001 * SECOND, InputKind::MOTOR_TORQUE, 0.25 });
+  setClock(100'002 * SECOND);
+  waitFor([this] { return loop_->status().counters.input.accepted == 1; });
+  EXPECT_EQ(loop_->status().far_stamps, 3U);
+  EXPECT_EQ(loop_->status().last_command, 100'001 * SECOND);
+}
+
+TEST_F(LoopFixture, OutlivesAClockThatJumpsToTheEndOfTimeAndBack)
+{
+  start(false);
+  for (const Stamp far : { Stamp{ 1 }, 2'147'483'648 * SECOND, LAST_ROS_STAMP })
+  {
+    clock_ = far;  // which it would take years to catch up with
+    waitForCycles(3);
+    setClock(100 * SECOND);
+    waitForCycles(3);
+    EXPECT_EQ(loop_->status().state, LoopState::RUNNING);
+    EXPECT_EQ(loop_->status().clock, 100 * SECOND);
+  }
+}
+
 TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
 {
-  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(JointNames("joint"), 200));
+  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(twin_->parameters()));
   start(false);
   setClock(100 * SECOND);
-  ToothForces forces = twin_->makeToothForces();
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
       *twin_, inbox_, [this] { return clock_.load(); }, ClockKind::STEPPED,
@@ -227,10 +257,11 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
       {
         if (auto* message = ring.claim())
         {
-          twin.toothForces(forces);
-          fillContactForces(twin.outputs(), forces, *message);
-          ring.commit();
-          ring.pop();
+          if (fillContactForces(twin, 0, *message))
+          {
+            ring.commit();
+            ring.pop();
+          }
         }
       });
   setClock(101 * SECOND);
@@ -309,8 +340,27 @@ TEST(Inbox, DropsWhatItCannotHoldAndCounts)
   inbox.take(inputs);
   ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
   EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
+  // What has no room there waits in the inbox.
+  inbox.push({ 7, InputKind::BRAKE, 1.0 });
   inbox.take(inputs);
-  EXPECT_TRUE(inputs.empty());
+  ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
+  inputs.erase(inputs.begin() + 1, inputs.end());
+  inbox.take(inputs);
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_EQ(inputs.back().stamp, 7);
+}
+
+/// Inputs that arrived before a reset are forgotten while the twin waits for its first torque.
+TEST_F(LoopFixture, AResetForgetsWhatWaitsForTheStart)
+{
+  start(true);
+  setClock(100 * SECOND);
+  inbox_.push({ 100 * SECOND, InputKind::BRAKE, 1.0 });
+  setClock(101 * SECOND);
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
+  ASSERT_TRUE(loop_->reset());
+  setClock(102 * SECOND);
+  EXPECT_FALSE(loop_->status().outputs.brake_engaged);
 }
 
 TEST(SlotRing, HandsOverInOrderAndRefusesWhenFull)

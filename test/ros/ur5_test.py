@@ -19,7 +19,7 @@ import rostest
 from sensor_msgs.msg import JointState
 
 from harmonic_joint_twin.msg import Assessment, Comparison, Indicators
-from ros_support import PACKAGE, WARN, Diagnostics, Listener, executable, wait_until
+from ros_support import PACKAGE, WARN, Diagnostics, Listener, executable, listen_to_all, numbers_in, wait_until
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint"}
 TWINS = [("motion", joint) for joint in JOINTS] + [("observer", joint)
@@ -71,6 +71,8 @@ class UR5(unittest.TestCase):
         cls.directory = tempfile.mkdtemp(prefix="ur5_test_")
         cls.comparisons = {twin: Listener(f"/{twin[0]}/{twin[1]}/joint_twin/comparison", Comparison) for twin in TWINS}
         cls.diagnostics = {twin: Diagnostics(f"/{twin[0]}/{twin[1]}/joint_twin") for twin in TWINS}
+        cls.everything = {(twin, name): listener for twin in TWINS
+                          for name, listener in listen_to_all(f"/{twin[0]}/{twin[1]}/joint_twin").items()}
         cls.indicators = Listener("/motion/base/joint_twin/indicators", Indicators)
         cls.assessments = Listener("/motion/base/joint_twin/assessment", Assessment)
         robot = {joint: run_robot(cls.directory, joint) for joint in JOINTS}
@@ -185,6 +187,15 @@ class UR5(unittest.TestCase):
         self.assertEqual(self.diagnostics[twin].level("Input"), WARN)
         self.assertGreater(len(self.indicators.messages()), 3)
         self.assertEqual(self.assessments.messages()[-1].header.frame_id, JOINTS["base"])
+
+    def test_every_number_on_every_topic_is_finite(self):
+        for twin in TWINS:
+            for name in ("comparison", "indicators", "assessment"):
+                self.everything[twin, name].wait_for(1)
+        for which, listener in self.everything.items():
+            with self.subTest(topic=which):
+                self.assertEqual([message for message in listener.messages()
+                                  if not all(math.isfinite(number) for number in numbers_in(message))], [])
 
 
 if __name__ == "__main__":

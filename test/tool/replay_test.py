@@ -2,6 +2,7 @@
 """`joint_twin replay`."""
 import os
 import signal
+import struct
 import subprocess
 import time
 
@@ -106,9 +107,44 @@ class Replay(tool.ToolTest):
     def test_bag_without_inputs_says_what_it_holds(self):
         with rosbag.Bag(self.path("in.bag"), "w") as bag:
             bag.write("/chatter", Float64(1.0), genpy.Time(5))
-        self.fail_with(1, ["no torque on an input topic", "/joint_twin/command", "/chatter (std_msgs/Float64)"],
+        self.fail_with(1, ["no motor torque on an input topic", "/joint_twin/command", "/chatter (std_msgs/Float64)"],
                        "replay", "in.bag", "--out", "out.bag")
         self.assertEqual(os.listdir(self.directory), ["in.bag"])
+
+    def test_a_bag_without_commands_is_replayed_on_request_alone(self):
+        # One letter of a topic's name is damaged: what is left of the inputs is the load.
+        tool.write_recording(self.path("in.bag"), duration=0.1)
+        content = tool.read_bytes(self.path("in.bag")).replace(b"topic=/joint_twin/command",
+                                                               b"topic=/joint_twin/commend")
+        with open(self.path("bad.bag"), "wb") as file:
+            file.write(content)
+        self.fail_with(1, ["bad.bag has no motor torque on an input topic",
+                           "/joint_twin/commend (sensor_msgs/JointState)",
+                           "--without-command"], "replay", "bad.bag", "--out", "out.bag")
+        self.assertFalse(os.path.exists(self.path("out.bag")))
+        self.replay("bad.bag", "out.bag", "--without-command", "--set", "joint.name=elbow_joint")
+        self.assertGreater(len(tool.series(self.path("out.bag"), "/joint_twin/joint_states")), 90)
+
+    def test_a_damaged_time_of_recording_is_refused(self):
+        tool.write_recording(self.path("in.bag"), duration=0.1)
+        with rosbag.Bag(self.path("in.bag"), "a") as bag:
+            bag.write("/foreign", Float64(1.0), genpy.Time(4000000000))
+        started = time.monotonic()
+        self.fail_with(1, ["in.bag: the times of recording span 3e+09 s, allowed: at most"],
+                       "replay", "in.bag", "--out", "out.bag")
+        self.assertLess(time.monotonic() - started, 5.0)
+
+    def test_damaged_messages_are_left_out_and_counted(self):
+        tool.write_recording(self.path("in.bag"), duration=0.1)
+        with rosbag.Bag(self.path("in.bag"), "a") as bag:
+            # A list of 2^32 - 1 names would take 100 GB.
+            body = struct.pack("<IIIII", 0, tool.START, 0, 0, 2**32 - 1)
+            bag.write("/joint_twin/command", ("sensor_msgs/JointState", body, JointState._md5sum, JointState),
+                      genpy.Time(tool.START, 50000000), raw=True)
+        code, _, memory = self.measure("replay", "in.bag", "--out", "out.bag")
+        self.assertEqual(code, 0)
+        self.assertLess(memory, 1e9)
+        self.assertIn("1 damaged messages on input topics; ignored", self.replay("in.bag", "again.bag").stderr)
 
     def test_other_joints_are_not_mistaken_for_this_one(self):
         tool.write_recording(self.path("in.bag"), joint="elbow_joint")

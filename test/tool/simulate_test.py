@@ -26,6 +26,11 @@ class Simulate(tool.ToolTest):
         for _, message in tool.series(self.path("a.bag"), "/joint_twin/joint_states"):
             self.assertEqual(message.name, ["joint_motor", "joint"])
 
+    def test_an_output_without_a_row_is_an_error(self):
+        self.fail_with(1, ["a.csv holds nothing: the run of 0.2 s is shorter than a period of "
+                           "publish.joint_states_rate = 0.001 Hz"], "simulate", "--duration", 0.2, "--torque", 0.4,
+                       "--set", "publish.joint_states_rate=0.001", "--out", "a.csv")
+
     def test_constant_torque_does_not_time_out(self):
         summary = self.succeed_json("simulate", "--duration", 0.3, "--torque", 0.25, "--out", "a.csv")
         self.assertEqual(summary["command_timeouts"], 0)

@@ -288,7 +288,7 @@ record:
         rows = self.index("a")
         self.assertEqual([row["status"] for row in rows], ["ok", "failed", "ok", "failed"])
         self.assertIn("the solver found no equilibrium at 0.0", rows[1]["error"])
-        self.assertIn("the insertion of the wave generator did not converge", rows[3]["error"])
+        self.assertIn("the insertion of the wave generator failed", rows[3]["error"])
         with h5py.File(self.path("a/" + rows[1]["file"]), "r") as file:
             self.assertLess(len(file["signals/motor_torque_reading"]), 25)
             self.assertEqual(file.attrs["status"], b"failed")
@@ -320,6 +320,14 @@ record:
                  ["plan.yaml:14: duty.0.temperature reaches 40 ... 160 [degC], allowed: -40 ... 150 [degC]"]),
                 ("deflate: 0", "deflate: 0\n  indicators: some", ["record.indicators = 'some' must be true or false"]),
                 ("load: {constant: 5.0}", "load: {csv: {file: none.csv, column: load}}", ["none.csv cannot be read"]),
+                ("[0.5, 2.0]}", "[0.5, 2.0]}\n  gear.wave_amplitude: &loop {choice: [*loop]}",
+                 ["plan.yaml:9:", "makes the plan too large"]),
+                ("name: test", "name: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
+                    f"l{level}: &{name} [{', '.join(['*' + before] * 10)}]\n"
+                    for level, (before, name) in enumerate(zip("abcdefgh", "bcdefghi"))), ["makes the plan too large"]),
+                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.0]", ["must leave at least 0.001"]),
+                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.00001]", ["must leave at least 0.001"]),
+                ("log_uniform: [0.5, 2.0]", "integer: [0, 1.0e+300]", ["must be two whole numbers"]),
                 ("seed: 7", "seed: 7\nseed: 8", ["seed"]),
                 ("name: test", "name: [", ["plan.yaml:"])]:
             with self.subTest(new):
@@ -329,6 +337,36 @@ record:
                 self.assertFalse(os.path.exists(self.path("a")))
         self.fail_with(1, ["none.yaml cannot be read"], "sweep", "none.yaml", "--out", "a")
         self.fail_with(2, ["I/N"], "sweep", "plan.yaml", "--out", "a", "--shard", "2/2")
+
+    def test_two_sweeps_into_one_directory_do_not_spoil_it(self):
+        for name, plan in [("hdf5", PLAN.replace("repeats: 3", "repeats: 8")),
+                           ("bag", PLAN[:PLAN.index("  format:")].replace("repeats: 3", "repeats: 8")
+                            + "  format: bag\n")]:
+            with self.subTest(name):
+                self.write("both.yaml", plan)
+                self.sweep("alone", plan="both.yaml")
+                both = [self.start("both.yaml", "both") for _ in range(2)]
+                ends = [(process.communicate(timeout=120)[1].decode(), process.returncode) for process in both]
+                self.assertIn(0, [code for _, code in ends], ends)
+                for said, code in ends:
+                    if code != 0:
+                        self.assertEqual(code, 1)
+                        self.assertIn("is being written by another sweep into both", said)
+                self.assertEqual(tree(self.path("both")), tree(self.path("alone")))
+                for directory in ("alone", "both"):
+                    shutil.rmtree(self.path(directory))
+
+    def test_a_damaged_run_is_done_again(self):
+        self.sweep("a")
+        before = tree(self.path("a"))
+        for run, place in [(1, 0.5), (2, 0.9), (4, 0.2)]:
+            path = self.path(f"a/runs/run_{run:09}.h5")
+            content = bytearray(tool.read_bytes(path))
+            content[int(place * len(content))] ^= 0x10
+            with open(path, "wb") as file:
+                file.write(content)
+        self.assertIn("3 runs done, 3 were there, 0 failed, 3 damaged ones done again", self.sweep("a").stderr)
+        self.assertEqual(tree(self.path("a")), before)
 
     def test_a_directory_of_another_plan_is_refused(self):
         self.sweep("a")

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -38,6 +39,12 @@ class ToolTest(unittest.TestCase):
         return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, timeout=300, check=False,
                               env=dict(os.environ, **(environment or {})))
+
+    def run_with_file_limit(self, limit, *arguments):
+        """No file may grow beyond `limit` [byte]: writing fails as on a full disk."""
+        return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 
     def succeed(self, *arguments):
         done = self.run_tool(*arguments)

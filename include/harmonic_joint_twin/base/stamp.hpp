@@ -2,16 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace hjt
 {
 /// Time of a message or of a simulated instant [ns since the epoch of the messages].
 using Stamp = std::int64_t;
 
-/// Stamp difference [ns] of a duration [s], >= 0.
+/// Of a stamp difference made of a duration [ns]: it can still be added to any time that a message can have.
+constexpr Stamp LONGEST_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
+
+/// Stamp difference [ns] of a duration [s], >= 0; LONGEST_STAMP_LENGTH for what is longer, and for NaN.
 inline Stamp toStampLength(double duration)
 {
-  return static_cast<Stamp>(duration * 1e9 + 0.5);
+  const double length = duration * 1e9 + 0.5;
+  return length < static_cast<double>(LONGEST_STAMP_LENGTH) ? static_cast<Stamp>(length) : LONGEST_STAMP_LENGTH;
 }
 
 /// Duration [s] of a stamp difference [ns].

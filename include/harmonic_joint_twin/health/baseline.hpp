@@ -12,7 +12,7 @@
 namespace hjt
 {
 /// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1 forward),
-/// steps of 25 N.m and of 10 K. What is not measured counts as 0.
+/// steps of three eighths of the gear's rated torque and of 10 K. What is not measured counts as 0.
 struct OperatingBin
 {
   int speed{};
@@ -26,7 +26,11 @@ struct OperatingBin
   }
 };
 
-OperatingBin binOf(const OperatingPoint& point) noexcept;
+/// `load_step`: between two classes of load [N.m].
+OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
+
+/// That of this gear [N.m].
+double loadStep(const Parameters& parameters) noexcept;
 
 /// Mean and spread of one healthy indicator (Welford's sums).
 struct Reference
@@ -92,6 +96,7 @@ public:
   double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   int windowsNeeded() const noexcept { return windows_; }
+  double loadStep() const noexcept { return load_step_; }  ///< [N.m]
 
 private:
   ReferenceBin* find(const OperatingBin& bin) noexcept;
@@ -99,6 +104,7 @@ private:
 
   const int windows_;
   const double least_spread_;
+  const double load_step_;  // [N.m]
   double threshold_;
   std::array<double, INDICATOR_COUNT> floor_{};  // q
   bool given_{};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "harmonic_joint_twin/health/baseline.hpp"
@@ -74,8 +76,16 @@ FeatureScores featureScores(const Deviations& deviations) noexcept;
 /// Where a cause drives the features: a direction in the space of their compressed scores.
 struct Signature
 {
+  /// A direction with more or fewer numbers than there are features does not compile.
+  template <std::size_t COUNT>
+  Signature(Cause whose, const double (&numbers)[COUNT]) : cause(whose)
+  {
+    static_assert(COUNT == FEATURE_COUNT, "a number for each Feature: run scripts/evaluate_health --fit");
+    std::copy(std::begin(numbers), std::end(numbers), direction.begin());
+  }
+
   Cause cause;
-  std::array<double, FEATURE_COUNT> direction;
+  std::array<double, FEATURE_COUNT> direction{};
 };
 
 /// The table of docs/indicators.md, fitted to the model's own faults by `scripts/evaluate_health --fit`.

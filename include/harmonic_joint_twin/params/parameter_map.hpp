@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,13 +28,20 @@ std::string faultKey(int number);     ///< `faults.N`
 void eraseFaults(ParameterMap& map);  ///< a list of faults replaces the one before it as a whole
 
 /// Reads a YAML file of the form `section: {key: value}`, and the list `faults`, over `map`; later files win.
-/// Numbers must be spelt as rosparam understands them (1.0e-3, not 1e-3).
+/// Numbers in any decimal spelling, 1e-3 as well as 1.0e-3.
 /// @throws ParameterError naming file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);
+
+/// Reads the default configuration over `map`: the files that `directory`/stages lists, in that order.
+/// @throws ParameterError naming file and line.
+void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 
 /// The value of one scalar of a YAML file, by rosparam's rules; a quoted one is a text whatever it looks like. `key` and
 /// `origin` are for the error text. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
+
+/// The number that a value is, or that a text spells: on the parameter server 1e-3 is a text. Nothing if it is none.
+std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
 /// The value as an error text spells it.
 std::string valueText(const ParameterValue& value);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -25,13 +26,12 @@ struct LossShares
 /// Steady turning at constant motor speed against a constant load.
 struct LossRow
 {
-  bool converged{};
+  SolveStatus status;
   double motor_speed{};   ///< [rad/s]
   double load_torque{};   ///< at the output, > 0 resists [N.m]
   double load_reduced{};  ///< what the load asks of the motor without friction, mean of load x d(output)/d(motor) [N.m]
   LossShares loss;        ///< [N.m]
   double gear_efficiency{};  ///< load power over motor power, the motor's own friction left out; 0 without load [-]
-  double residual{};         ///< largest out-of-balance force on a tooth [N]
 };
 
 /// One row for every speed and load, in this order: all speeds of the first load, then of the next.
@@ -43,10 +43,9 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
 /// Torques at which the gear without its motor's own friction begins to move, at the temperature of the input section.
 struct Breakaway
 {
-  bool converged{};
+  SolveStatus status;
   double starting{};      ///< at the wave generator, no load: the largest over a tooth pitch [N.m]
   double back_driving{};  ///< at the output, wave generator free: the load whose own pull overcomes the friction [N.m]
-  double residual{};      ///< [N]
 };
 Breakaway analyseBreakaway(const Parameters& parameters, int positions);
 }  // namespace hjt

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -29,7 +30,7 @@ struct ToothTable
 /// Static equilibrium after the insertion, circular spline left out (thesis ch. 5-6).
 struct InsertionResult
 {
-  bool converged{};
+  SolveStatus status;
   double wave_generator_force_max{};  ///< [N]
   double wave_generator_force_min{};  ///< [N]
   double wave_generator_force_sum{};  ///< [N]
@@ -39,17 +40,28 @@ struct InsertionResult
   double radius_major_axis{};         ///< of tooth 0 [m]
   double radius_minor_axis{};         ///< of tooth N/4 [m]
   double bending_force_max{};         ///< [N]
-  double residual{};                  ///< [N]
-  int iterations{};                   ///< Newton iterations in all
   double solve_time{};                ///< [s]
   ToothTable teeth;
 };
 InsertionResult analyseInsertion(const Parameters& parameters);
 
+/// Whether the teeth have room where the gear carries no load.
+struct FitCheck
+{
+  SolveStatus status;
+  int teeth_loaded{};                       ///< without load
+  double wave_generator_force{};            ///< sum over the teeth, without load [N]
+  double wave_generator_force_insertion{};  ///< the same without the circular spline [N]
+
+  /// The teeth press harder on the wave generator than the bent rim does.
+  bool jams() const noexcept { return status.ok() && wave_generator_force > 2.0 * wave_generator_force_insertion; }
+};
+FitCheck checkFit(const Parameters& parameters);
+
 /// Wave generator locked, load on the circular spline, friction left out.
 struct StiffnessRow
 {
-  bool converged{};
+  SolveStatus status;
   double torque{};                 ///< load [N.m]
   double output_angle{};           ///< relative to zero load [rad]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator, -torque/101 [N.m]
@@ -58,22 +70,21 @@ struct StiffnessRow
   int teeth_loaded{};
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_sum{};  ///< [N]
-  double residual{};                  ///< [N]
   ToothTable teeth;
 };
+/// One row a torque; each is approached from no load, so that no row depends on another.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 
 /// Quasi-static turning at constant load, friction left out.
 struct TurnRow
 {
-  bool converged{};
+  SolveStatus status;
   double wave_generator_angle{};   ///< [rad]
   double output_angle{};           ///< [rad]
   double kinematic_error{};        ///< of the output against the wave generator's angle over the nominal ratio [rad]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
   double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
-  double residual{};               ///< [N]
 };
 /// `progress` is called with each step done.
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,

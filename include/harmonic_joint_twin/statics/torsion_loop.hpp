@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
@@ -17,11 +18,10 @@ struct TorsionPoint
 /// Wave generator locked, load swept slowly to and fro: torsion with the friction of the teeth.
 struct TorsionLoop
 {
-  bool converged{};
+  SolveStatus status;
   std::vector<TorsionPoint> points;  ///< from +amplitude to -amplitude and back
   double hysteresis{};               ///< width of the loop at no load [rad]
   double lost_motion{};              ///< angle between the middles of the loop at + and - the lost motion torque [rad]
-  double residual{};                 ///< largest out-of-balance force on a tooth [N]
 };
 
 /// `amplitude`: largest load [N.m]; `lost_motion_torque`: e.g. 4 % of the rated torque, below the amplitude [N.m];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/configuration.hpp"
 
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
@@ -16,10 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* GROUP = "Common options";
 
-/// The default configuration, one file per stage.
-constexpr std::array<const char*, 10> STAGES{ "gear.yaml",   "manufacture.yaml", "elements.yaml", "joint.yaml",
-                                              "solver.yaml", "sensors.yaml",     "health.yaml",   "life.yaml",
-                                              "faults.yaml", "node.yaml" };
+/// List of the default configuration's files, in their directory.
+constexpr const char* STAGES = "stages";
 
 fs::path findConfigDirectory(const CommonOptions& options)
 {
@@ -54,7 +51,7 @@ fs::path packageDirectory()
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
-  return fs::exists(installed / "config" / STAGES.front()) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
+  return fs::exists(installed / "config" / STAGES) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
 }
 
 void addFaultOption(Command& command, CommonOptions& options)
@@ -101,16 +98,13 @@ void addNamespaceOption(Command& command, std::string& joint_namespace)
 ParameterMap loadParameterMap(const CommonOptions& options)
 {
   const fs::path directory = findConfigDirectory(options);
-  if (!fs::exists(directory / STAGES.front()))
+  if (!fs::exists(directory / STAGES))
   {
     throw ParameterError("no default configuration in '" + directory.string() +
                          "': name its directory with --config-dir or HJT_CONFIG_DIR");
   }
   ParameterMap map;
-  for (const char* stage : STAGES)
-  {
-    readYamlFile((directory / stage).string(), map);
-  }
+  readDefaultConfiguration(directory.string(), map);
   for (const std::string& overlay : options.configs)
   {
     readYamlFile(findOverlay(overlay, fs::absolute(directory)).string(), map);

@@ -18,6 +18,11 @@ void catchInterrupts()
   action.sa_handler = [](int signal) { g_signal = signal; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN)  // which it is below nohup
+  {
+    sigaction(SIGHUP, &action, nullptr);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
 }
 
 int interruptSignal()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -41,6 +42,10 @@ public:
   }
   template <class Value>
   Json(const std::vector<Value>& values) : value_(std::vector<Json>(values.begin(), values.end()))
+  {
+  }
+  template <class Value, std::size_t SIZE>
+  Json(const std::array<Value, SIZE>& values) : value_(std::vector<Json>(values.begin(), values.end()))
   {
   }
 

@@ -2,11 +2,13 @@
 #include "apps/common/motion_options.hpp"
 
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "ros_io/topics.hpp"
 
@@ -58,10 +60,24 @@ void addMotionOptions(Command& command, MotionOptions& options)
       .required()
       .type("IN.bag|IN.csv")
       .bagOrCsv();
-  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages").required();
+  command
+      .add("--joint", options.joint,
+           "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages")
+      .required();
   command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
   addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
+}
+
+void warnOfStamps(const MotionCount& count)
+{
+  constexpr double TOLERANCE = 0.1;
+  if (count.velocity_ratio != 0.0 && std::abs(count.velocity_ratio - 1.0) > TOLERANCE)
+  {
+    std::cerr
+        << "joint_twin: by their stamps the angles change " << shortNumber(count.velocity_ratio)
+        << " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all results\n";
+  }
 }
 
 MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
@@ -94,6 +110,7 @@ MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
   forward(true);
   findings.refused = smoother.refused();
   findings.gaps = smoother.gaps();
+  warnOfStamps(findings);
   if (findings.corrupt > 0 || findings.refused > 0 || findings.gaps > 0)
   {
     std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "

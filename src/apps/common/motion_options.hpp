@@ -35,6 +35,9 @@ void addMotionOptions(Command& command, MotionOptions& options);
 /// The recording and joint they name.
 MotionSource motionSource(const MotionOptions& options);
 
+/// Says on stderr if stamps and angles disagree with the recorded velocities.
+void warnOfStamps(const MotionCount& count);
+
 /// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.
 /// Where the recording gives no load, it is what the joint is configured to carry.
 /// @throws InputError as readMotion.

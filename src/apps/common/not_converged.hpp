@@ -5,15 +5,15 @@
 #include <string>
 
 #include "apps/common/exit_code.hpp"
-#include "apps/common/text_table.hpp"
+
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 
 namespace hjt
 {
-/// Says that no equilibrium was found for `what`; `residual` [N]. Gives the exit code.
-inline int notConverged(const std::string& what, double residual)
+/// Reports that no equilibrium was found for `what`, and why. @returns the exit code.
+inline int notConverged(const std::string& what, const SolveStatus& status)
 {
-  std::cerr << "joint_twin: no equilibrium found for " << what << " (largest out-of-balance force "
-            << shortNumber(residual) << " N); see solver.max_iterations and solver.max_step_cuts\n";
+  std::cerr << "joint_twin: no equilibrium found for " << what << ": " << explanationOf(status) << '\n';
   return EXIT_FAILED;
 }
 }  // namespace hjt

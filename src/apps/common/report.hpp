@@ -58,7 +58,8 @@ class TableFile
 {
 public:
   /// @throws InputError if the file cannot be written.
-  TableFile(const std::string& path, std::vector<Column<Row>> columns) : columns_(std::move(columns)), csv_(path, keys())
+  TableFile(const std::string& path, std::vector<Column<Row>> columns)
+    : columns_(std::move(columns)), csv_(path, keys())
   {
   }
 

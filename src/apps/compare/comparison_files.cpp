@@ -171,8 +171,7 @@ Json verdictJson(const Verdict& verdict)
   const std::vector<Column<Finding>> columns{ { "title", &Finding::title },
                                               { "level", level },
                                               { "text", &Finding::text },
-                                              { "causes",
-                                                [](const Finding& finding)
+                                              { "causes", [](const Finding& finding)
                                                 {
                                                   std::vector<std::string> names;
                                                   for (const Cause cause : finding.causes)
@@ -187,7 +186,7 @@ Json verdictJson(const Verdict& verdict)
 }
 }  // namespace
 
-SoundJoint readSoundJoint(const std::string& directory)
+SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
   SoundJoint sound;
   const std::vector<double> ratios =
@@ -196,7 +195,7 @@ SoundJoint readSoundJoint(const std::string& directory)
   const std::string baseline = directory + "/" + BASELINE_FILE;
   if (std::filesystem::exists(baseline))
   {
-    sound.baseline = readBaseline(baseline);
+    sound.baseline = readBaseline(baseline, parameters);
   }
   return sound;
 }
@@ -212,7 +211,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
   writeTwinStates(directory + "/twin_states.csv", record.twin_states);
   if (!comparison.assessor().baseline().bins().empty())
   {
-    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline().bins());
+    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline());
   }
 
   const MotionReach& reach = comparison.reach();

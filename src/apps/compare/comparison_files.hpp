@@ -38,6 +38,6 @@ struct SoundJoint
   std::vector<ReferenceBin> baseline;  ///< none: the recording was too short for one
 };
 
-/// @throws InputError if the directory holds no comparison.
-SoundJoint readSoundJoint(const std::string& directory);
+/// @throws InputError if the directory holds no comparison, or one of another gear.
+SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters);
 }  // namespace hjt

@@ -7,20 +7,13 @@
 #include <utility>
 
 #include "gear/ratio.hpp"
+#include "tracking/plausible.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double CURRENT_MARGIN = 3.0;    // peaks over the motor's continuous torque [-]
 constexpr double MOST_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
-
-/// The load of a sample holds weight and inertia, which must not be counted twice.
-Parameters withoutWeight(Parameters parameters)
-{
-  parameters.output.gravity_torque = 0.0;
-  return parameters;
-}
 }  // namespace
 
 RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
@@ -30,28 +23,21 @@ RecordingComparison::RecordingComparison(const Parameters& parameters, std::vect
   , twin_(parameters)
   , spectrum_(ratio_)
   , torsion_(parameters)
-  , loads_(static_cast<std::size_t>(std::ceil(parameters.output.load_torque_limit / LOAD_STEP)) + 1)
-  , monitor_(withoutWeight(parameters))
-  , assessor_(parameters)
+  , load_step_(std::max(parameters.output.load_torque_limit, 1.0) / LOAD_STEPS)
+  , loads_(static_cast<std::size_t>(LOAD_STEPS) + 2)
+  , health_(parameters)
   , baseline_given_(!baseline.empty())
   , watch_(std::move(watch))
 {
   if (baseline_given_)
   {
-    assessor_.give(std::move(baseline));
+    health_.giveReference(std::move(baseline));
   }
-}
-
-bool RecordingComparison::canBe(const MotionSample& sample) const
-{
-  const double most_current =
-      CURRENT_MARGIN * parameters_.motor.torque_limit * ratio_ / parameters_.telemetry.torque_per_current;
-  return std::abs(sample.load) <= parameters_.output.load_torque_limit && std::abs(sample.current) <= most_current;
 }
 
 void RecordingComparison::take(const MotionSample& sample)
 {
-  if (!canBe(sample))
+  if (!isPossible(sample, parameters_))
   {
     ++reach_.impossible;
     return;
@@ -59,8 +45,9 @@ void RecordingComparison::take(const MotionSample& sample)
   const ComparedRow row{ sample, twin_.step(sample) };
   course_.add(row);
   current_squares_ += sample.current * sample.current;
+  predicted_squares_ += row.predicted.current * row.predicted.current;
   residual_squares_ += row.residual() * row.residual();
-  ++loads_[static_cast<std::size_t>(std::abs(sample.load) / LOAD_STEP)];
+  ++loads_[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   if (reach_.rows++ == 0)
   {
     reach_.least_load = reach_.most_load = sample.load;
@@ -92,22 +79,14 @@ void RecordingComparison::take(const MotionSample& sample)
 
 void RecordingComparison::watchSignals(const MotionSample& sample)
 {
-  const TelemetryParameters& telemetry = parameters_.telemetry;
-  SignalSample signal;
-  signal.stamp = static_cast<std::int64_t>(std::llround(1e9 * sample.time));
-  signal.motor_angle = sample.motor_angle;
-  signal.output_angle = sample.position;
-  signal.motor_velocity = ratio_ * sample.velocity;
-  signal.motor_torque = (sample.current - telemetry.current_offset) * telemetry.torque_per_current / ratio_;
-  signal.load_torque = sample.load;
-  if (!monitor_.update(signal))
+  if (!health_.take(sample))
   {
     return;
   }
   JudgedWindow window;
-  window.indicators = monitor_.indicators();
-  window.assessment = assessor_.take(window.indicators);
-  window.deviations = assessor_.deviations();
+  window.indicators = health_.indicators();
+  window.assessment = health_.assessor().assessment();
+  window.deviations = health_.assessor().deviations();
   watch_(window);
   const bool compared = std::any_of(window.deviations.begin(), window.deviations.end(),
                                     [](const Deviation& deviation) { return std::isfinite(deviation.score); });
@@ -141,6 +120,11 @@ double RecordingComparison::currentRms() const
   return reach_.rows == 0 ? 0.0 : std::sqrt(current_squares_ / static_cast<double>(reach_.rows));
 }
 
+double RecordingComparison::predictedRms() const
+{
+  return reach_.rows == 0 ? 0.0 : std::sqrt(predicted_squares_ / static_cast<double>(reach_.rows));
+}
+
 double RecordingComparison::residualRms() const
 {
   return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
@@ -155,7 +139,7 @@ double RecordingComparison::loadQuantile(double share) const
   {
     ++step;
   }
-  return LOAD_STEP * (static_cast<double>(step) + 0.5);
+  return load_step_ * (static_cast<double>(step) + 0.5);
 }
 
 double RecordingComparison::typicalLoad() const

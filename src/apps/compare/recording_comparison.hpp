@@ -12,9 +12,8 @@
 #include "apps/compare/thinned.hpp"
 #include "apps/compare/torsion_points.hpp"
 
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/signal_monitor.hpp"
 #include "tracking/motion_driven.hpp"
+#include "tracking/signal_watch.hpp"
 
 namespace hjt
 {
@@ -67,12 +66,13 @@ public:
   const FrictionPoints& friction() const { return friction_; }
   const ResidualSpectrum& spectrum() const { return spectrum_; }
   const TorsionPoints& torsion() const { return torsion_; }
-  const Assessor& assessor() const { return assessor_; }
+  const Assessor& assessor() const { return health_.assessor(); }
 
-  double currentRms() const;   ///< of the measured current [A]
-  double residualRms() const;  ///< [A]
-  double typicalLoad() const;  ///< median of its magnitude [N.m]
-  double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
+  double currentRms() const;    ///< of the measured current [A]
+  double predictedRms() const;  ///< of the predicted current [A]
+  double residualRms() const;   ///< [A]
+  double typicalLoad() const;   ///< median of its magnitude [N.m]
+  double largestLoad() const;   ///< that all but one in a thousand rows stay below [N.m]
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return assessed_; }
@@ -82,11 +82,10 @@ public:
   Cause cause() const;                              ///< that most windows in alarm name
 
 private:
-  bool canBe(const MotionSample& sample) const;
   void watchSignals(const MotionSample& sample);
   double loadQuantile(double share) const;
 
-  static constexpr double LOAD_STEP = 0.5;  // of the histogram [N.m]
+  static constexpr double LOAD_STEPS = 568.0;  // of the histogram
 
   const Parameters parameters_;
   const double ratio_;
@@ -96,12 +95,13 @@ private:
   FrictionPoints friction_;
   ResidualSpectrum spectrum_;
   TorsionPoints torsion_;
+  const double load_step_;            // [N.m]
   std::vector<std::uint64_t> loads_;  // histogram of magnitudes
   double current_squares_{};
+  double predicted_squares_{};
   double residual_squares_{};
 
-  SignalMonitor monitor_;
-  Assessor assessor_;
+  SignalWatch health_;
   const bool baseline_given_;
   const std::function<void(const JudgedWindow&)> watch_;
   std::uint64_t assessed_{};

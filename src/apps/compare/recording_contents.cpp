@@ -91,10 +91,8 @@ Thinned<TwinState> readTwinStates(const MotionSource& source, const std::string&
       continue;
     }
     const sensor_msgs::JointState& state = message.state();
-    const auto place = [&](const std::string& name)
-    { return static_cast<std::size_t>(std::find(state.name.begin(), state.name.end(), name) - state.name.begin()); };
-    const std::size_t joint = place(names.joint);
-    const std::size_t motor = place(names.motor);
+    const std::size_t joint = placeOf(state, names.joint);
+    const std::size_t motor = placeOf(state, names.motor);
     if (joint < std::min(state.position.size(), state.velocity.size()) && motor < state.effort.size())
     {
       states.add({ state.header.stamp.toSec() - start, state.position[joint], state.velocity[joint],

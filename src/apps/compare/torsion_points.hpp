@@ -7,6 +7,7 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/running_regression.hpp"
+#include "statics/torsion_curve.hpp"
 
 namespace hjt
 {
@@ -30,7 +31,7 @@ public:
 
   std::uint64_t rows() const { return rows_; }
 
-  /// By torque, ascending, steps of STEP; zero is where the twin's curve has it.
+  /// By torque, ascending, in steps; zero is where the twin's curve has it.
   std::vector<TorsionMean> means() const;
 
   /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning; NaN
@@ -39,25 +40,19 @@ public:
   double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
 
 private:
-  static constexpr double STEP = 2.0;            // [N.m]
-  static constexpr double LARGEST = 300.0;       // torque of the curve; the slope goes on beyond it [N.m]
+  static constexpr double STEPS = 142.0;         // up to the largest load
   static constexpr double LEAST_VARIED = 20e-6;  // standard deviation of the twin's torsion that tells anything [rad]
   struct Bin
   {
     double sum{};
     double rows{};
   };
-  struct CurvePoint
-  {
-    double torque;
-    double torsion;
-  };
 
-  double twinTorsion(double torque) const;
   RunningRegression fitted() const;
 
-  std::vector<CurvePoint> curve_;  // for torques >= 0, ascending
-  RunningRegression regression_;   // of the torsion over: one, way of turning, the twin's torsion
+  double step_;  // of the torque [N.m]
+  TorsionCurve curve_;
+  RunningRegression regression_;  // of the torsion over: one, way of turning, the twin's torsion
   std::map<int, Bin> bins_[2];
   std::uint64_t rows_{};
   double twin_sum_{};

@@ -25,6 +25,9 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
   return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
 }
 
+/// Share of the largest load by which the load must vary to show anything that load alone shows.
+constexpr double LEAST_LOADING = 0.035;
+
 /// Part of a fault's signature, a unit vector, from which on the fault is said to move a feature.
 constexpr double LEAST_PART = 0.2;
 
@@ -73,11 +76,20 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
   const double value = known ? ratio.value / ratio.own : ratio.value;
   finding.judged = true;
   finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
-  const std::string sound =
-      rounded(std::max(0.0, 1.0 - tolerance), 2) + " to " + rounded(1.0 + tolerance, 2) + " counts as sound";
-  finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, 2) + " times the twin's" +
-                 (known ? " and " + rounded(value, 2) + " times this joint's own when it was sound (" + sound + ")." :
-                          " (" + sound + ").");
+  // As many digits as it takes to see on which side of the bound the value lies.
+  const double lowest = std::max(0.0, 1.0 - tolerance);
+  const double highest = 1.0 + tolerance;
+  int digits = 2;
+  while (digits < 6 && finding.level != HealthLevel::OK &&
+         (rounded(value, digits) == rounded(lowest, digits) || rounded(value, digits) == rounded(highest, digits)))
+  {
+    ++digits;
+  }
+  const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
+  finding.text =
+      std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
+      (known ? " and " + rounded(value, digits) + " times this joint's own when it was sound (" + sound + ")." :
+               " (" + sound + ").");
   if (finding.level != HealthLevel::OK)
   {
     finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
@@ -90,6 +102,46 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
 bool movesBothWays(const std::vector<FrictionPoint>& points)
 {
   return points.front().speed < 0.0 && points.back().speed > 0.0;
+}
+
+/// Why the recorded current cannot be that of the joint's motor in this motion; empty: it can.
+std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parameters& parameters)
+{
+  constexpr double LEAST = 0.02;  // of the predicted current, rms
+  constexpr double MOST = 4.0;
+  const double noticeable = 2.0 * parameters.telemetry.current_deviation;
+  const double measured = comparison.currentRms();
+  const double predicted = comparison.predictedRms();
+  if (predicted > noticeable && measured < LEAST * predicted)
+  {
+    return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
+           rounded(predicted, 2) + " A: it is not the motor's current.";
+  }
+  if (measured > noticeable && measured > MOST * predicted)
+  {
+    return "The recorded effort is " + rounded(measured / predicted, 1) +
+           " times the current that this motion takes: it is expected in A, not in N.m; or "
+           "telemetry.torque_per_current is wrong.";
+  }
+  return {};
+}
+
+/// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
+double impossibleWay(const std::vector<FrictionPoint>& points)
+{
+  for (const double way : { -1.0, 1.0 })
+  {
+    double sum = 0.0;
+    for (const FrictionPoint& point : points)
+    {
+      sum += way * point.speed > 0.0 ? static_cast<double>(point.rows) * point.measured : 0.0;
+    }
+    if (sum < 0.0)
+    {
+      return way;
+    }
+  }
+  return 0.0;
 }
 
 Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
@@ -105,6 +157,13 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   if (!movesBothWays(points) && !has_load)
   {
     finding.text = "The joint moves one way only and no load was recorded: friction and load cannot be told apart.";
+    return finding;
+  }
+  if (const double way = impossibleWay(points); way != 0.0)
+  {
+    finding.text = std::string("Friction would push the joint along in ") + (way > 0.0 ? "positive" : "negative") +
+                   " motion, which it cannot: the load is not the one that " +
+                   (has_load ? "was recorded." : "is configured; record it.");
     return finding;
   }
   judgeRatio({ "Friction", comparison.friction().ratio(), own.friction_ratio, parameters.comparison.friction_tolerance,
@@ -198,7 +257,8 @@ double highestOrder(const RecordingComparison& comparison, double duration)
   return turns > 0.0 ? RESOLVED * static_cast<double>(comparison.reach().rows) / turns : 0.0;
 }
 
-std::vector<std::string> cannotShow(const RecordingComparison& comparison, bool has_load, double duration)
+std::vector<std::string> cannotShow(const RecordingComparison& comparison, const Parameters& parameters, bool has_load,
+                                    double duration)
 {
   const MotionReach& reach = comparison.reach();
   std::vector<std::string> missing;
@@ -232,7 +292,7 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, bool 
   {
     missing.emplace_back("How friction depends on the speed: fewer than three speeds.");
   }
-  if (reach.most_load - reach.least_load < 10.0)
+  if (reach.most_load - reach.least_load < LEAST_LOADING * parameters.output.load_torque_limit)
   {
     missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
                          rounded(reach.most_load - reach.least_load, 1) + " N.m.");
@@ -255,13 +315,18 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),
                        judgeSignals(comparison) };
-  for (const Finding& finding : verdict.findings)
+  const std::string why_not = whyNotItsCurrent(comparison, parameters);
+  for (Finding& finding : verdict.findings)
   {
+    if (!why_not.empty())
+    {
+      finding = { HealthLevel::OK, false, finding.title, why_not, {} };
+    }
     verdict.level = std::max(verdict.level, finding.level);
     verdict.judged = verdict.judged || finding.judged;
   }
   verdict.highest_order = highestOrder(comparison, duration);
-  verdict.cannot_show = cannotShow(comparison, has_load, duration);
+  verdict.cannot_show = cannotShow(comparison, parameters, has_load, duration);
   return verdict;
 }
 }  // namespace hjt

@@ -5,10 +5,10 @@
 
 namespace hjt
 {
-const std::vector<Column>& columns()
+const std::vector<RunColumn>& columns()
 {
   using I = const Instant&;
-  static const std::vector<Column> COLUMNS{
+  static const std::vector<RunColumn> COLUMNS{
     // What a robot's controller has.
     { "motor_angle_encoder", "rad", "motor encoder", [](I i) { return i.encoders.motor_angle; }, nullptr },
     { "motor_velocity_encoder", "rad/s", "motor encoder, difference over sensors.velocity_window",
@@ -37,8 +37,8 @@ const std::vector<Column>& columns()
       [](I i) { return i.outputs.friction_torque; }, nullptr },
     { "torsional_stiffness", "N.m/rad", "local, wave generator locked",
       [](I i) { return i.outputs.torsional_stiffness; }, nullptr },
-    { "energy_residual", "J", "energy in, less stored and dissipated", [](I i) { return i.outputs.energy_residual; },
-      nullptr },
+    { "energy_residual", "J", "energy in, less stored, dissipated and released",
+      [](I i) { return i.outputs.energy_residual; }, nullptr },
     { "wave_generator_force", "N", "wave generator on each tooth", nullptr, &ToothForces::wave_generator_force },
     { "rim_tension", "N", "rim behind each tooth", nullptr, &ToothForces::rim_tension },
     { "bending_force", "N", "of the bent rim on each tooth", nullptr, &ToothForces::bending_force },
@@ -52,16 +52,16 @@ const std::vector<Column>& columns()
 std::string columnNames()
 {
   std::string names;
-  for (const Column& column : columns())
+  for (const RunColumn& column : columns())
   {
     names += (names.empty() ? "" : ", ") + std::string(column.name);
   }
   return names;
 }
 
-const Column* findColumn(const std::string& name)
+const RunColumn* findColumn(const std::string& name)
 {
-  const auto found = std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == name; });
+  const auto found = std::find_if(columns().begin(), columns().end(), [&](const RunColumn& c) { return c.name == name; });
   return found == columns().end() ? nullptr : &*found;
 }
 }  // namespace hjt

@@ -18,7 +18,7 @@ struct Instant
 };
 
 /// One quantity that can be recorded.
-struct Column
+struct RunColumn
 {
   const char* name;
   const char* unit;
@@ -27,10 +27,10 @@ struct Column
   std::vector<double> ToothForces::*per_tooth;  ///< none: one number
 };
 
-const std::vector<Column>& columns();
+const std::vector<RunColumn>& columns();
 
 std::string columnNames();  ///< all, for an error text
 
 /// None if there is no column of this name.
-const Column* findColumn(const std::string& name);
+const RunColumn* findColumn(const std::string& name);
 }  // namespace hjt

@@ -94,13 +94,13 @@ struct FaultRow
   double onset;
 };
 
-bool writeFaults(hid_t file, const std::vector<FaultLabel>& faults)
+bool writeFaults(hid_t file, const std::vector<Fault>& faults)
 {
   std::vector<FaultRow> rows(faults.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     rows[i] = { {}, faults[i].severity, faults[i].place, faults[i].onset };
-    faults[i].kind.copy(rows[i].kind, sizeof(rows[i].kind));
+    std::string(describe(faults[i].kind).name).copy(rows[i].kind, sizeof(rows[i].kind));
   }
   const Hdf5Handle name = textType(sizeof(FaultRow::kind));
   const Hdf5Handle memory(H5Tcreate(H5T_COMPOUND, sizeof(FaultRow)), H5Tclose);
@@ -146,7 +146,7 @@ Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const 
   {
     fail();
   }
-  if (!writeFaults(file_.get(), spec.faults) ||
+  if (!writeFaults(file_.get(), spec.parameters.faults) ||
       !writeTextDataset(file_.get(), "parameters", describeParameters(spec.parameters)))
   {
     fail();
@@ -192,7 +192,7 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
   writeText(place.get(), "sample_rate_unit", "Hz");
   writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
   writeText(place.get(), "first_time_unit", "s");
-  for (const Column* column : recorded.columns)
+  for (const RunColumn* column : recorded.columns)
   {
     const bool per_tooth = column->per_tooth != nullptr;
     const std::size_t width = per_tooth ? static_cast<std::size_t>(twin.parameters().gear.teeth_flexspline) : 1;

@@ -49,7 +49,7 @@ public:
 private:
   struct ColumnData
   {
-    const Column* column;
+    const RunColumn* column;
     Hdf5Handle dataset;
     std::size_t width;  // numbers a row
     std::vector<double> block;

@@ -2,7 +2,6 @@
 #include "apps/sweep/plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -26,52 +25,21 @@ std::string fileOf(const PlanNode& csv)
   return PlanValues().text(csv, "file");
 }
 
-std::string faultKey(std::size_t number, const std::string& key)
-{
-  return "faults." + std::to_string(number) + "." + key;
-}
-
-constexpr std::array<const char*, 4> FAULT_KEYS{ "kind", "severity", "place", "onset" };
-
 /// A class' list of faults in place of any other.
 void setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
 {
-  for (std::size_t i = 0; map.count(faultKey(i, "kind")) > 0; ++i)
+  eraseFaults(map);
+  for (const auto& [number, fault] : list.entries)
   {
-    for (const char* key : FAULT_KEYS)
+    if (fault.kind != Kind::MAP || fault.entries.empty())
     {
-      map.erase(faultKey(i, key));
+      fault.refuse("must be {kind: ..., severity: ..., place: ..., onset: ...}");
+    }
+    for (const auto& [key, node] : fault.entries)
+    {
+      map[std::string(FAULTS) + "." + number + "." + key] = { values.value(node).value, node.origin };
     }
   }
-  for (std::size_t i = 0; i < list.entries.size(); ++i)
-  {
-    const PlanNode& fault = list.entries[i].second;
-    allowOnly(fault, { FAULT_KEYS.begin(), FAULT_KEYS.end() });
-    for (const char* key : FAULT_KEYS)
-    {
-      const PlanNode& node = required(fault, key);
-      map[faultKey(i, key)] = { values.value(node).value, node.origin };
-    }
-  }
-}
-
-double numberOf(const ParameterValue& value)
-{
-  const auto* whole = std::get_if<std::int64_t>(&value.value);
-  return whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value.value);
-}
-
-/// The faults of checked settings.
-std::vector<FaultLabel> labelsOf(const ParameterMap& map)
-{
-  std::vector<FaultLabel> labels;
-  for (std::size_t i = 0; map.count(faultKey(i, "kind")) > 0; ++i)
-  {
-    labels.push_back(
-        { std::get<std::string>(map.at(faultKey(i, "kind")).value), numberOf(map.at(faultKey(i, "severity"))),
-          static_cast<int>(numberOf(map.at(faultKey(i, "place")))), numberOf(map.at(faultKey(i, "onset"))) });
-  }
-  return labels;
 }
 
 /// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
@@ -150,61 +118,8 @@ Plan::Plan(const std::string& path, ParameterMap base)
                 const std::string column = PlanValues().text(csv, "column");
                 tables_[csv.path] = TableWaveform::read(file, column);
               });
-  readRecording();
+  recording_ = readRecording(required(root_, "record", Kind::MAP));
   makeBlocks();
-}
-
-void Plan::readRecording()
-{
-  const PlanNode& record = required(root_, "record", Kind::MAP);
-  const PlanValues values;
-  const std::string format = values.text(record, "format");
-  if (format == "bag")
-  {
-    allowOnly(record, { "format" });
-    recording_.format = RunFormat::BAG;
-    return;
-  }
-  if (format != "hdf5")
-  {
-    required(record, "format").refuse("is unknown; allowed: hdf5, bag");
-  }
-  allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
-  recording_.indicators = values.flag(record, "indicators");
-  recording_.start = values.number(record, "start", "s", { 0, 1e6 });
-  recording_.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }));
-  for (const auto& [name, node] : required(record, "groups", Kind::MAP).entries)
-  {
-    allowOnly(node, { "rate", "type", "columns" });
-    RecordingGroup group{ name, values.number(node, "rate", "Hz", { 1e-3, 1e6 }), false, {} };
-    const std::string type = values.text(node, "type");
-    if (type != "float32" && type != "float64")
-    {
-      required(node, "type").refuse("is unknown; allowed: float32, float64");
-    }
-    group.float32 = type == "float32";
-    const PlanNode& list = required(node, "columns", Kind::LIST);
-    for (const auto& [key, element] : list.entries)
-    {
-      const Column* column = findColumn(values.text(list, key));
-      if (column == nullptr)
-      {
-        element.refuse("is no column; there are " + columnNames());
-      }
-      if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
-      {
-        element.refuse("stands twice");
-      }
-      group.columns.push_back(column);
-    }
-    if (name == "faults" || name == "parameters" || name == "indicators" || name == "record" ||
-        name.find('/') != std::string::npos || group.columns.empty())
-    {
-      node.refuse(
-          "needs at least one column, and a name other than faults, parameters, indicators and record, without '/'");
-    }
-    recording_.groups.push_back(group);
-  }
 }
 
 void Plan::collect(const PlanNode& node, std::vector<const Variable*>& into)
@@ -315,7 +230,6 @@ RunSpec Plan::run(std::uint64_t number) const
     setFaults(block.fault_class->second, values, map);
   }
   spec.parameters = parseParameters(map);
-  spec.faults = labelsOf(map);
   checkRates(spec.parameters);
   return spec;
 }

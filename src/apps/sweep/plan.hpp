@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/sweep/columns.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
+#include "apps/sweep/recording.hpp"
 #include "apps/sweep/run_duty.hpp"
 #include "apps/sweep/variable.hpp"
 
@@ -21,39 +21,6 @@
 namespace hjt
 {
 nlohmann::ordered_json jsonOf(const ParameterValue& value);
-
-/// Columns that are recorded at one rate.
-struct RecordingGroup
-{
-  std::string name;
-  double rate{};   // [Hz]
-  bool float32{};  // else float64
-  std::vector<const Column*> columns;
-};
-
-enum class RunFormat
-{
-  HDF5,
-  BAG
-};
-
-struct Recording
-{
-  RunFormat format{};
-  double start{};     ///< nothing is recorded before [s]
-  int deflate{};      ///< 0 ... 9; 0: not compressed
-  bool indicators{};  ///< those of docs/indicators.md, a row a window
-  std::vector<RecordingGroup> groups;
-};
-
-/// A fault of a run, as its label says it.
-struct FaultLabel
-{
-  std::string kind;
-  double severity{};  ///< 0 ... 1 [-]
-  int place{};        ///< tooth, segment or ball, from 0; -1: the whole member
-  double onset{};     ///< after the start [s]
-};
 
 /// One run of a plan, with nothing left open.
 struct RunSpec
@@ -65,7 +32,6 @@ struct RunSpec
   double duration{};  ///< [s]
   Parameters parameters;
   RunDuty duty;
-  std::vector<FaultLabel> faults;
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
 
@@ -109,7 +75,6 @@ public:
   nlohmann::ordered_json snapshot() const;
 
 private:
-  void readRecording();
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;

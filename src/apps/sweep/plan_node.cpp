@@ -11,12 +11,23 @@ namespace hjt
 {
 namespace
 {
-PlanNode convert(const YAML::Node& from, const std::string& file, const std::string& path)
+// An alias can stand for itself, or for ever more copies of others.
+constexpr int DEEPEST = 32;
+constexpr std::size_t MOST_NODES = 100'000;
+
+PlanNode convert(const YAML::Node& from, const std::string& file, const std::string& path, int depth,
+                 std::size_t& nodes)
 {
   PlanNode node;
   node.path = path;
   node.origin = file + ":" + std::to_string(from.Mark().line + 1);
-  const auto below = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
+  if (depth > DEEPEST || ++nodes > MOST_NODES)
+  {
+    node.refuse("makes the plan too large: at most " + std::to_string(DEEPEST) + " levels and " +
+                std::to_string(MOST_NODES) + " values, aliases counted each time");
+  }
+  const auto below = [&](const YAML::Node& entry, const std::string& key)
+  { return convert(entry, file, path.empty() ? key : path + "." + key, depth + 1, nodes); };
   if (from.IsScalar())
   {
     node.kind = PlanNode::Kind::SCALAR;
@@ -28,7 +39,7 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
     for (const YAML::Node& element : from)
     {
       const std::string key = std::to_string(node.entries.size());
-      node.entries.emplace_back(key, convert(element, file, below(key)));
+      node.entries.emplace_back(key, below(element, key));
     }
   }
   else if (from.IsMap())
@@ -41,7 +52,7 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
       {
         node.find(key)->refuse("stands twice");
       }
-      node.entries.emplace_back(key, convert(entry.second, file, below(key)));
+      node.entries.emplace_back(key, below(entry.second, key));
     }
   }
   else
@@ -65,11 +76,22 @@ void PlanNode::refuse(const std::string& what) const
   throw InputError(origin + ": " + (path.empty() ? "the plan" : path + value) + " " + what);
 }
 
+std::optional<double> numberIn(const ParameterValue& value)
+{
+  if (const auto* whole = std::get_if<std::int64_t>(&value.value))
+  {
+    return static_cast<double>(*whole);
+  }
+  const auto* number = std::get_if<double>(&value.value);
+  return number != nullptr ? std::optional<double>(*number) : std::nullopt;
+}
+
 PlanNode readPlanFile(const std::string& path)
 {
   try
   {
-    const PlanNode root = convert(YAML::LoadFile(path), path, "");
+    std::size_t nodes = 0;
+    const PlanNode root = convert(YAML::LoadFile(path), path, "", 0, nodes);
     if (root.kind != PlanNode::Kind::MAP)
     {
       root.refuse("must be a mapping of keys to values");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,9 @@ struct PlanNode
   /// @throws InputError that names this place.
   [[noreturn]] void refuse(const std::string& what) const;
 };
+
+/// The number that a value is, whole or not; nothing if it is none.
+std::optional<double> numberIn(const ParameterValue& value);
 
 /// @throws InputError naming file and line.
 PlanNode readPlanFile(const std::string& path);

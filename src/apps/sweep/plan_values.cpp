@@ -18,15 +18,15 @@ namespace
   throw InputError(node.origin + ": " + node.path + " = " + valueText(value) + " " + what);
 }
 
-void requireRange(const PlanNode& node, const ParameterValue& value, double number, const char* unit,
-                  const Range& range)
+template <class T>
+const T& contentOf(const PlanNode& node, const ParameterValue& value, const std::string& kind)
 {
-  // Written so that NaN fails.
-  if (!(number >= range.min && number <= range.max))
+  const T* content = std::get_if<T>(&value.value);
+  if (content == nullptr)
   {
-    const std::string with_unit = " [" + std::string(unit) + "]";
-    refuse(node, value, with_unit.substr(1) + " is out of range, allowed: " + rangeText(range) + with_unit);
+    refuse(node, value, "must be " + kind);
   }
+  return *content;
 }
 
 const char* kindName(PlanNode::Kind kind)
@@ -53,19 +53,12 @@ ParameterValue PlanValues::value(const PlanNode& node) const
   std::vector<double> numbers;
   for (const auto& [key, element] : node.entries)
   {
-    const ParameterValue one = value(element);
-    if (const auto* number = std::get_if<double>(&one.value))
-    {
-      numbers.push_back(*number);
-    }
-    else if (const auto* whole = std::get_if<std::int64_t>(&one.value))
-    {
-      numbers.push_back(static_cast<double>(*whole));
-    }
-    else
+    const std::optional<double> number = numberIn(value(element));
+    if (!number)
     {
       element.refuse("must be a number");
     }
+    numbers.push_back(*number);
   }
   return { numbers, node.origin };
 }
@@ -74,62 +67,42 @@ double PlanValues::number(const PlanNode& map, const std::string& key, const cha
 {
   const PlanNode& node = required(map, key);
   const ParameterValue found = value(node);
-  double number = 0.0;
-  if (const auto* floating = std::get_if<double>(&found.value))
+  const std::string with_unit = "[" + std::string(unit) + "]";
+  const std::optional<double> number = numberIn(found);
+  if (!number)
   {
-    number = *floating;
+    refuse(node, found, "must be a number " + with_unit + ", " + rangeText(range));
   }
-  else if (const auto* whole = std::get_if<std::int64_t>(&found.value))
+  // Written so that NaN fails.
+  if (!(*number >= range.min && *number <= range.max))
   {
-    number = static_cast<double>(*whole);
+    refuse(node, found, with_unit + " is out of range, allowed: " + rangeText(range) + " " + with_unit);
   }
-  else
-  {
-    refuse(node, found, std::string("must be a number [") + unit + "], " + rangeText(range));
-  }
-  requireRange(node, found, number, unit, range);
-  return number;
+  return *number;
 }
 
 std::int64_t PlanValues::whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const
 {
   const PlanNode& node = required(map, key);
-  const ParameterValue found = value(node);
-  const auto* whole = std::get_if<std::int64_t>(&found.value);
-  if (whole == nullptr)
-  {
-    refuse(node, found, std::string("must be a whole number [") + unit + "], " + rangeText(range));
-  }
-  requireRange(node, found, static_cast<double>(*whole), unit, range);
-  return *whole;
+  number(map, key, unit, range);
+  return contentOf<std::int64_t>(node, value(node), "a whole number [" + std::string(unit) + "], " + rangeText(range));
 }
 
 std::string PlanValues::text(const PlanNode& map, const std::string& key) const
 {
   const PlanNode& node = required(map, key);
-  const ParameterValue found = value(node);
-  const auto* text = std::get_if<std::string>(&found.value);
-  if (text == nullptr || text->empty())
+  const std::string text = contentOf<std::string>(node, value(node), "a text");
+  if (text.empty())
   {
-    refuse(node, found, "must be a text");
+    node.refuse("must be a text");
   }
-  return *text;
+  return text;
 }
 
 bool PlanValues::flag(const PlanNode& map, const std::string& key) const
 {
   const PlanNode* node = map.find(key);
-  if (node == nullptr)
-  {
-    return false;
-  }
-  const ParameterValue found = value(*node);
-  const auto* flag = std::get_if<bool>(&found.value);
-  if (flag == nullptr)
-  {
-    refuse(*node, found, "must be true or false");
-  }
-  return *flag;
+  return node != nullptr && contentOf<bool>(*node, value(*node), "true or false");
 }
 
 const PlanNode& required(const PlanNode& map, const std::string& key)

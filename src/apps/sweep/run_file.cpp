@@ -38,7 +38,7 @@ double dataSize(const Recording& recording, double duration, int teeth)
   double bytes = 0.0;
   for (const RecordingGroup& group : recording.groups)
   {
-    for (const Column* column : group.columns)
+    for (const RunColumn* column : group.columns)
     {
       const double numbers = column->per_tooth != nullptr ? teeth : 1;
       bytes += (duration - recording.start) * group.rate * numbers * (group.float32 ? 4.0 : 8.0);

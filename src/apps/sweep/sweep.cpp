@@ -2,17 +2,12 @@
 #include "apps/sweep/sweep.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <thread>
 
 #include "apps/common/interrupt.hpp"
@@ -21,8 +16,6 @@
 #include "apps/sweep/run_file.hpp"
 
 #include "base/number_text.hpp"
-#include "base/text_hash.hpp"
-#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/time.hpp"
 
@@ -30,58 +23,7 @@ namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* FORMAT = "harmonic_joint_twin data set 1";
-
-std::string hexadecimal(std::uint64_t number)
-{
-  std::ostringstream text;
-  text << std::hex << number;
-  return text.str();
-}
-
-/// A cell of the index: texts in quotes, nothing for what is not there.
-std::string cell(const Json& value)
-{
-  if (value.is_null())
-  {
-    return "";
-  }
-  if (value.is_number_float())
-  {
-    return numberText(value.get<double>());
-  }
-  if (!value.is_string())
-  {
-    return value.is_array() ? "\"" + value.dump() + "\"" : value.dump();
-  }
-  std::string text = value.get<std::string>();
-  for (std::size_t at = 0; (at = text.find_first_of("\"\n", at)) != std::string::npos; at += 2)
-  {
-    text.replace(at, 1, text[at] == '"' ? "\"\"" : "; ");
-  }
-  return "\"" + text + "\"";
-}
-
-/// In what the document of a directory differs from that of a plan.
-std::string otherThan(const Json& found, const Json& wanted)
-{
-  const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
-                                                                    { "version", "another version of the software" },
-                                                                    { "plan", "another plan" },
-                                                                    { "tables", "other tables of the plan" },
-                                                                    { "configuration", "another configuration" } } };
-  for (const auto& [key, what] : parts)
-  {
-    if (!found.is_object() || found.value(key, Json()) != wanted.at(key))
-    {
-      return what;
-    }
-  }
-  return "something else";
-}
 
 /// The run through to its end, into its file.
 class RunSimulation
@@ -96,6 +38,7 @@ public:
   /// False: interrupted, and no file left. @throws InputError if the file cannot be written.
   bool simulate(std::uint64_t number)
   {
+    directory_.lock(number);
     const RunSpec spec = plan_.run(number);
     Json record = recordOf(spec, directory_.runFileName(number));
     const std::string path = directory_.runFile(number);
@@ -257,153 +200,6 @@ private:
 };
 }  // namespace
 
-void SweepDirectory::open() const
-{
-  const std::string name = path_ + "/plan.json";
-  std::error_code error;
-  fs::create_directories(path_ + "/runs", error);
-  if (error)
-  {
-    throw InputError(path_ + " cannot be made: " + error.message());
-  }
-  Json document{ { "format", FORMAT }, { "version", HJT_VERSION } };
-  document.update(plan_.snapshot());
-  const std::string text = document.dump(1) + '\n';
-  // The plan is written before any run, perhaps by another shard at this moment: looked for in the opposite order.
-  const bool empty = fs::is_empty(path_ + "/runs");
-  std::ifstream file(name, std::ios::binary);
-  if (!file)
-  {
-    if (!empty)
-    {
-      throw InputError(path_ + "/runs holds files of something else, and there is no plan.json; give another --out");
-    }
-    writeTextFile(name, text);
-    return;
-  }
-  const std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (found != text)
-  {
-    throw InputError(name + " is of " + otherThan(Json::parse(found, nullptr, false), document) +
-                     "; give another --out");
-  }
-}
-
-std::string SweepDirectory::runFileName(std::uint64_t run) const
-{
-  char number[32];
-  std::snprintf(number, sizeof(number), "%09llu", static_cast<unsigned long long>(run));
-  return std::string("runs/run_") + number + runFileExtension(plan_.recording().format);
-}
-
-std::string SweepDirectory::runFile(std::uint64_t run) const
-{
-  return path_ + "/" + runFileName(run);
-}
-
-Json SweepDirectory::record(std::uint64_t run) const
-{
-  return readRunRecord(plan_.recording().format, runFile(run));
-}
-
-std::uint64_t SweepDirectory::finishedRuns() const
-{
-  std::uint64_t finished = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_ + "/runs"))
-  {
-    finished += entry.path().extension() == runFileExtension(plan_.recording().format) ? 1 : 0;
-  }
-  return finished;
-}
-
-std::string SweepDirectory::indexHeader() const
-{
-  std::string header =
-      "run,file,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,noise_seed,"
-      "parameters_hash,version,error";
-  for (const std::string& name : plan_.variableNames())
-  {
-    header += "," + name;
-  }
-  return header;
-}
-
-std::string SweepDirectory::indexRow(const Json& record) const
-{
-  std::string row = cell(record.at("run"));
-  for (const char* key : { "file", "status", "class", "duty", "repeat", "duration" })
-  {
-    row += "," + cell(record.at(key));
-  }
-  for (const char* key : { "kind", "severity", "place", "onset" })
-  {
-    std::string list;
-    for (const Json& fault : record.at("faults"))
-    {
-      list += (list.empty() ? "" : ";") +
-              (fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)));
-    }
-    row += "," + list;
-  }
-  for (const char* key : { "noise_seed", "parameters_hash", "version", "error" })
-  {
-    row += "," + cell(record.at(key));
-  }
-  for (const std::string& name : plan_.variableNames())
-  {
-    row += "," + cell(record.at("variables").value(name, Json()));
-  }
-  return row;
-}
-
-void SweepDirectory::writeIndex() const
-{
-  // Another shard may end while this one reads: whoever writes last has seen all.
-  for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
-  {
-    seen = now;
-    std::string text = indexHeader() + '\n';
-    for (std::uint64_t run = 0; run < plan_.runs(); ++run)
-    {
-      const Json found = record(run);
-      if (found.is_object())
-      {
-        text += indexRow(found) + '\n';
-      }
-    }
-    writeTextFile(path_ + "/index.csv", text);
-  }
-}
-
-Json recordOf(const RunSpec& spec, const std::string& file)
-{
-  Json variables = Json::object();
-  for (const auto& [name, value] : spec.variables)
-  {
-    variables[name] = jsonOf(value);
-  }
-  Json faults = Json::array();
-  for (const FaultLabel& fault : spec.faults)
-  {
-    faults.push_back(
-        { { "kind", fault.kind }, { "severity", fault.severity }, { "place", fault.place }, { "onset", fault.onset } });
-  }
-  return { { "format", FORMAT },
-           { "version", HJT_VERSION },
-           { "run", spec.run },
-           { "file", file },
-           { "status", "ok" },
-           { "error", "" },
-           { "class", spec.fault_class },
-           { "duty", spec.duty_name },
-           { "repeat", spec.repeat },
-           { "duration", spec.duration },
-           { "faults", faults },
-           { "variables", variables },
-           { "noise_seed", spec.parameters.sensors.noise_seed },
-           { "parameters_hash", hexadecimal(textHash(describeParameters(spec.parameters))) } };
-}
-
 void checkRuns(const Plan& plan)
 {
   for (std::uint64_t run = 0; run < plan.runs(); ++run)
@@ -443,19 +239,20 @@ RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source)
   return cost;
 }
 
-SweepResult runSweep(const Plan& plan, const SweepDirectory& directory, const SweepOptions& options,
+SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options,
                      const SurfaceSource& surface_source)
 {
   SweepResult result;
   std::vector<std::uint64_t> todo;
   for (std::uint64_t run = options.shard; run < plan.runs(); run += options.shards)
   {
-    if (directory.record(run).is_object())
+    if (directory.isFinished(run))
     {
       ++result.present;
     }
     else
     {
+      result.damaged += std::filesystem::exists(directory.runFile(run)) ? 1 : 0;
       todo.push_back(run);
     }
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/sweep/plan.hpp"
+#include "apps/sweep/sweep_directory.hpp"
 
 #include "surface/surface_cache.hpp"
 
@@ -25,42 +25,13 @@ struct SweepResult
 {
   std::uint64_t done{};     ///< runs finished by this call
   std::uint64_t present{};  ///< runs that stood there finished before
+  std::uint64_t damaged{};  ///< of those done, runs whose file was not what the index said
   std::uint64_t failed{};   ///< of this shard's, of those and of the others
 };
 
-/// Directory of a plan's runs: plan.json, index.csv, runs/.
-class SweepDirectory
-{
-public:
-  SweepDirectory(const Plan& plan, std::string path) : plan_(plan), path_(std::move(path)) {}
-
-  /// Makes it, or takes it up again. @throws InputError if it holds something else than runs of this very plan.
-  void open() const;
-
-  std::string runFile(std::uint64_t run) const;            ///< whole path
-  std::string runFileName(std::uint64_t run) const;        ///< from the directory on
-  nlohmann::ordered_json record(std::uint64_t run) const;  ///< none if the run is not finished
-
-  /// Writes index.csv from the runs' files.
-  void writeIndex() const;
-
-  /// One line of the index: of a finished run from its record, else with the status given. Without line end.
-  std::string indexHeader() const;
-  std::string indexRow(const nlohmann::ordered_json& record) const;
-
-private:
-  std::uint64_t finishedRuns() const;
-
-  const Plan& plan_;
-  std::string path_;
-};
-
-/// What the index says of a run before it has run: labels, variables, seeds.
-nlohmann::ordered_json recordOf(const RunSpec& spec, const std::string& file);
-
 /// Does all runs of the shard that are not finished. An interrupt ends it early; finished runs stay.
 /// @throws InputError if a file cannot be written.
-SweepResult runSweep(const Plan& plan, const SweepDirectory& directory, const SweepOptions& options,
+SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options,
                      const SurfaceSource& surface_source);
 
 /// What a run costs, tried on its first tenths of a second.

@@ -124,7 +124,7 @@ int sweep(const SweepArguments& arguments)
     printExpectation(plan, arguments);
     return EXIT_DONE;
   }
-  const SweepDirectory directory(plan, arguments.out);
+  SweepDirectory directory(plan, arguments.out);
   directory.open();
   const SweepResult result =
       runSweep(plan, directory, { arguments.out, arguments.jobs, arguments.shard, arguments.shards, arguments.quiet },
@@ -132,7 +132,8 @@ int sweep(const SweepArguments& arguments)
   if (!arguments.quiet)
   {
     std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
-              << " failed; index: " << arguments.out << "/index.csv\n";
+              << " failed, " << result.damaged << " damaged ones done again; index: " << arguments.out
+              << "/index.csv\n";
   }
   if (interruptSignal() != 0)
   {

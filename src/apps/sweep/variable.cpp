@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/sweep/variable.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -8,6 +9,7 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
+#include "base/number_text.hpp"
 #include "base/philox.hpp"
 #include "base/text_hash.hpp"
 
@@ -22,21 +24,27 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
+constexpr double LEAST_SHARE = 1e-3;    // of a normal distribution between its limits: values beyond are drawn again
+constexpr double LARGEST_WHOLE = 1e15;  // which a double holds exactly
+
+/// Of a normal distribution {mean, standard deviation, lowest, highest}, what lies between its limits.
+double shareWithin(const std::array<double, 4>& normal)
+{
+  const auto [mean, deviation, lowest, highest] = normal;
+  if (deviation == 0.0)
+  {
+    return 1.0;
+  }
+  const double scale = deviation * std::sqrt(2.0);
+  return 0.5 * (std::erf((highest - mean) / scale) - std::erf((lowest - mean) / scale));
+}
+
 double numberOf(const PlanNode& node)
 {
-  if (node.kind == PlanNode::Kind::SCALAR)
+  const auto number = node.kind == PlanNode::Kind::SCALAR ? numberIn(node.scalar) : std::nullopt;
+  if (number && std::isfinite(*number))
   {
-    if (const auto* number = std::get_if<double>(&node.scalar.value))
-    {
-      if (std::isfinite(*number))
-      {
-        return *number;
-      }
-    }
-    else if (const auto* whole = std::get_if<std::int64_t>(&node.scalar.value))
-    {
-      return static_cast<double>(*whole);
-    }
+    return *number;
   }
   node.refuse("must be a finite number");
 }
@@ -75,10 +83,15 @@ Variable::Variable(const PlanNode& node) : node_(&node)
       {
         list.refuse("must be [mean, standard deviation >= 0, lowest <= mean, highest >= mean]");
       }
+      if (shareWithin(numbers_) < LEAST_SHARE)
+      {
+        list.refuse("must leave at least " + numberText(LEAST_SHARE) +
+                    " of the distribution between lowest and highest; for one value, write it");
+      }
       break;
     default:
       readNumbers(list, 2);
-      if (numbers_[0] >= numbers_[1])
+      if (numbers_[0] >= numbers_[1] || !std::isfinite(numbers_[1] - numbers_[0]))
       {
         list.refuse("must be [lowest, highest], the second larger than the first");
       }
@@ -88,9 +101,10 @@ Variable::Variable(const PlanNode& node) : node_(&node)
     list.refuse("must be [lowest, highest], both above zero");
   }
   if (distribution_ == Distribution::INTEGER &&
-      (std::floor(numbers_[0]) != numbers_[0] || std::floor(numbers_[1]) != numbers_[1]))
+      (std::floor(numbers_[0]) != numbers_[0] || std::floor(numbers_[1]) != numbers_[1] ||
+       std::max(-numbers_[0], numbers_[1]) > LARGEST_WHOLE))
   {
-    list.refuse("must be two whole numbers");
+    list.refuse("must be two whole numbers, -" + numberText(LARGEST_WHOLE) + " ... " + numberText(LARGEST_WHOLE));
   }
 }
 

@@ -16,6 +16,7 @@
 #include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
 #include "apps/compare/comparison_files.hpp"
 #include "apps/compare/recording_comparison.hpp"
 #include "apps/compare/verdict.hpp"
@@ -100,13 +101,13 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
   const Verdict& verdict = record.verdict;
   for (const ContentLine& line : record.contents.lines)
   {
-    std::cout << (line.found ? "found   " : "missing ") << line.name << " (" << line.gives << ")\n";
+    printWrapped((line.found ? "found   " : "missing ") + line.name + " (" + line.gives + ")", 0);
   }
   std::cout << '\n' << (verdict.judged ? levelName(verdict.level) : "NOT JUDGED") << '\n';
   for (const Finding& finding : verdict.findings)
   {
-    std::cout << finding.title << ": " << (finding.judged ? levelName(finding.level) : "not judged") << ". "
-              << finding.text << '\n';
+    printWrapped(
+        finding.title + ": " + (finding.judged ? levelName(finding.level) : "not judged") + ". " + finding.text, 0);
   }
   std::cout << '\n';
   printReport(false, { { "", "rows", comparison.reach().rows },
@@ -118,7 +119,7 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
 int compare(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference);
+  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference, parameters);
   prepareDirectory(options);
   MotionSource source = motionSource(options);
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;

@@ -7,6 +7,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
@@ -112,27 +113,28 @@ int transient(const TransientOptions& options)
   }
   const TransientRow& end = result.rows.back();
   const double numerical = end.supplied - end.dissipated - end.stored - end.kinetic;
-  printReport(options.json, { { "method", "", options.method },
-                              { "step", "", setup.step },
-                              { "tolerance", "", setup.tolerance },
-                              { "window_start", "", setup.window_start },
-                              { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
-                              { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
-                              { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
-                              { "energy_supplied", "energy supplied", end.supplied, "J" },
-                              { "energy_stored", "energy stored", end.stored, "J" },
-                              { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
-                              { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
-                              { "energy_lost", "energy lost by method and contact law", numerical, "J" },
-                              { "steps", "steps", result.counts.steps },
-                              { "force_evaluations", "force evaluations", result.counts.force_evaluations },
-                              { "factorisations", "factorisations", result.counts.factorisations },
-                              { "halvings", "steps halved", result.counts.halvings },
-                              { "rejections", "steps rejected", result.counts.rejections },
-                              { "solve_time", "solve time", result.solve_time, "s" },
-                              { "series", "", Table(TRANSIENT_COLUMNS, result.rows).columns() },
-                              { "tooth_x", "", result.tooth_x },
-                              { "tooth_y", "", result.tooth_y } });
+  printReport(options.json,
+              { { "method", "", options.method },
+                { "step", "", setup.step },
+                { "tolerance", "", setup.tolerance },
+                { "window_start", "", setup.window_start },
+                { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
+                { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
+                { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
+                { "energy_supplied", "energy supplied", end.supplied, "J" },
+                { "energy_stored", "energy stored", end.stored, "J" },
+                { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
+                { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
+                { "energy_lost", "energy lost by method and contact law", numerical, "J" },
+                { "steps", "steps", result.counts.steps },
+                { "force_evaluations", "force evaluations", result.counts.force_evaluations },
+                { "factorisations", "factorisations", result.counts.factorisations },
+                { "halvings", "steps halved", result.counts.halvings },
+                { "rejections", "steps rejected", result.counts.rejections },
+                { "solve_time", "solve time", result.solve_time, "s" },
+                { "series", "", Table(TRANSIENT_COLUMNS, result.rows).columns() },
+                { "tooth_x", "", result.tooth_x },
+                { "tooth_y", "", result.tooth_y } });
   return EXIT_DONE;
 }
 
@@ -202,9 +204,7 @@ int dynamics(const DynamicsOptions& options)
   const QuasiStaticResult result = checkQuasiStatic(parameters, setup, showProgress("turning"));
   if (result.outcome == QuasiStaticOutcome::NO_EQUILIBRIUM)
   {
-    std::cerr << "joint_twin: no equilibrium found to compare with at " << result.stopped_at
-              << " s; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("the comparison at " + shortNumber(result.stopped_at) + " s", result.status);
   }
   if (result.outcome == QuasiStaticOutcome::STEP_FAILED)
   {
@@ -246,9 +246,11 @@ void declareDynamics(Command& command, DynamicsOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand DYNAMICS{ Subject::STUDY, "dynamics",
-                           "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
-                           "constant speed, constant load, dry friction left out",
-                           declareDynamics, dynamics };
+const Subcommand DYNAMICS{
+  Subject::STUDY, "dynamics",
+  "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
+  "constant speed, constant load, dry friction left out",
+  declareDynamics, dynamics
+};
 }  // namespace
 }  // namespace hjt

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <string>
@@ -123,25 +124,24 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
 void print(const FollowSummary& summary, bool json)
 {
   printReport(
-      json,
-      { { "rows", "rows", summary.count.rows },
-        { "duration", "duration", summary.count.duration, "s" },
-        { "unreadable", "messages unreadable", summary.count.corrupt },
-        { "refused", "rows refused: repeated, out of order, beyond what can be", summary.counters.refused },
-        { "missing", "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
-          summary.timing.missing },
-        { "period", "", summary.timing.period },
-        { "gaps", "gaps that cut the recording", summary.counters.gaps },
-        { "reception_offset", "reception less stamp", summary.timing.offset, "s" },
-        { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
-        { "lag", "", summary.lag },
-        { "", "measured after predicted", summary.lag ? Json(*summary.lag) : "not told", summary.lag ? "s" : "" },
-        { "without_load", "rows without a told load", summary.counters.without_load },
-        { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
-        { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
-        { "position_residual_rms", "measured less predicted position, rms", summary.position.value(), "rad" },
-        { "outside", "rows outside the band of the current", summary.counters.outside },
-        { "solver_failures", "", summary.counters.solver_failures } });
+      json, { { "rows", "rows", summary.count.rows },
+              { "duration", "duration", summary.count.duration, "s" },
+              { "unreadable", "messages unreadable", summary.count.corrupt },
+              { "refused", "rows refused: repeated, out of order, beyond what can be", summary.counters.refused },
+              { "missing", "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
+                summary.timing.missing },
+              { "period", "", summary.timing.period },
+              { "gaps", "gaps that cut the recording", summary.counters.gaps },
+              { "reception_offset", "reception less stamp", summary.timing.offset, "s" },
+              { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
+              { "lag", "", summary.lag },
+              { "", "measured after predicted", summary.lag ? Json(*summary.lag) : "not told", summary.lag ? "s" : "" },
+              { "without_load", "rows without a told load", summary.counters.without_load },
+              { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
+              { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
+              { "position_residual_rms", "measured less predicted position, rms", summary.position.value(), "rad" },
+              { "outside", "rows outside the band of the current", summary.counters.outside },
+              { "solver_failures", "", summary.counters.solver_failures } });
 }
 
 int follow(const FollowOptions& options)
@@ -152,6 +152,13 @@ int follow(const FollowOptions& options)
   {
     requireWritable(options.out, options.force, options.recording);
     csv.emplace(options.out, COLUMNS);
+  }
+  const MotionSource source = motionSource(options);
+  if (parameters.telemetry.load == LoadSource::MODEL && recordsLoad(source))
+  {
+    std::cerr << "joint_twin: the recording holds a load (" << (isCsv(source) ? "target_moment" : source.load_topic)
+              << "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give --config "
+                 "recorded_load.yaml after the joint's own file\n";
   }
   Companion companion(parameters, MODES.at(options.mode), surfaceSource());
   const FollowSummary summary = compare(options, companion,
@@ -166,6 +173,7 @@ int follow(const FollowOptions& options)
   {
     csv->close();
   }
+  warnOfStamps(summary.count);
   print(summary, options.json);
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }

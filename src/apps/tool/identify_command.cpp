@@ -64,8 +64,8 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Of what the joint carries [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
   add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
-  std::string text = "# Overlay: what `joint_twin identify` found for joint " + options.joint + " in\n# " +
-                     options.recording + "\n";
+  std::string text =
+      "# Overlay: what `joint_twin identify` found for joint " + options.joint + " in\n# " + options.recording + "\n";
   for (const auto& [section, entries] : sections)
   {
     text += "\n" + section + ":\n" + entries;
@@ -73,18 +73,18 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
   writeTextFile(options.out, text);
 }
 
-const std::vector<Column<IdentifiedValue>> VALUE_COLUMNS{ { "name", &IdentifiedValue::name },
-                                                          { "key", &IdentifiedValue::key },
-                                                          { "unit", &IdentifiedValue::unit },
-                                                          { "configured", &IdentifiedValue::configured },
-                                                          { "value", &IdentifiedValue::value },
-                                                          { "half_width", &IdentifiedValue::half_width },
-                                                          { "refusal", &IdentifiedValue::refusal } };
-const std::vector<Column<RippleLine>> LINE_COLUMNS{
-  { "key", &RippleLine::key },         { "order", &RippleLine::order },
-  { "amplitude", &RippleLine::amplitude }, { "half_width", &RippleLine::half_width },
-  { "phase", &RippleLine::phase },     { "refusal", &RippleLine::refusal }
+const std::vector<Column<IdentifiedValue>> VALUE_COLUMNS{
+  { "name", &IdentifiedValue::name },      { "key", &IdentifiedValue::key },
+  { "unit", &IdentifiedValue::unit },      { "configured", &IdentifiedValue::configured },
+  { "value", &IdentifiedValue::value },    { "half_width", &IdentifiedValue::half_width },
+  { "refusal", &IdentifiedValue::refusal }
 };
+const std::vector<Column<RippleLine>> LINE_COLUMNS{ { "key", &RippleLine::key },
+                                                    { "order", &RippleLine::order },
+                                                    { "amplitude", &RippleLine::amplitude },
+                                                    { "half_width", &RippleLine::half_width },
+                                                    { "phase", &RippleLine::phase },
+                                                    { "refusal", &RippleLine::refusal } };
 
 /// What was identified on, judged on, and what came out.
 struct IdentifyReport
@@ -150,8 +150,9 @@ void print(const IdentifyReport& report, bool json)
   {
     tell("ripple, " + shortNumber(line.order) + " a turn", line, line.amplitude, "N.m");
   }
-  const auto span = [&](const std::string& name, const Span& part)
-  { lines.push_back({ "", name, shortNumber(part.from) + " to " + shortNumber(part.to), "s" }); };
+  const auto span = [&](const std::string& name, const Span& part) {
+    lines.push_back({ "", name, shortNumber(part.from) + " to " + shortNumber(part.to), "s" });
+  };
   span("identified on", report.train);
   span("judged on", report.judge);
   lines.push_back({ "", "the current itself, rms", shortNumber(found.judged.identified.signal), "A" });
@@ -183,8 +184,9 @@ bool warn(const IdentifyReport& report, bool load_recorded)
                    std::any_of(found.lines.begin(), found.lines.end(), identified);
   if (!load_recorded)
   {
-    std::cerr << "joint_twin: the recording holds no load of the joint; weight and inertia are taken as configured, and "
-                 "their error hides the friction\n";
+    std::cerr
+        << "joint_twin: the recording holds no load of the joint; weight and inertia are taken as configured, and "
+           "their error hides the friction\n";
   }
   if (any && found.judged.identified.all > found.judged.configured.all)
   {

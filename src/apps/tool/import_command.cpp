@@ -138,8 +138,8 @@ double countLines(const std::string& path)
 }
 
 /// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
-std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
-                         NumberTable<COLUMNS>& table, BagWriter& bag)
+std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio, NumberTable<COLUMNS>& table,
+                         BagWriter& bag)
 {
   RowWriter writer(options, joint, ratio, bag);
   Progress progress("importing");
@@ -166,6 +166,10 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
   }
   catch (const InputError& error)
   {
+    if (!bag.isOpen())
+    {
+      throw;  // the output itself
+    }
     bag.close();
     throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :
                                                               "; " + options.out + " is readable and holds the " +
@@ -213,8 +217,9 @@ void declare(Command& command, ImportOptions& options)
           [](const std::string& name)
           {
             return findUrJoint(name) ? std::string() :
-                                       "'" + name + "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
-                                                    "0 ... 5";
+                                       "'" + name +
+                                           "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
+                                           "0 ... 5";
           });
   command.add("--out", options.out, "the bag").required().type("FILE.bag").bag();
   command.add("--gain", options.gain, "torque at the joint per current [N.m/A]");
@@ -224,11 +229,10 @@ void declare(Command& command, ImportOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand IMPORT{
-  Subject::RECORDING, "import",
-  "turn a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, actual_current_N, target_moment_N) "
-  "into a bag for replay",
-  declare, import
-};
+const Subcommand IMPORT{ Subject::RECORDING, "import",
+                         "turn a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, "
+                         "actual_current_N, target_moment_N) "
+                         "into a bag for replay",
+                         declare, import };
 }  // namespace
 }  // namespace hjt

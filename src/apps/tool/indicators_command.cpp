@@ -16,11 +16,11 @@
 #include "apps/common/text_table.hpp"
 #include "apps/tool/recorded_signals.hpp"
 
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
-#include "gear/ratio.hpp"
 #include "ros_io/bag_file.hpp"
 #include "ros_io/conversions.hpp"
 #include "ros_io/time.hpp"
@@ -136,8 +136,7 @@ std::vector<Column<WindowResult>> documentColumns()
 {
   std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
   columns.insert(columns.begin(), { "recording", &WindowResult::recording });
-  columns.push_back({ "indicators",
-                      [](const WindowResult& window)
+  columns.push_back({ "indicators", [](const WindowResult& window)
                       {
                         Json values;
                         for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -146,8 +145,7 @@ std::vector<Column<WindowResult>> documentColumns()
                         }
                         return values;
                       } });
-  columns.push_back({ "scores",
-                      [](const WindowResult& window)
+  columns.push_back({ "scores", [](const WindowResult& window)
                       {
                         Json scores;
                         for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -156,8 +154,7 @@ std::vector<Column<WindowResult>> documentColumns()
                         }
                         return scores;
                       } });
-  columns.push_back({ "features",
-                      [](const WindowResult& window)
+  columns.push_back({ "features", [](const WindowResult& window)
                       {
                         Json features;
                         const FeatureScores found = featureScores(window.deviations);
@@ -284,7 +281,7 @@ int run(const IndicatorsOptions& given)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.give(readBaseline(options.baseline));
+    assessor.give(readBaseline(options.baseline, parameters));
   }
   std::vector<WindowResult> windows;
   for (const std::string& recording : options.recordings)
@@ -316,7 +313,7 @@ int run(const IndicatorsOptions& given)
   }
   if (!options.save_baseline.empty())
   {
-    writeBaseline(options.save_baseline, assessor.baseline().bins());
+    writeBaseline(options.save_baseline, assessor.baseline());
   }
   if (options.json)
   {

@@ -48,10 +48,9 @@ const std::vector<Column<State>> STATE_COLUMNS{
   { "wave_generator_torque", &State::wave_generator_torque },
   { "output_torque", &State::output_torque },
   { "cup_torque", &State::cup_torque },
-  { "",
-    [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
+  { "", [](const State& state) { return state.wave_generator_torque + state.output_torque + state.cup_torque; },
     "torque sum [N.m]" },
-  { "residual", &State::residual, "residual [N]" }
+  { "residual", [](const State& row) { return row.status.residual; }, "residual [N]" }
 };
 
 using LoadedPotential = std::pair<double, PotentialRow>;
@@ -80,15 +79,15 @@ int state(const StateOptions& options)
   for (const double load : options.loads)
   {
     states.push_back(analyseState(parameters, options.angle, load, options.pitches));
-    if (!states.back().converged)
+    if (!states.back().status.ok())
     {
-      return notConverged("a load of " + shortNumber(load) + " N.m", states.back().residual);
+      return notConverged("a load of " + shortNumber(load) + " N.m", states.back().status);
     }
     for (const PotentialRow& row : analysePotential(parameters, options.angle, load, options.steps))
     {
-      if (!row.converged)
+      if (!row.status.ok())
       {
-        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.residual);
+        return notConverged("a step of " + shortNumber(row.wave_generator_step) + " rad", row.status);
       }
       potential.emplace_back(load, row);
     }
@@ -120,14 +119,12 @@ struct FrameOptions : CommonOptions
   int samples{ 41 };
 };
 
-const std::vector<Column<TurnedElement>> ELEMENT_COLUMNS{
-  { "name", &TurnedElement::name },
-  { "force_max", &TurnedElement::force_max },
-  { "force_difference", &TurnedElement::force_difference },
-  { "energy", &TurnedElement::energy },
-  { "energy_difference", &TurnedElement::energy_difference },
-  { "torque_difference", &TurnedElement::torque_difference }
-};
+const std::vector<Column<TurnedElement>> ELEMENT_COLUMNS{ { "name", &TurnedElement::name },
+                                                          { "force_max", &TurnedElement::force_max },
+                                                          { "force_difference", &TurnedElement::force_difference },
+                                                          { "energy", &TurnedElement::energy },
+                                                          { "energy_difference", &TurnedElement::energy_difference },
+                                                          { "torque_difference", &TurnedElement::torque_difference } };
 const std::vector<Column<TurnedBending>> BENDING_COLUMNS{
   { "angle", &TurnedBending::angle, "turn [rad]" },
   { "curvature_force", &TurnedBending::curvature_force, "bending, law curvature [N]" },
@@ -140,9 +137,9 @@ int frame(const FrameOptions& options)
 {
   const TurnedMachine result =
       analyseTurnedMachine(loadParameters(options), options.load, options.seed, options.samples);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.residual);
+    return notConverged("a load of " + shortNumber(options.load) + " N.m", result.status);
   }
   std::vector<ReportLine> lines{ { "load", "", options.load },
                                  { "elements", "", Table(ELEMENT_COLUMNS, result.elements).rows() } };
@@ -187,7 +184,7 @@ Column<SmallWaveRow> partOf(const char* heading)
 const std::vector<Column<SmallWaveRow>> SMALL_WAVE_COLUMNS{
   { "wave_amplitude", &SmallWaveRow::wave_amplitude, "wave amplitude [m]" },
   { "teeth_in_contact", &SmallWaveRow::teeth_in_contact, "teeth in contact [-]" },
-  { "residual", &SmallWaveRow::residual },
+  { "residual", [](const SmallWaveRow& row) { return row.status.residual; } },
   { "contact_force_min", &SmallWaveRow::contact_force_min },
   { "contact_force_max", &SmallWaveRow::contact_force_max },
   { "thin_ring", errorOf<&SmallWaveRow::thin_ring> },
@@ -207,9 +204,9 @@ int smallWave(const SmallWaveOptions& options)
   const auto rows = analyseSmallWave(loadParameters(options), bending, options.smallest, options.count);
   for (const SmallWaveRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.residual);
+      return notConverged("a wave amplitude of " + shortNumber(row.wave_amplitude) + " m", row.status);
     }
   }
   printReport(options.json, {}, { { "rows", { SMALL_WAVE_COLUMNS, rows } } });
@@ -225,10 +222,9 @@ void declareSmallWave(Command& command, SmallWaveOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand SMALL_WAVE{
-  Subject::STUDY, "invariants small-wave",
-  "shape of the inserted ring against thin-ring theory, from the gear's wave amplitude down", declareSmallWave, smallWave
-};
+const Subcommand SMALL_WAVE{ Subject::STUDY, "invariants small-wave",
+                             "shape of the inserted ring against thin-ring theory, from the gear's wave amplitude down",
+                             declareSmallWave, smallWave };
 
 struct EnergyOptions : CommonOptions
 {
@@ -243,8 +239,7 @@ const std::vector<Column<RatedResult>> ENERGY_COLUMNS{
   { "rate", &RatedResult::first, "rate [Hz]" },
   { "throughput", [](const RatedResult& row) { return row.second.throughput; }, "through [J]" },
   { "residual", [](const RatedResult& row) { return row.second.residual; }, "left over [J]" },
-  { "relative_residual",
-    [](const RatedResult& row) { return row.second.residual / row.second.throughput; },
+  { "relative_residual", [](const RatedResult& row) { return row.second.residual / row.second.throughput; },
     "left over / through [-]" },
   { "travel", [](const RatedResult& row) { return row.second.travel; } },
   { "top_speed", [](const RatedResult& row) { return row.second.top_speed; }, "top speed [rad/s]" },
@@ -262,9 +257,9 @@ int energy(const EnergyOptions& options)
     parameters.solver.rate = rate;
     rows.emplace_back(rate, runLedger(parameters, { options.seed, options.load, true }, options.duration,
                                       showProgress("random motion at " + shortNumber(rate) + " Hz")));
-    if (!rows.back().second.converged)
+    if (!rows.back().second.status.ok())
     {
-      return notConverged("a step at " + shortNumber(rate) + " Hz", rows.back().second.force_residual);
+      return notConverged("a step at " + shortNumber(rate) + " Hz", rows.back().second.status);
     }
   }
   printReport(options.json, { { "seed", "", options.seed }, { "duration", "", options.duration } },

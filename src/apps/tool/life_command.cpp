@@ -118,13 +118,11 @@ int age(const AgeOptions& options)
   const DriveNature nature = nominalDrive(bench.parameters.life);
   const BearingLife bearing(bench.parameters.life);
   std::vector<AgeRow> rows;
-  const DriveAgeing::Life life =
-      bench.ageing.live(nature, options.hours, options.every, options.grease_changes,
-                        [&](double hours, const DriveAge& then)
-                        {
-                          rows.push_back({ hours, then, bearing.failedBy(then.bearing_turns),
-                                           spallSize(nature, then.bearing_turns) });
-                        });
+  const DriveAgeing::Life life = bench.ageing.live(
+      nature, options.hours, options.every, options.grease_changes,
+      [&](double hours, const DriveAge& then) {
+        rows.push_back({ hours, then, bearing.failedBy(then.bearing_turns), spallSize(nature, then.bearing_turns) });
+      });
   if (!options.csv.empty())
   {
     writeTable(options.csv, AGE_COLUMNS, rows);
@@ -155,8 +153,8 @@ int age(const AgeOptions& options)
 /// Every forecast of every drive that came to its end.
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
-  CsvWriter csv(path, { "life", "hours", "remaining", "q05", "q10", "q50", "q90", "q95", "flank", "interface", "bearing",
-                        "end" });
+  CsvWriter csv(path, { "life", "hours", "remaining", "q05", "q10", "q50", "q90", "q95", "flank", "interface",
+                        "bearing", "end" });
   for (std::size_t i = 0; i < lives.size(); ++i)
   {
     for (const LifeForecast& forecast : lives[i].forecasts)
@@ -194,18 +192,17 @@ int trials(const TrialsOptions& options)
   }
   const Coverage all = coverage(lives, 0.0);
   const Coverage later = coverage(lives, 0.5);
-  printReport(options.json,
-              { { "lives", "lives", lives.size() },
-                { "flank_wear", "ended by flank wear", ends[0] },
-                { "interface_wear", "ended by interface wear", ends[1] },
-                { "root_crack", "ended by a root crack", ends[2] },
-                { "bearing", "ended by the bearing", ends[3] },
-                { "unended", "still in use at the end", unended },
-                { "forecasts", "forecasts", all.said },
-                { "coverage_80", "", all.share() },
-                { "coverage_80_from_half_life", "", later.share() },
-                { "", "the 80 % interval held the truth", 100.0 * all.share(), "%" },
-                { "", "from half of each life on", 100.0 * later.share(), "%" } });
+  printReport(options.json, { { "lives", "lives", lives.size() },
+                              { "flank_wear", "ended by flank wear", ends[0] },
+                              { "interface_wear", "ended by interface wear", ends[1] },
+                              { "root_crack", "ended by a root crack", ends[2] },
+                              { "bearing", "ended by the bearing", ends[3] },
+                              { "unended", "still in use at the end", unended },
+                              { "forecasts", "forecasts", all.said },
+                              { "coverage_80", "", all.share() },
+                              { "coverage_80_from_half_life", "", later.share() },
+                              { "", "the 80 % interval held the truth", 100.0 * all.share(), "%" },
+                              { "", "from half of each life on", 100.0 * later.share(), "%" } });
   return EXIT_DONE;
 }
 
@@ -233,7 +230,8 @@ void declareAge(Command& command, AgeOptions& options)
                "also measure how far the map between the stages of wear is off (some seconds)");
 }
 
-const Subcommand AGE{ Subject::STUDY, "life age", "the nominal drive, from new to the end of its use", declareAge, age };
+const Subcommand AGE{ Subject::STUDY, "life age", "the nominal drive, from new to the end of its use", declareAge,
+                      age };
 
 void declareTrials(Command& command, TrialsOptions& options)
 {
@@ -244,7 +242,8 @@ void declareTrials(Command& command, TrialsOptions& options)
   command.add("--every", trial.every, "hours of use between two readings").range(1e-3, 1e9);
   command.add("--particles", trial.particles, "of the filter").range(10, 1000000);
   command.add("--flank-wear-error", trial.flank_wear_error, "of one reading, one sigma [m]").range(1e-9, 1e-3);
-  command.add("--spall-error", trial.spall_error, "of one reading, one sigma, of its size at the end").range(1e-6, 10.0);
+  command.add("--spall-error", trial.spall_error, "of one reading, one sigma, of its size at the end")
+      .range(1e-6, 10.0);
 }
 
 const Subcommand TRIALS{

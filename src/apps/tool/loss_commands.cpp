@@ -56,9 +56,9 @@ int losses(const LossesOptions& options)
                     { show(static_cast<double>(done) / static_cast<double>(options.loads.size())); });
   for (const LossRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("the load of " + shortNumber(row.load_torque) + " N.m", row.residual);
+      return notConverged("the load of " + shortNumber(row.load_torque) + " N.m", row.status);
     }
   }
   printReport(options.json, { { "temperature", "", parameters.input.temperature } },
@@ -80,9 +80,9 @@ int breakaway(const PitchOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   const Breakaway result = analyseBreakaway(parameters, options.positions);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("the load that drives the gear back", result.residual);
+    return notConverged("the load that drives the gear back", result.status);
   }
   printReport(options.json,
               { { "temperature", "", parameters.input.temperature },
@@ -111,9 +111,9 @@ int hysteresis(const HysteresisOptions& options)
   }
   const TorsionLoop loop =
       analyseTorsionLoop(loadParameters(options), options.amplitude, options.lost_motion_torque, options.steps);
-  if (!loop.converged)
+  if (!loop.status.ok())
   {
-    return notConverged("the torsion loop", loop.residual);
+    return notConverged("the torsion loop", loop.status);
   }
   const std::vector<Column<TorsionPoint>> columns{ { "torque", &TorsionPoint::torque, "" },
                                                    { "output_angle", &TorsionPoint::output_angle, "" } };

@@ -21,7 +21,7 @@ Json toJson(const Parameters& parameters)
 {
   Json json;
   visitFields(parameters,
-              [&](const std::string& key, const auto& first, const auto& second, const auto&...)
+              [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
                 Json& entry = json[key];
                 // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
@@ -35,7 +35,7 @@ Json toJson(const Parameters& parameters)
                     }
                   }
                 }
-                else if constexpr (std::is_array_v<std::remove_reference_t<decltype(second)>>)
+                else if constexpr (sizeof...(rest) == 0)
                 {
                   entry = first;
                 }

@@ -4,6 +4,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
 
@@ -28,43 +29,39 @@ const char* endOf(RatchetEnd end)
                                             "no equilibrium";
 }
 
-const std::vector<Column<RatchetRow>> COLUMNS{
-  { "output_angle", &RatchetRow::output_angle },
-  { "torque", &RatchetRow::torque },
-  { "wave_amplitude", &RatchetRow::wave_amplitude },
-  { "lobe_force", &RatchetRow::lobe_force },
-  { "depth_max", &RatchetRow::depth_max },
-  { "mesh_force_max", &RatchetRow::mesh_force_max },
-  { "wave_generator_force_max", &RatchetRow::wave_generator_force_max },
-  { "teeth_loaded", &RatchetRow::teeth_loaded },
-  { "snaps", &RatchetRow::snaps },
-  { "teeth_jumped", &RatchetRow::teeth_jumped }
-};
+const std::vector<Column<RatchetRow>> COLUMNS{ { "output_angle", &RatchetRow::output_angle },
+                                               { "torque", &RatchetRow::torque },
+                                               { "wave_amplitude", &RatchetRow::wave_amplitude },
+                                               { "lobe_force", &RatchetRow::lobe_force },
+                                               { "depth_max", &RatchetRow::depth_max },
+                                               { "mesh_force_max", &RatchetRow::mesh_force_max },
+                                               { "wave_generator_force_max", &RatchetRow::wave_generator_force_max },
+                                               { "teeth_loaded", &RatchetRow::teeth_loaded },
+                                               { "snaps", &RatchetRow::snaps },
+                                               { "teeth_jumped", &RatchetRow::teeth_jumped } };
 
 int ratchet(const RatchetOptions& options)
 {
   const RatchetResult result = analyseRatchet(loadParameters(options), options.angle, options.lobe_stiffness,
                                               options.angle_step, options.torque_limit, showProgress("loading"));
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    std::cerr << "joint_twin: no equilibrium found at no load; see solver.max_iterations and solver.max_step_cuts\n";
-    return EXIT_FAILED;
+    return notConverged("no load", result.status);
   }
   const RatchetRow& peak = result.peak;
-  printReport(
-      options.json,
-      { { "end", "end", endOf(result.end) },
-        { "peak.torque", "largest torque", peak.torque, "N.m" },
-        { "peak.output_angle", "output angle there", peak.output_angle, "rad" },
-        { "peak.wave_amplitude", "wave amplitude left", peak.wave_amplitude, "m" },
-        { "peak.lobe_force", "force on each lobe", peak.lobe_force, "N" },
-        { "peak.depth_max", "deepest tooth", peak.depth_max, "m" },
-        { "peak.mesh_force_max", "mesh force, largest", peak.mesh_force_max, "N" },
-        { "peak.wave_generator_force_max", "wave generator force, largest", peak.wave_generator_force_max, "N" },
-        { "peak.snaps", "snaps before", peak.snaps },
-        { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
-        { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
-        { "rows", "", Table(COLUMNS, result.rows).rows() } });
+  printReport(options.json, { { "end", "end", endOf(result.end) },
+                              { "peak.torque", "largest torque", peak.torque, "N.m" },
+                              { "peak.output_angle", "output angle there", peak.output_angle, "rad" },
+                              { "peak.wave_amplitude", "wave amplitude left", peak.wave_amplitude, "m" },
+                              { "peak.lobe_force", "force on each lobe", peak.lobe_force, "N" },
+                              { "peak.depth_max", "deepest tooth", peak.depth_max, "m" },
+                              { "peak.mesh_force_max", "mesh force, largest", peak.mesh_force_max, "N" },
+                              { "peak.wave_generator_force_max", "wave generator force, largest",
+                                peak.wave_generator_force_max, "N" },
+                              { "peak.snaps", "snaps before", peak.snaps },
+                              { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
+                              { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
+                              { "rows", "", Table(COLUMNS, result.rows).rows() } });
   return EXIT_DONE;
 }
 

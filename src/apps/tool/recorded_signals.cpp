@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include <rosbag/bag.h>
@@ -65,16 +64,9 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
   }
 }
 
-double entry(const std::vector<double>& values, std::optional<std::size_t> place)
+double entry(const std::vector<double>& values, std::size_t place)
 {
-  return place && *place < values.size() ? values[*place] : NOT_MEASURED;
-}
-
-std::optional<std::size_t> placeOf(const sensor_msgs::JointState& state, const std::string& name)
-{
-  const auto found = std::find(state.name.begin(), state.name.end(), name);
-  return found == state.name.end() ? std::nullopt :
-                                     std::optional<std::size_t>(static_cast<std::size_t>(found - state.name.begin()));
+  return place < values.size() ? values[place] : NOT_MEASURED;
 }
 
 SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& names, double torque_scale)
@@ -86,7 +78,7 @@ SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& na
   sample.motor_angle = entry(state.position, motor);
   sample.motor_velocity = entry(state.velocity, motor);
   sample.output_angle = entry(state.position, joint);
-  sample.motor_torque = torque_scale * entry(state.effort, motor ? motor : joint);
+  sample.motor_torque = torque_scale * entry(state.effort, motor < state.name.size() ? motor : joint);
   return sample;
 }
 
@@ -110,7 +102,7 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
     {
       readLoadTorque(state, names, load);
     }
-    else if (placeOf(state, names.joint) || placeOf(state, names.motor))
+    else if (std::min(placeOf(state, names.joint), placeOf(state, names.motor)) < state.name.size())
     {
       SignalSample sample = sampleOf(state, names, source.torque_scale);
       sample.load_torque = load;

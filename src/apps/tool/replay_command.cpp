@@ -12,6 +12,7 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
@@ -22,11 +23,15 @@ namespace hjt
 {
 namespace
 {
+/// Of a recording; more is a damaged time of recording, and the twin would simulate years [s].
+constexpr double LONGEST_RECORDING = 1e6;
+
 struct ReplayOptions : CommonOptions
 {
   std::string bag;
   std::string out;
   std::string joint_namespace{ DEFAULT_NAMESPACE };
+  bool without_command{};
 };
 
 std::string joined(const std::vector<std::string>& texts)
@@ -67,8 +72,29 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
                      joined({ found.other_joints.begin(), found.other_joints.end() }) + ") than joint.name = " + joint +
                      "; choose one with --set joint.name=NAME or an overlay of config/joints");
   }
-  throw InputError(options.bag + " has no torque on an input topic (" + joined(inputTopics(options.joint_namespace)) +
-                   "); it holds:" + listTopics(bag));
+  throw InputError(options.bag + " has no motor torque on an input topic (" +
+                   joined(inputTopics(options.joint_namespace)) +
+                   "); --without-command replays other inputs alone. It holds:" + listTopics(bag));
+}
+
+/// Whether the bag holds what is replayed: a motor torque, or any input if that is left out on purpose.
+bool suffices(const BagInputs& found, const ReplayOptions& options)
+{
+  return std::any_of(found.inputs.begin(), found.inputs.end(),
+                     [&](const Input& input)
+                     { return options.without_command || input.kind == InputKind::MOTOR_TORQUE; });
+}
+
+/// @throws InputError where damage makes the recording last for years.
+void checkSpan(const rosbag::Bag& bag, const std::string& path)
+{
+  rosbag::View view(bag);
+  const double span = toSeconds(fromRosTime(view.getEndTime()) - fromRosTime(view.getBeginTime()));
+  if (span > LONGEST_RECORDING)
+  {
+    throw InputError(path + ": the times of recording span " + shortNumber(span) + " s, allowed: at most " +
+                     shortNumber(LONGEST_RECORDING) + " s; one of them is damaged");
+  }
 }
 
 /// The torques of the bag. If it commands one joint only and the user has not said which, `parameters` takes its name.
@@ -83,7 +109,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
               << " commands\n";
     found = readBagInputs(bag, options.joint_namespace, parameters);
   }
-  if (found.inputs.empty())
+  if (!suffices(found, options))
   {
     failWithoutInputs(bag, options, found, parameters.joint.name);
   }
@@ -91,6 +117,10 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   {
     std::cerr << "joint_twin: " << found.without_effort << " messages name " << parameters.joint.name
               << " but give no effort for it; ignored\n";
+  }
+  if (found.damaged > 0)
+  {
+    std::cerr << "joint_twin: " << found.damaged << " damaged messages on input topics; ignored\n";
   }
   if (found.refused_faults > 0)
   {
@@ -131,6 +161,7 @@ public:
     writer_.close();
   }
 
+  bool isOpen() const { return writer_.isOpen(); }
   void close() { writer_.close(); }
 
 private:
@@ -174,6 +205,7 @@ int replay(const ReplayOptions& options)
   rosbag::Bag bag;
   openForReading(bag, options.bag);
   refuseTakenTopics(bag, options);
+  checkSpan(bag, options.bag);
   const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters, surfaceSource());
   twin.watchSignals(true);
@@ -186,6 +218,10 @@ int replay(const ReplayOptions& options)
   }
   catch (const std::exception& error)
   {
+    if (!run.isOpen())
+    {
+      throw;  // the output itself
+    }
     run.close();
     throw InputError(options.bag + ": replay stopped: " + error.what() + "; " + options.out +
                      " is readable and holds what came before");
@@ -197,6 +233,8 @@ void declare(Command& command, ReplayOptions& options)
 {
   command.add("bag", options.bag, "the recording").required().type("IN.bag");
   command.add("--out", options.out, "the bag with the simulated topics added").required().type("OUT.bag").bag();
+  command.flag("--without-command", options.without_command,
+               "replay a bag without motor torque: its load torques and faults alone");
   addNamespaceOption(command, options.joint_namespace);
   addFaultOption(command, options);
   addCommonOptions(command, options);

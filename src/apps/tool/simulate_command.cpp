@@ -10,6 +10,7 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
+#include "apps/common/text_table.hpp"
 #include "apps/tool/torque_profile.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -49,7 +50,7 @@ class CsvRecorder
 {
 public:
   CsvRecorder(const Twin& twin, const std::string& path, Stamp begin)
-    : schedule_(twin.parameters())
+    : period_(publishPeriod(twin.parameters().publish.joint_states_rate, twin.parameters().solver.rate))
     , begin_(begin)
     , csv_(path, { "time", "motor_angle", "motor_velocity", "output_angle", "output_velocity", "motor_angle_encoder",
                    "motor_velocity_encoder", "output_angle_encoder", "output_velocity_encoder", "motor_torque",
@@ -61,10 +62,11 @@ public:
   void record(Twin& twin)
   {
     const JointOutputs& o = twin.outputs();
-    if (!schedule_.isDue(Output::JOINT_STATES, o.stamp))
+    if (o.stamp % period_ != 0)
     {
       return;
     }
+    ++rows_;
     const EncoderReadings e = twin.encoders();
     csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity,
                     e.motor_angle, e.motor_velocity, e.output_angle, e.output_velocity, o.motor_torque, o.load_torque,
@@ -73,10 +75,12 @@ public:
   }
 
   void close() { csv_.close(); }
+  std::uint64_t rows() const { return rows_; }
 
 private:
-  OutputSchedule schedule_;
+  Stamp period_;  // [ns]
   Stamp begin_;
+  std::uint64_t rows_{};
   CsvWriter csv_;
 };
 
@@ -104,11 +108,13 @@ int simulate(const SimulateOptions& options)
   twin.reset(SIMULATION_EPOCH);
   const RunSummary summary{ options.out, twin.stamp() };
   const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
+  std::uint64_t recorded = 0;
   if (extension == ".csv")
   {
     CsvRecorder recorder(twin, options.out, twin.stamp());
     run(twin, profile, end, recorder);
     recorder.close();
+    recorded = recorder.rows();
   }
   else
   {
@@ -117,6 +123,13 @@ int simulate(const SimulateOptions& options)
     BagRecorder recorder(twin, options.joint_namespace, bag);
     run(twin, profile, end, recorder);
     bag.close();
+    recorded = bag.messages();
+  }
+  if (recorded == 0 && interruptSignal() == 0)
+  {
+    throw InputError(options.out + " holds nothing: the run of " + shortNumber(toSeconds(end - summary.begin)) +
+                     " s is shorter than a period of publish.joint_states_rate = " +
+                     shortNumber(parameters.publish.joint_states_rate) + " Hz");
   }
   return summary.report(twin, options.json);
 }
@@ -131,8 +144,7 @@ void declare(Command& command, SimulateOptions& options)
            "holds until the next")
       .type("FILE.csv");
   command.oneOf({ "--torque", "--profile" });
-  command.add("--load", options.load,
-              "constant external torque at the output; > 0 resists positive motion [N.m]");
+  command.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
   command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
       .required()
       .type("FILE.bag|FILE.csv")

@@ -67,6 +67,21 @@ void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothT
   }
 }
 
+/// Warns of a gear whose teeth press against each other without load.
+void warnIfJammed(const Parameters& parameters)
+{
+  const FitCheck fit = checkFit(parameters);
+  if (fit.jams())
+  {
+    std::cerr << "joint_twin: warning: the teeth jam without load: " << fit.teeth_loaded << " of "
+              << parameters.gear.teeth_flexspline << " loaded, " << shortNumber(fit.wave_generator_force)
+              << " N on the wave generator, " << shortNumber(fit.wave_generator_force_insertion)
+              << " N without the circular spline; compare gear.wave_amplitude, gear.rim_thickness, "
+                 "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers "
+                 "of teeth\n";
+  }
+}
+
 struct InsertOptions : CommonOptions
 {
   std::string csv;
@@ -79,10 +94,11 @@ int insert(const InsertOptions& options)
   {
     requireWritable(options.csv, options.force);
   }
+  warnIfJammed(parameters);
   const InsertionResult result = analyseInsertion(parameters);
-  if (!result.converged)
+  if (!result.status.ok())
   {
-    return notConverged("the insertion", result.residual);
+    return notConverged("the insertion", result.status);
   }
   if (!options.csv.empty())
   {
@@ -90,20 +106,19 @@ int insert(const InsertOptions& options)
     writeTeeth(csv, {}, result.teeth, RING_COLUMNS);
     csv.close();
   }
-  printReport(
-      options.json,
-      { { "wave_generator_force_max", "wave generator force, largest", result.wave_generator_force_max, "N" },
-        { "wave_generator_force_min", "wave generator force, smallest", result.wave_generator_force_min, "N" },
-        { "wave_generator_force_sum", "wave generator force, sum", result.wave_generator_force_sum, "N" },
-        { "teeth_in_contact", "teeth in contact", result.teeth_in_contact },
-        { "tension_min", "rim tension, smallest", result.tension_min, "N" },
-        { "tension_max", "rim tension, largest", result.tension_max, "N" },
-        { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
-        { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
-        { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
-        { "residual", "residual", result.residual, "N" },
-        { "iterations", "iterations", result.iterations },
-        { "solve_time", "solve time", result.solve_time, "s" } });
+  printReport(options.json,
+              { { "wave_generator_force_max", "wave generator force, largest", result.wave_generator_force_max, "N" },
+                { "wave_generator_force_min", "wave generator force, smallest", result.wave_generator_force_min, "N" },
+                { "wave_generator_force_sum", "wave generator force, sum", result.wave_generator_force_sum, "N" },
+                { "teeth_in_contact", "teeth in contact", result.teeth_in_contact },
+                { "tension_min", "rim tension, smallest", result.tension_min, "N" },
+                { "tension_max", "rim tension, largest", result.tension_max, "N" },
+                { "radius_major_axis", "radius at the major axis", result.radius_major_axis, "m" },
+                { "radius_minor_axis", "radius at the minor axis", result.radius_minor_axis, "m" },
+                { "bending_force_max", "bending force, largest", result.bending_force_max, "N" },
+                { "residual", "residual", result.status.residual, "N" },
+                { "iterations", "iterations", result.status.iterations },
+                { "solve_time", "solve time", result.solve_time, "s" } });
   return EXIT_DONE;
 }
 
@@ -134,7 +149,7 @@ const std::vector<Column<StiffnessRow>> STIFFNESS_COLUMNS{
   { "teeth_loaded", &StiffnessRow::teeth_loaded, "teeth loaded [-]" },
   { "mesh_force_max", &StiffnessRow::mesh_force_max, "mesh force max [N]" },
   { "wave_generator_force_sum", &StiffnessRow::wave_generator_force_sum, "WG force sum [N]" },
-  { "residual", &StiffnessRow::residual, "residual [N]" }
+  { "residual", [](const StiffnessRow& row) { return row.status.residual; }, "residual [N]" }
 };
 
 Json teethJson(const StiffnessRow& row)
@@ -164,12 +179,13 @@ int stiffness(const StiffnessOptions& options)
   {
     requireWritable(options.csv, options.force);
   }
+  warnIfJammed(parameters);
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
-      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.residual);
+      return notConverged("the row of torque " + shortNumber(row.torque) + " N.m", row.status);
     }
   }
   if (!options.csv.empty())
@@ -221,15 +237,15 @@ const std::vector<Column<TurnRow>> TURN_COLUMNS{
 
 int turn(const TurnOptions& options)
 {
-  const std::vector<TurnRow> rows =
-      analyseTurn(loadParameters(options), options.load, options.angle_range, options.steps,
-                  [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
+  const std::vector<TurnRow> rows = analyseTurn(
+      loadParameters(options), options.load, options.angle_range, options.steps,
+      [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
-    if (!row.converged)
+    if (!row.status.ok())
     {
       return notConverged("the row of wave generator angle " + shortNumber(row.wave_generator_angle) + " rad",
-                          row.residual);
+                          row.status);
     }
   }
   printReport(options.json, { { "load", "", options.load } }, { { "rows", { TURN_COLUMNS, rows } } });

@@ -59,27 +59,26 @@ int trial(const TrialOptions& options)
                  });
   }
   const TwinCounters& counters = result.counters;
-  printReport(
-      options.json,
-      { { "finite", "every output finite", result.finite },
-        { "solver_state", "solver, worst state", stateName(result.state) },
-        { "steps", "steps", counters.steps },
-        { "iterations_mean", "Newton iterations a step, mean", result.iterations_mean },
-        { "iterations_max", "Newton iterations a step, most", result.iterations_max },
-        { "step_cuts", "steps cut", counters.step_cuts },
-        { "jumps", "steps in which teeth jumped", counters.jumps },
-        { "coarse_steps", "steps too long for the motion", counters.coarse_steps },
-        { "solver_failures", "steps failed", counters.solver_failures },
-        { "speed_limited", "", counters.speed_limited },
-        { "torque_clamped", "", counters.torque_clamped },
-        { "load_clamped", "", counters.load_clamped },
-        { "residual_max", "", result.residual_max },
-        { "energy_residual_max", "energy residual, largest", result.energy_residual_max, "J" },
-        { "throughput", "work of motor and load", result.throughput, "J" },
-        { "swing_phase_max", "swing of the joint a step, largest", result.swing_phase_max, "rad" },
-        { "wave_generator_turn_max", "turn of the wave generator a step, largest", result.wave_generator_turn_max,
-          "rad" },
-        { "samples", "", Table(SAMPLE_COLUMNS, result.samples).columns() } });
+  printReport(options.json,
+              { { "finite", "every output finite", result.finite },
+                { "solver_state", "solver, worst state", stateName(result.state) },
+                { "steps", "steps", counters.steps },
+                { "iterations_mean", "Newton iterations a step, mean", result.iterations_mean },
+                { "iterations_max", "Newton iterations a step, most", result.iterations_max },
+                { "step_cuts", "steps cut", counters.step_cuts },
+                { "jumps", "steps in which teeth jumped", counters.jumps },
+                { "coarse_steps", "steps too long for the motion", counters.coarse_steps },
+                { "solver_failures", "steps failed", counters.solver_failures },
+                { "speed_limited", "", counters.speed_limited },
+                { "torque_clamped", "", counters.torque_clamped },
+                { "load_clamped", "", counters.load_clamped },
+                { "residual_max", "", result.residual_max },
+                { "energy_residual_max", "energy residual, largest", result.energy_residual_max, "J" },
+                { "throughput", "work of motor and load", result.throughput, "J" },
+                { "swing_phase_max", "swing of the joint a step, largest", result.swing_phase_max, "rad" },
+                { "wave_generator_turn_max", "turn of the wave generator a step, largest",
+                  result.wave_generator_turn_max, "rad" },
+                { "samples", "", Table(SAMPLE_COLUMNS, result.samples).columns() } });
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
@@ -102,7 +101,7 @@ void declare(Command& command, TrialOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand TRIAL{ Subject::STUDY, "trial", "run the twin under a profile and tell what its solver said, step by step",
-                        declare, trial };
+const Subcommand TRIAL{ Subject::STUDY, "trial",
+                        "run the twin under a profile and tell what its solver said, step by step", declare, trial };
 }  // namespace
 }  // namespace hjt

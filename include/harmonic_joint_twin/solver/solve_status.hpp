@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace hjt
+{
+enum class SolveCode
+{
+  CONVERGED,
+  ITERATION_LIMIT,  ///< solver.max_iterations ran out, on the shortest path too
+  NO_DESCENT,       ///< no step reduced the forces, on the shortest path neither
+  SINGULAR,         ///< the tangent has no inverse
+  NOT_FINITE,       ///< NaN or Inf came up
+  UNBALANCED,       ///< no output angle within reach balances the load
+  DISENGAGED        ///< no tooth touches, at any output angle within reach
+};
+
+/// What the solver was doing.
+enum class SolveStage
+{
+  INSERTION,  ///< of the wave generator
+  MOTION,     ///< to given angles of wave generator and output
+  BALANCE     ///< of the load, by turning the output
+};
+
+/// Outcome of a solve; the caller must look.
+struct [[nodiscard]] SolveStatus
+{
+  SolveCode code{ SolveCode::CONVERGED };
+  SolveStage stage{ SolveStage::MOTION };
+  int iterations{};            ///< Newton iterations, all attempts
+  int cuts{};                  ///< halvings of the path
+  int jumps{};                 ///< teeth that changed their space through a tip: ratcheting, or too long a move
+  double residual{};           ///< largest out-of-balance force component on a tooth [N]
+  double unbalanced_torque{};  ///< of the last balance: load that the mesh does not carry [N.m]
+
+  bool ok() const noexcept { return code == SolveCode::CONVERGED; }
+
+  /// Adds the effort of an earlier attempt.
+  SolveStatus& addEffort(const SolveStatus& before) noexcept
+  {
+    iterations += before.iterations;
+    cuts += before.cuts;
+    return *this;
+  }
+};
+
+/// As written in the source, e.g. "NO_DESCENT".
+const char* nameOf(SolveCode code) noexcept;
+
+/// For the user: the stage that failed, the code, what was left unbalanced and what to do.
+std::string explanationOf(const SolveStatus& status);
+}  // namespace hjt

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/sweep/plan.hpp"
+
+namespace hjt
+{
+/// Directory of a plan's runs: plan.json, index.csv, runs/.
+class SweepDirectory
+{
+public:
+  SweepDirectory(const Plan& plan, std::string path);
+  ~SweepDirectory();
+  SweepDirectory(const SweepDirectory&) = delete;
+  SweepDirectory& operator=(const SweepDirectory&) = delete;
+
+  /// Makes it, or takes it up again. @throws InputError if it holds something else than runs of this very plan.
+  void open();
+
+  /// Keeps other processes from writing this run until this one ends. @throws InputError if one does already.
+  void lock(std::uint64_t run) const;
+
+  /// Whether the run's file is there, readable and, if the index was written since, has the index's hash.
+  bool isFinished(std::uint64_t run);
+
+  std::string runFile(std::uint64_t run) const;            ///< whole path
+  std::string runFileName(std::uint64_t run) const;        ///< from the directory on
+  nlohmann::ordered_json record(std::uint64_t run) const;  ///< none if the run is not finished
+
+  /// Writes index.csv from the runs' files.
+  void writeIndex();
+
+  /// One line of the index: of a finished run from its record, else with the status given. Without line end.
+  std::string indexHeader() const;
+  std::string indexRow(const nlohmann::ordered_json& record) const;
+
+private:
+  std::uint64_t finishedRuns() const;
+
+  const Plan& plan_;
+  std::string path_;
+  int plan_file_{ -1 };
+  std::map<std::uint64_t, std::string> hashes_;  // of the runs' files, by the index
+};
+
+/// What the index says of a run before it has run: labels, variables, seeds.
+nlohmann::ordered_json recordOf(const RunSpec& spec, const std::string& file);
+}  // namespace hjt

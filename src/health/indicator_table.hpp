@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "base/table_order.hpp"
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
+
+namespace hjt
+{
+/// Of the smallest spread that a healthy indicator is taken to have.
+enum class FloorUnit
+{
+  INDICATOR,       ///< the indicator's own
+  ENCODER_COUNT,   ///< one count of both encoders, as an angle of the joint [rad]
+  COUNT_IN_A_TURN  ///< one count as a share of what the joint travels in a motor turn [-]
+};
+
+struct ScalarRow
+{
+  ScalarIndicator indicator;
+  const char* name;
+  const char* unit;
+  Feature feature;  ///< that the cause of a fault is sought with
+  double floor{};   ///< below this a spread is not believed
+  FloorUnit floor_unit{};
+};
+
+/// By as much of an encoder count a window's mean may wander.
+constexpr double COUNT_SHARE = 0.1;
+
+/// All that health, messages and files know of the scalar indicators.
+inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
+    { ScalarIndicator::RATIO_DEVIATION, "ratio_deviation", "-", Feature::RATIO, COUNT_SHARE,
+      FloorUnit::COUNT_IN_A_TURN },
+    { ScalarIndicator::KINEMATIC_ERROR, "kinematic_error", "rad", Feature::KINEMATIC_ERROR, COUNT_SHARE,
+      FloorUnit::ENCODER_COUNT },
+    { ScalarIndicator::TORSIONAL_STIFFNESS, "torsional_stiffness", "N.m/rad", Feature::STIFFNESS },
+    { ScalarIndicator::LOST_MOTION, "lost_motion", "rad", Feature::LOST_MOTION, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
+    { ScalarIndicator::HYSTERESIS_AREA, "hysteresis_area", "J", Feature::LOOP_AREA },
+    { ScalarIndicator::RUNNING_TORQUE, "running_torque", "N.m", Feature::RUNNING_TORQUE },
+    { ScalarIndicator::COULOMB_TORQUE, "coulomb_torque", "N.m", Feature::COULOMB },
+    { ScalarIndicator::VISCOUS_FRICTION, "viscous_friction", "N.m.s/rad", Feature::VISCOUS },
+    { ScalarIndicator::EFFICIENCY, "efficiency", "-", Feature::EFFICIENCY },
+    { ScalarIndicator::RESIDUAL_RMS, "residual_rms", "rad", Feature::RESIDUAL, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
+    // Moments of the residual are no normal quantities: smaller spreads are not looked into.
+    { ScalarIndicator::RESIDUAL_KURTOSIS, "residual_kurtosis", "-", Feature::IMPULSES, 0.3, FloorUnit::INDICATOR },
+    { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
+} };
+static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
+
+struct LineRow
+{
+  Line line;
+  const char* name;
+  Feature feature;
+};
+
+/// The tracked lines; each is an indicator of the kinematic error and of the motor torque.
+inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
+    { Line::WAVE_GENERATOR_1, "wave_generator_1", Feature::ORDER_1 },
+    { Line::WAVE_GENERATOR_2, "wave_generator_2", Feature::ORDER_2 },
+    { Line::WAVE_GENERATOR_4, "wave_generator_4", Feature::ORDER_4 },
+    { Line::CIRCULAR_SPLINE_2, "circular_spline_2", Feature::ORDER_CIRCULAR_SPLINE },
+    { Line::CAGE, "cage", Feature::CAGE },
+    { Line::CAGE_LOBES, "cage_lobes", Feature::CAGE },
+    { Line::BALL, "ball", Feature::BALL },
+    { Line::BALL_DOUBLE, "ball_double", Feature::BALL },
+    { Line::OUTER, "outer", Feature::OUTER },
+    { Line::OUTER_BELOW, "outer_below", Feature::OUTER },
+    { Line::OUTER_ABOVE, "outer_above", Feature::OUTER },
+    { Line::INNER, "inner", Feature::INNER },
+    { Line::INNER_BELOW, "inner_below", Feature::INNER },
+    { Line::INNER_ABOVE, "inner_above", Feature::INNER },
+    { Line::TOOTH_PASS, "tooth_pass", Feature::TOOTH_PASS },
+    { Line::TOOTH_PASS_ABOVE, "tooth_pass_above", Feature::TOOTH_PASS },
+} };
+static_assert(isInOrder(LINES, &LineRow::line), "a row for each Line, in its order");
+}  // namespace hjt

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "solver/cyclic_solver.hpp"
+#include "solver/ring_state.hpp"
+
+namespace hjt
+{
+/// Forces on the ring at a state, their tangent and its factors.
+class RingLinearisation
+{
+public:
+  explicit RingLinearisation(const RingModel& model);
+
+  /// Without the circular spline while `circular_spline_in` is false.
+  void updateForces(const RingState& state) noexcept;
+  void updateTangent(const RingState& state) noexcept;  ///< with the forces of the same state
+  void shift(double stiffness) noexcept;                ///< adds to every tooth's own stiffness [N/m]
+  bool factor() noexcept { return solver_.factor(tangent_); }
+
+  /// Tangent and factors of a state whose forces are the present ones. False: it has no inverse.
+  bool refactor(const RingState& state) noexcept;
+
+  /// Whether a tooth has begun or ceased to touch, or the cup has come to another slope, since `refactor`.
+  bool slopesChanged() const noexcept;
+
+  /// After an edit of the model: no factors are those of its tangent.
+  void forgetFactors() noexcept { factored_ = false; }
+
+  /// Steps of the tooth points that the factored tangent answers the present forces with [m].
+  void solve(Eigen::VectorXd& step) noexcept;
+
+  /// The same after `refactor`; with the first step come the rates by both angles: a sweep costs little more for three
+  /// columns.
+  const Eigen::VectorXd& newtonStep() noexcept;
+
+  /// Rates and stiffness of the last `refactor`, handed over to the state.
+  void moveSensitivities(RingState& state) noexcept;
+
+  const RingForces& forces() const noexcept { return forces_; }
+  double residual() const noexcept;  ///< largest force component on a tooth [N]
+  double stiffest() const noexcept;  ///< largest entry on the tangent's diagonal [N/m]
+
+  bool circular_spline_in{ true };
+
+private:
+  const RingModel& model_;
+  CyclicSolver solver_;
+  RingTangent tangent_;
+  RingForces forces_;
+  // When the tangent was factored.
+  bool factored_{};
+  std::vector<char> factored_meshed_;
+  Eigen::VectorXd factored_depth_;  // of the wave generator's contact
+  // Of the last factored tangent, once known.
+  bool rates_known_{};
+  Eigen::VectorXd step_;
+  Eigen::VectorXd by_wave_generator_;
+  Eigen::VectorXd by_output_;
+};
+}  // namespace hjt

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "harmonic_joint_twin/solver/solve_status.hpp"
+
+#include <sstream>
+
+namespace hjt
+{
+namespace
+{
+const char* failureOf(SolveStage stage) noexcept
+{
+  switch (stage)
+  {
+    case SolveStage::INSERTION:
+      return "the insertion of the wave generator failed";
+    case SolveStage::BALANCE:
+      return "no output angle balances the load";
+    case SolveStage::MOTION:
+      break;
+  }
+  return "the ring cannot be moved to the requested angles";
+}
+
+const char* adviceOf(const SolveStatus& status) noexcept
+{
+  if (status.code == SolveCode::NOT_FINITE)
+  {
+    return "a number overflowed; look for extreme parameters or angles";
+  }
+  if (status.stage == SolveStage::INSERTION || status.code == SolveCode::DISENGAGED)
+  {
+    return "the gear does not fit together; compare gear.wave_amplitude, gear.rim_thickness, "
+           "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers of "
+           "teeth";
+  }
+  if (status.stage == SolveStage::BALANCE)
+  {
+    return "the teeth do not carry it; reduce the load";
+  }
+  return status.code == SolveCode::ITERATION_LIMIT ?
+             "take smaller steps, or raise solver.max_iterations or solver.max_step_cuts" :
+             "take smaller steps, or reduce the load: the teeth may be about to jump";
+}
+}  // namespace
+
+const char* nameOf(SolveCode code) noexcept
+{
+  switch (code)
+  {
+    case SolveCode::CONVERGED:
+      return "CONVERGED";
+    case SolveCode::ITERATION_LIMIT:
+      return "ITERATION_LIMIT";
+    case SolveCode::NO_DESCENT:
+      return "NO_DESCENT";
+    case SolveCode::SINGULAR:
+      return "SINGULAR";
+    case SolveCode::NOT_FINITE:
+      return "NOT_FINITE";
+    case SolveCode::UNBALANCED:
+      return "UNBALANCED";
+    case SolveCode::DISENGAGED:
+      return "DISENGAGED";
+  }
+  return "unknown";
+}
+
+std::string explanationOf(const SolveStatus& status)
+{
+  std::ostringstream text;
+  if (status.ok())
+  {
+    return nameOf(status.code);
+  }
+  text << failureOf(status.stage) << " (" << nameOf(status.code) << ", ";
+  if (status.code == SolveCode::DISENGAGED)
+  {
+    text << "no tooth touches";
+  }
+  else if (status.stage == SolveStage::BALANCE)
+  {
+    text << status.unbalanced_torque << " N.m not carried";
+  }
+  else
+  {
+    text << "largest out-of-balance force " << status.residual << " N";
+  }
+  text << "): " << adviceOf(status);
+  return text.str();
+}
+}  // namespace hjt

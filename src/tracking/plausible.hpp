@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/motion_smoother.hpp"
+
+namespace hjt
+{
+/// Beyond these a message was damaged [rad], [A] or [N.m].
+constexpr double LARGEST_ANGLE = 1.0e4;
+constexpr double LARGEST_EFFORT = 1.0e4;
+
+inline bool isPlausibleEffort(double effort) noexcept
+{
+  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
+}
+
+/// The motor's angle may be missing.
+inline bool isPlausible(const MotionRow& row) noexcept
+{
+  return std::isfinite(row.time) && std::abs(row.position) < LARGEST_ANGLE && isPlausibleEffort(row.current) &&
+         !(std::abs(row.motor_angle) > LARGEST_ANGLE * LARGEST_ANGLE);
+}
+
+/// Within what this joint's motor and gear can bear.
+inline bool isPossible(const MotionSample& sample, const Parameters& parameters) noexcept
+{
+  constexpr double MARGIN = 3.0;  // of a current's peaks over the motor's continuous torque [-]
+  const double current =
+      MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
+  return std::abs(sample.load) <= parameters.output.load_torque_limit && std::abs(sample.current) <= current;
+}
+}  // namespace hjt

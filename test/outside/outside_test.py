@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A user of the installed package: every public header compiles alone, and a program makes and steps a twin.
+
+Argument: the package's build directory, everything built.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+BUILD = os.path.abspath(sys.argv.pop(1))
+
+
+def run(*command, **options):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(command)}\n{done.stdout[-4000:]}")
+    return done.stdout
+
+
+class OutsideUser(unittest.TestCase):
+    def test_a_program_finds_the_package_and_steps_a_twin(self):
+        with tempfile.TemporaryDirectory() as folder:
+            prefix = os.path.join(folder, "prefix")
+            build = os.path.join(folder, "build")
+            run("cmake", "--install", BUILD, "--prefix", prefix)
+            # Neither the checkout nor the development space may help.
+            environment = {key: value for key, value in os.environ.items()
+                           if key not in ("CMAKE_PREFIX_PATH", "CPATH", "LD_LIBRARY_PATH")}
+            others = [path for path in os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
+                      if path and not path.startswith(BUILD)]
+            environment["CMAKE_PREFIX_PATH"] = ":".join([prefix, *others])
+            configured = run("cmake", "-S", HERE, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
+                             "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", env=environment)
+            self.assertIn("public headers", configured)
+            with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
+                self.assertNotIn(f"-I{os.path.dirname(os.path.dirname(HERE))}", file.read())
+            run("cmake", "--build", build, "--parallel", "2", env=environment)
+            environment["LD_LIBRARY_PATH"] = os.path.join(prefix, "lib")
+            output = run(os.path.join(build, "outside_user"),
+                         os.path.join(prefix, "share", "harmonic_joint_twin", "config"), env=environment)
+            self.assertIn("tooth forces 1", output)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv)

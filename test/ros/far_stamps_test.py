@@ -1,0 +1,175 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stamps far from the clock and a clock that jumps far, in both modes of the node: it stays, refuses and counts
+them."""
+import math
+import signal
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+
+from harmonic_joint_twin.msg import Comparison, Fault
+from ros_support import PACKAGE, WARN, Diagnostics, Listener, Node, configuration_files, load_parameters, wait_until
+
+NODE = "/twin_under_test"
+JOINT = "elbow_joint"
+START = 1_700_000_000      # first time of the clock [s]
+PERIOD = 0.008             # of the telemetry [s]
+LAST = 2**32 - 1           # largest second of a ROS stamp
+
+
+def raw_time(seconds, nanoseconds):
+    """As it may come over the wire: nanoseconds beyond a second."""
+    stamp = rospy.Time()
+    stamp.secs, stamp.nsecs = seconds, nanoseconds
+    return stamp
+
+
+FAR = [rospy.Time(1, 0), rospy.Time(2**31 - 1, 0), rospy.Time(2**31, 0), rospy.Time(LAST, 999_999_999),
+       raw_time(LAST, LAST)]
+
+
+class FarStamps(unittest.TestCase):
+    def start(self, mode):
+        changes = {"input/mode": mode, "telemetry/load": "load_torque"} if mode != "commands" else {}
+        load_parameters(NODE, configuration_files(), changes)
+        self.node = Node(NODE.lstrip("/"))
+        self.addCleanup(self.node.kill)
+        self.now = float(START)
+        self.diagnostics = Diagnostics(NODE)
+        self.clock = self.publisher("/clock", Clock)
+        self.load = self.publisher(f"{NODE}/load", JointState)
+        self.tick(START)
+        # A task that has values: the first status only says that the node is starting.
+        wait_until(lambda: self.tick(START) or self.diagnostics.values("Input"), "diagnostics", 60.0)
+
+    def publisher(self, topic, message_type):
+        publisher = rospy.Publisher(topic, message_type, queue_size=1000)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, f"a subscriber of {topic}")
+        return publisher
+
+    def tick(self, seconds):
+        self.clock.publish(rospy.Time(seconds))
+        time.sleep(0.02)
+
+    def jump(self, has_seen):
+        """The clock goes to each of the far times, a few ticks there, and comes back; each time it waits until the node
+        has seen that."""
+        for far in FAR:
+            for _ in range(3):
+                self.clock.publish(far)
+                time.sleep(0.02)
+            wait_until(lambda: self.check_alive(f"/clock at {far.secs} s") or has_seen(far.to_sec()),
+                       "the clock far away")
+            self.tick(START)
+            wait_until(lambda: self.check_alive(f"/clock back from {far.secs} s") or has_seen(START), "the clock back")
+
+    def check_alive(self, after):
+        self.assertIsNone(self.node.process.poll(), f"ended after {after}:\n{self.node.output()[-400:]}")
+
+    def send(self, publisher, stamp, **fields):
+        message = JointState(name=[JOINT], **fields)
+        message.header.stamp = stamp
+        publisher.publish(message)
+
+    def stop(self):
+        code, _ = self.node.stop(signal.SIGTERM)
+        self.assertEqual(code, 0, self.node.output()[-400:])
+
+    def test_a_twin(self):
+        self.start("commands")
+        command = self.publisher(f"{NODE}/command", JointState)
+        fault = self.publisher(f"{NODE}/inject_fault", Fault)
+        for stamp in FAR:
+            for publisher in (command, self.load):
+                self.send(publisher, stamp, effort=[0.1])
+            message = Fault(kind="tooth_wear", severity=0.5, place=-1)
+            message.header.stamp = stamp
+            fault.publish(message)
+            time.sleep(0.1)
+            self.check_alive(f"stamps at {stamp.secs} s")
+        self.diagnostics.wait_for("Input", "Stamp far from the clock, refused", 3 * len(FAR))
+        self.assertEqual(self.diagnostics.level("Input"), WARN)
+        self.send(command, rospy.Time(START), effort=[0.2])
+        time.sleep(0.2)
+        self.tick(START + 1)
+        self.diagnostics.wait_for("Input", "Accepted", 1)
+        self.stop()
+
+    def test_a_twin_whose_clock_jumps_far(self):
+        self.start("commands")
+        self.jump(lambda seconds: abs(self.diagnostics.number("Timing", "Clock [s]") - seconds) < 5.0)
+        self.assertEqual(self.diagnostics.number("Timing", "Clock jumps back"), len(FAR))  # the first: to 1 s
+        self.stop()
+
+    def test_a_twin_beside_a_robot(self):
+        self.start("motion")
+        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
+        comparisons = Listener(f"{NODE}/comparison", Comparison)
+        self.addCleanup(comparisons.close)
+        comparisons.wait_for_connection()
+        self.row = 0
+        self.give_rows(measured, 50)
+        wait_until(comparisons.messages, "comparisons")
+        for stamp in FAR:
+            self.send(self.load, stamp, effort=[1.0])
+            self.send(measured, stamp, position=[0.1], effort=[0.1])
+            time.sleep(0.1)
+            self.check_alive(f"stamps at {stamp.secs} s")
+            self.give_rows(measured, 10)
+        self.diagnostics.wait_for("Input", "Stamp far from the clock, refused", len(FAR))
+        self.diagnostics.wait_for("Input", "Loads refused", len(FAR))
+        # Nothing of the recording is lost by it: no gap, no restart.
+        self.assertEqual(self.diagnostics.number("Input", "Starts anew"), 0)
+        self.assertEqual(self.diagnostics.number("Input", "Gaps that cut the stream"), 0)
+        self.assertTrue(all(START <= m.header.stamp.to_sec() < START + 10 for m in comparisons.messages()))
+        self.stop()
+
+    def test_a_twin_beside_a_robot_whose_clock_jumps_far(self):
+        self.start("motion")
+        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
+        comparisons = Listener(f"{NODE}/comparison", Comparison)
+        self.addCleanup(comparisons.close)
+        comparisons.wait_for_connection()
+        self.row = 0
+        self.give_rows(measured, 50)
+        self.jump(lambda _: time.sleep(0.5) or True)
+        comparisons.clear()
+        self.give_rows(measured, 50)
+        wait_until(comparisons.messages, "comparisons after the jumps")
+        self.stop()
+
+    def test_a_twin_beside_a_robot_whose_first_stamp_is_wrong(self):
+        self.start("motion")
+        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
+        comparisons = Listener(f"{NODE}/comparison", Comparison)
+        self.addCleanup(comparisons.close)
+        comparisons.wait_for_connection()
+        self.row = 0
+        self.send(measured, FAR[-1], position=[0.1], effort=[0.1])
+        self.give_rows(measured, 100)
+        wait_until(lambda: len(comparisons.messages()) > 50, "comparisons")
+        self.assertTrue(all(START <= m.header.stamp.to_sec() < START + 10 for m in comparisons.messages()))
+        self.stop()
+
+    def give_rows(self, publisher, count):
+        """Rows of a slow swing with the clock beside them."""
+        for _ in range(count):
+            self.row += 1
+            self.now = START + PERIOD * self.row
+            stamp = rospy.Time.from_sec(self.now)
+            self.clock.publish(stamp)
+            self.send(publisher, stamp, position=[0.1 * math.sin(self.now - START)], effort=[0.1])
+            time.sleep(0.002)
+
+
+if __name__ == "__main__":
+    # By the system's clock: this test makes the other.
+    rospy.init_node("far_stamps_test", disable_rostime=True)
+    rostest.rosrun(PACKAGE, "far_stamps", FarStamps, sys.argv)
