@@ -112,7 +112,7 @@ class Indicators(tool.ToolTest):
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
         self.write("bad.yaml",
                    "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
-                               "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
+                   "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
         self.write("other.yaml", "load_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                                  "windows: 3, indicators: {}}\n")
         self.fail_with(1, ["other.yaml is no baseline: its load_step is 2.925 [N.m], expected 25.125"],
