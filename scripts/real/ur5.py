@@ -9,6 +9,7 @@ from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, spectrum, tabl
 RECORDING = os.path.join("ur5_cb", "ur5_cb_no6.csv")
 JOINTS = ["base", "shoulder", "elbow"]
 REPEAT = 26.936  # [s] how long one repeat of the recorded motion is
+LOAD = ["--set", "telemetry.load=target_moment"]  # the recording has the controller's
 FOLDS = 18       # pieces of the first repeat, each left out in turn
 JOIN = 0.8       # [s] the recording was put together from three; the controller's jolt at each join
 MOVING = 0.01    # [rad/s]
@@ -32,9 +33,9 @@ def examine(runner, path):
         configuration = ["--joint", joint, "--config", f"joints/{joint}.yaml"]
         found = runner.run("identify", path, *configuration, "--train", f"0,{REPEAT}", "--judge", f"{REPEAT},1000",
                            "--folds", FOLDS, "--out", overlay, "--json")
-        runner.run("follow", path, *configuration, "--config", overlay, "--out", f"{joint}.csv")
+        runner.run("follow", path, *configuration, "--config", overlay, *LOAD, "--out", f"{joint}.csv")
         smooth = [text for line in found["lines"] for text in ("--set", f"{line['key']}=[0.0,0.0]")]
-        runner.run("follow", path, *configuration, "--config", overlay, *smooth, "--out", f"{joint}_smooth.csv")
+        runner.run("follow", path, *configuration, "--config", overlay, *LOAD, *smooth, "--out", f"{joint}_smooth.csv")
         results[joint] = (found, read(runner.path(f"{joint}.csv")), read(runner.path(f"{joint}_smooth.csv")))
     return results
 

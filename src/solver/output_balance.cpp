@@ -31,6 +31,15 @@ SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
       stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
   return ring.moveTo(target);
 }
+
+SolveCode codeOfFailure(const RingEquilibrium& ring, double load_torque) noexcept
+{
+  if (!std::isfinite(load_torque))
+  {
+    return SolveCode::NOT_FINITE;
+  }
+  return ring.forces().output_torque == 0.0 ? SolveCode::DISENGAGED : SolveCode::UNBALANCED;
+}
 }  // namespace
 
 double balanceTolerance(const RingEquilibrium& ring) noexcept
@@ -69,7 +78,7 @@ SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, do
         moved.ok() && std::abs(excess) <= before ? std::min(2.0 * reach, MOST_REACH * toothSpace(ring)) : 0.5 * reach;
     if (idle > MAX_IDLE)
     {
-      total.code = std::isfinite(load_torque) ? SolveCode::UNBALANCED : SolveCode::NOT_FINITE;
+      total.code = codeOfFailure(ring, load_torque);
       total.stage = SolveStage::BALANCE;
       total.unbalanced_torque = -excess;
     }

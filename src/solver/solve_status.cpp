@@ -27,16 +27,15 @@ const char* adviceOf(const SolveStatus& status) noexcept
   {
     return "a number overflowed; look for extreme parameters or angles";
   }
-  switch (status.stage)
+  if (status.stage == SolveStage::INSERTION || status.code == SolveCode::DISENGAGED)
   {
-    case SolveStage::INSERTION:
-      return "the parts do not fit together; compare gear.wave_amplitude, gear.rim_thickness, "
-             "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers of "
-             "teeth";
-    case SolveStage::BALANCE:
-      return "the teeth do not carry it; reduce the load";
-    case SolveStage::MOTION:
-      break;
+    return "the gear does not fit together; compare gear.wave_amplitude, gear.rim_thickness, "
+           "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers of "
+           "teeth";
+  }
+  if (status.stage == SolveStage::BALANCE)
+  {
+    return "the teeth do not carry it; reduce the load";
   }
   return status.code == SolveCode::ITERATION_LIMIT ?
              "take smaller steps, or raise solver.max_iterations or solver.max_step_cuts" :
@@ -60,6 +59,8 @@ const char* nameOf(SolveCode code) noexcept
       return "NOT_FINITE";
     case SolveCode::UNBALANCED:
       return "UNBALANCED";
+    case SolveCode::DISENGAGED:
+      return "DISENGAGED";
   }
   return "unknown";
 }
@@ -72,7 +73,11 @@ std::string explanationOf(const SolveStatus& status)
     return nameOf(status.code);
   }
   text << failureOf(status.stage) << " (" << nameOf(status.code) << ", ";
-  if (status.stage == SolveStage::BALANCE)
+  if (status.code == SolveCode::DISENGAGED)
+  {
+    text << "no tooth touches";
+  }
+  else if (status.stage == SolveStage::BALANCE)
   {
     text << status.unbalanced_torque << " N.m not carried";
   }

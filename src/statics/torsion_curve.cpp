@@ -6,6 +6,7 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 
 namespace hjt

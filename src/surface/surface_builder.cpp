@@ -21,6 +21,7 @@ constexpr int COARSE_LINES = 32;       // a side, before refinement, about
 constexpr int MAX_HALVINGS = 9;        // of an interval between two lines
 constexpr int LEAST_COLUMNS = 16;
 constexpr int MOST_COLUMNS = 64;
+constexpr std::size_t MOST_NODES = 500000;  // 150 MB; the shipped gear needs a third of it
 
 class SurfaceBuilder
 {
@@ -35,7 +36,14 @@ public:
   SurfaceBuild build()
   {
     SurfaceBuild result;
-    insert();
+    if (ring_.torqueLimit() > 0.0)
+    {
+      insert();
+    }
+    else
+    {
+      obstacle_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
+    }
     if (good())
     {
       coverRange();
@@ -219,6 +227,12 @@ private:
 
   void refine(double below, double above, int halvings)
   {
+    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= MOST_NODES)
+    {
+      obstacle_ =
+          "a table as fine as its tolerances ask for would have more than " + std::to_string(MOST_NODES) + " points";
+      return;
+    }
     const double middle = 0.5 * (below + above);
     Line line = measureLine(middle, table_.columns);
     if (line.empty())
@@ -240,6 +254,9 @@ private:
     if (!fine)
     {
       refine(below, middle, halvings + 1);
+    }
+    if (!fine && good())
+    {
       refine(middle, above, halvings + 1);
     }
   }

@@ -26,6 +26,7 @@
 #include "base/whole_file.hpp"
 #include "gear/angle.hpp"
 #include "params/field_table.hpp"
+#include "params/variants.hpp"
 #include "surface/departure_builder.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
@@ -58,20 +59,6 @@ std::string header(const Parameters& parameters, const std::string& faults)
     text += '\n';
   }
   return text;
-}
-
-/// These parameters with teeth and spaces that are all equal.
-Parameters withEqualTeeth(Parameters parameters)
-{
-  ManufactureParameters& errors = parameters.manufacture;
-  for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
-  {
-    pitch->deviation = 0.0;
-    pitch->table = NO_FILE;
-  }
-  errors.circular_spline_eccentricity = {};
-  errors.circular_spline_ellipticity = {};
-  return parameters;
 }
 
 template <class T>

@@ -37,7 +37,8 @@ public:
   /// How far a table's output torque may be off at a node: what 0.002 seconds of arc make [N.m].
   double outputTolerance(const SurfaceTable::Node& node) const noexcept;
 
-  /// Likewise the motor's torque, or friction there: a share of the motor's torque limit [N.m].
+  /// Likewise the motor's torque, or friction there: a share of the motor's torque limit, or without one of what the
+  /// load's limit is at the motor [N.m].
   double motorTolerance(const SurfaceTable::Node& node) const noexcept;
 
   /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].
@@ -57,7 +58,6 @@ private:
   MeshFriction unit_friction_;
   RingEquilibrium ring_;
   JointFriction friction_;
-  Eigen::VectorXd running_;  // scratch
   Eigen::VectorXd tooth_angles_;
   double pitch_;
   double ratio_;

@@ -15,6 +15,7 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "statics/torsion_curve.hpp"
 #include "tracking/observer.hpp"
 
 namespace hjt
@@ -292,6 +293,26 @@ TEST(Observer, BeginsAnewAfterAGap)
   EXPECT_NEAR(anew.output_angle, -1.2, 1e-9);
   EXPECT_NEAR(anew.motor_angle, -1.2 * nominalRatio(joint.gear), 0.1);
   EXPECT_EQ(anew.residual_torque, 0.0);
+}
+
+TEST(TorsionCurve, HasTheStiffnessOfTheCatalogueInEverySize)
+{
+  struct Size
+  {
+    std::vector<std::string> overlays;
+    double first_slope;  // of the catalogue, up to the first breakpoint [N.m/rad]
+  };
+  for (const Size& size : { Size{ {}, 31.0e3 }, Size{ { "size_14" }, 4.7e3 } })
+  {
+    const Parameters parameters = shippedParameters({}, size.overlays);
+    const TorsionCurve curve(parameters);
+    const double torque = parameters.cup.torsion_breakpoints[0];
+    EXPECT_NEAR(torque / curve.torsion(torque), size.first_slope, 0.03 * size.first_slope);
+    for (const double share : { -1.3, -0.4, 0.01, 0.4, 1.0, 2.0, 30.0 })
+    {
+      EXPECT_NEAR(curve.torque(curve.torsion(share * torque)), share * torque, 1e-9 * torque);
+    }
+  }
 }
 }  // namespace
 }  // namespace hjt

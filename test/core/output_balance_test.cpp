@@ -97,6 +97,16 @@ TEST(OutputBalance, OfALoadBeyondTheTeethSaysWhatTheyDoNotCarry)
   EXPECT_NE(explanationOf(status).find("no output angle balances the load (UNBALANCED, "), std::string::npos);
 }
 
+TEST(OutputBalance, OfTeethThatDoNotReachEachOtherSaysSo)
+{
+  UnloadedRing unloaded({ "thin rim", { "gear.rim_thickness=0.4e-3" }, {}, 5.0 });
+  const SolveStatus status = balanceOutput(unloaded.ring, 0.0, 5.0);
+  EXPECT_EQ(status.code, SolveCode::DISENGAGED);
+  EXPECT_NE(explanationOf(status).find("no tooth touches"), std::string::npos);
+  EXPECT_NE(explanationOf(status).find("gear.rim_thickness"), std::string::npos);
+  EXPECT_EQ(explanationOf(status).find("solver.max_iterations"), std::string::npos);
+}
+
 TEST(OutputBalance, OfNoNumberIsRefused)
 {
   UnloadedRing unloaded(GEARS[0]);

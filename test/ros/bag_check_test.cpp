@@ -150,7 +150,14 @@ void damage(std::string& bytes, std::mt19937& random)
         bytes.replace(at, 50, bytes.substr(below(bytes.size() - 60), 50));
         break;
       default:
-        below(4) == 0 ? bytes.resize(at + 50) : bytes.erase(at, 1 + below(8));
+        if (below(4) == 0)
+        {
+          bytes.resize(at + 50);
+        }
+        else
+        {
+          bytes.erase(at, 1 + below(8));
+        }
     }
   }
 }

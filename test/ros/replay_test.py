@@ -4,6 +4,7 @@
 import glob
 import math
 import os
+import resource
 import signal
 import socket
 import subprocess
@@ -152,6 +153,30 @@ class Replay(unittest.TestCase):
         with open(self.live) as file:
             self.assertEqual(file.read(), "not to be lost")
         self.assertLess(time.monotonic() - begin, 60.0)
+
+    def test_a_full_disk_ends_the_recorder_with_what_was_recorded(self):
+        limit = 300000  # of a file [byte]
+        recorder = subprocess.Popen([executable("replay_recorder"), self.recording, "--output", self.live],
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.addCleanup(recorder.kill)
+        publisher = rospy.Publisher("/joint_twin/command", JointState, queue_size=100)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, "the recorder")
+
+        def publish():
+            publisher.publish(JointState(name=["x" * 1000]))
+            return recorder.poll() is not None
+
+        wait_until(publish, "the end of the recorder")
+        said = recorder.communicate()[0]
+        self.assertEqual(recorder.returncode, 1, said)
+        self.assertIn(f"{self.live}.active has {limit} bytes of ", said)
+        with rosbag.Bag(f"{self.live}.active", "a", allow_unindexed=True) as bag:
+            for _ in bag.reindex():
+                pass
+        with rosbag.Bag(f"{self.live}.active") as bag:
+            self.assertGreater(bag.get_message_count("/joint_twin/command"), 0.9 * limit / 1100)
 
 
 if __name__ == "__main__":

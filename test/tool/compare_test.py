@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin compare`: recordings of strangers, and damaged ones."""
 import json
+import math
 import os
+import random
 import re
 import struct
+
+import rosbag
 
 import robot
 import tool
@@ -122,6 +126,37 @@ class Compare(tool.ToolTest):
             if isinstance(one, dict):
                 one, other = one["residual_rms"], other["residual_rms"]
             self.assertAlmostEqual(one, other, delta=0.02 * abs(one))
+
+    def test_what_is_not_the_joints_current_is_not_judged(self):
+        robot.write_bag(self.path("sound.bag"), 60.0)
+        for name, factor, said in (("zero.bag", 0.0, "it is not the motor's current"),
+                                   ("torque.bag", robot.GAIN, "expected in A, not in N.m")):
+            self.rewrite("sound.bag", name, lambda state, factor=factor: [factor * value for value in state.effort])
+            verdict = self.compare(name)["verdict"]
+            self.assertEqual(verdict["level"], "NOT JUDGED", verdict)
+            self.assertIn(said, verdict["findings"][0]["text"])
+            self.assertEqual(verdict["findings"][0]["causes"], [])
+
+    def rewrite(self, source, target, efforts):
+        with rosbag.Bag(self.path(source)) as given, rosbag.Bag(self.path(target), "w") as changed:
+            for topic, message, time in given.read_messages():
+                if topic == robot.STATES_TOPIC:
+                    message.effort = efforts(message)
+                changed.write(topic, message, time)
+
+    def test_stamps_that_disagree_with_the_velocities_are_said(self):
+        rows = ["timestamp,actual_q_2,actual_qd_2,actual_current_2,target_moment_2"]
+        generator = random.Random(3)
+        for row in range(3000):
+            seconds = row / robot.RATE
+            angle, current, load = robot.telemetry(seconds, generator)
+            speed = 0.63 * math.cos(0.9 * seconds) + 0.46 * math.cos(2.3 * seconds)
+            rows.append(f"{0.5 * seconds:.4f},{angle:.9f},{speed:.9f},{current:.6f},{load:.6f}")
+        self.write("fast.csv", "\n".join(rows) + "\n")
+        done = self.succeed("compare", "fast.csv", *OPTIONS, "--report", "r")
+        self.assertRegex(done.stderr, r"change (2|1\.99\d+|2\.0\d+) times as fast as the recorded velocities")
+        self.assertNotIn("Warning", done.stderr)  # of Python
+        self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100, done.stdout)
 
     def test_a_bag_that_was_cut_off_is_told_from_one_that_is_none(self):
         robot.write_bag(self.path("a.bag"), 60.0)

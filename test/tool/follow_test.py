@@ -33,7 +33,7 @@ record: {format: bag}
 """
 
 
-def as_ur_tells(source, target, lag=0.0, both=False):
+def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT):
     """The robot's own joint states as a UR driver publishes them; received 4 ms after their stamps, one in 50 lost."""
     with rosbag.Bag(source) as robot, rosbag.Bag(target, "w") as bag:
         states = [message for _, message, _ in robot.read_messages("/joint_twin/joint_states")]
@@ -42,10 +42,10 @@ def as_ur_tells(source, target, lag=0.0, both=False):
             if row < behind or row % 50 == 30:
                 continue
             current = states[row - behind].effort[0] * RATIO / GAIN
-            told = JointState(name=["elbow_joint", JOINT, "wrist_1_joint"], position=[0.1, state.position[1], 0.2],
+            told = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, state.position[1], 0.2],
                               velocity=[0.0] * 3, effort=[0.0, current, 0.0])
             if both:
-                told.name.append(JOINT + "_motor")
+                told.name.append(joint + "_motor")
                 told.position.append(state.position[0])
             told.header.stamp = state.header.stamp
             bag.write("/joint_states", told, state.header.stamp + tool.genpy.Duration(0, 4_000_000))
@@ -113,6 +113,32 @@ class Follow(tool.ToolTest):
                            "recorded_load.yaml"], *weight, "--set", "telemetry.load=target_moment")
         self.succeed(*weight)  # as shipped: joint states are enough
         self.fail_with(1, [JOINT], "follow", "a.bag", "--joint", "shoulder_joint")
+
+
+class Wrist(tool.ToolTest):
+    """A joint with another gear: nothing in the tool is of one size."""
+    WEIGHT = 5.0  # [N.m]
+    OPTIONS = ["--joint", "wrist_1", "--config", "size_14.yaml", "--set", f"output.gravity_torque={WEIGHT}"]
+
+    def setUp(self):
+        super().setUp()
+        plan = PLAN.replace("joints/base.yaml", "size_14.yaml").replace("duration: 8.0", "duration: 30.0")
+        plan = plan.replace("set: {", f"set: {{output.gravity_torque: {self.WEIGHT}, ")
+        self.write("plan.yaml", plan[:plan.index("  rubbing:")] + plan[plan.index("record:"):])
+        self.succeed("sweep", "plan.yaml", "--out", "robots")
+        run, = glob.glob(os.path.join(self.path("robots"), "runs", "*.bag"))
+        as_ur_tells(run, self.path("a.bag"), both=True, joint="wrist_1_joint")
+
+    def test_a_sound_wrist_is_followed_judged_and_identified(self):
+        for mode in ("motion", "observer"):
+            summary = self.succeed_json("follow", "a.bag", *self.OPTIONS, "--mode", mode)
+            self.assertLess(summary["outside"], 0.02 * summary["rows"], summary)
+        report = self.succeed_json("compare", "a.bag", *self.OPTIONS, "--report", "r")
+        self.assertAlmostEqual(report["friction_ratio"], 1.0, delta=0.15)
+        self.assertAlmostEqual(report["compliance_ratio"], 1.0, delta=0.15)
+        self.assertEqual(report["verdict"]["level"], "OK", report["verdict"])
+        judged = self.succeed_json("identify", "a.bag", *self.OPTIONS)["judged"]
+        self.assertLess(judged["identified"]["all"], 0.2 * judged["identified"]["signal"])
 
 
 if __name__ == "__main__":

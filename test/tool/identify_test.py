@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin follow` and `joint_twin identify`: a robot's telemetry with the faults of real recordings."""
 import io
+import os
 import random
 
 import rosbag
@@ -84,6 +85,22 @@ class Identify(tool.ToolTest):
         self.write("broken.bag", "not a bag")
         self.fail_with(1, ["broken.bag cannot be read as a bag"], "follow", "broken.bag", *OPTIONS)
         self.fail_with(1, ["nowhere.bag"], "identify", "nowhere.bag", *OPTIONS)
+
+    def test_a_recording_without_load_is_said_and_nothing_identified_is_no_success(self):
+        robot.write_bag(self.path("no_load.bag"), 30.0, with_load=False)
+        done = self.run_tool("identify", "no_load.bag", *OPTIONS)
+        self.assertIn("holds no load", done.stderr)
+        self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100, done.stdout)
+        generator = random.Random(7)
+        rows = ["timestamp,actual_q_2,actual_current_2"]
+        for row in range(3000):
+            angle, _, _ = robot.telemetry(row / robot.RATE, generator)
+            rows.append(f"{row / robot.RATE:.3f},{angle:.9f},{generator.gauss(0.0, 5.0):.6f}")
+        self.write("noise.csv", "\n".join(rows) + "\n")
+        done = self.run_tool("identify", "noise.csv", *OPTIONS, "--out", "noise.yaml")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("nothing could be identified", done.stderr)
+        self.assertFalse(os.path.exists(self.path("noise.yaml")))
 
     def test_a_joint_at_rest_tells_nothing(self):
         rows = ["timestamp,actual_q_0,actual_current_0,target_moment_0"]

@@ -85,6 +85,13 @@ class Import(tool.ToolTest):
         self.assertEqual(tool.read_bytes(self.path("a.bag")), b"precious")
         self.succeed("import", "a.csv", "--joint", 0, "--out", "a.bag", "--force")
 
+    def test_a_joint_has_a_name_too(self):
+        self.write("a.csv", "\n".join(tool.telemetry_csv()) + "\n")
+        for joint in ("elbow", "elbow_joint", "2"):
+            found = self.succeed_json("import", "a.csv", "--joint", joint, "--out", "a.bag", "--force")
+            self.assertEqual(found["joint"], "elbow_joint")
+        self.fail_with(2, ["'elbo' is no joint", "wrist_3"], "import", "a.csv", "--joint", "elbo", "--out", "b.bag")
+
 
 if __name__ == "__main__":
     tool.main()

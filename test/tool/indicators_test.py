@@ -2,6 +2,7 @@
 """`joint_twin indicators`."""
 import math
 
+import robot
 import tool
 
 ARCSEC = math.pi / 180.0 / 3600.0
@@ -89,6 +90,21 @@ class Indicators(tool.ToolTest):
         for one, other in zip(told, found):
             for name in ["kinematic_error", "running_torque", "error_wave_generator_2_cos"]:
                 self.assertAlmostEqual(one["indicators"][name], other["indicators"][name], delta=1e-8)
+
+    def test_a_window_that_was_not_judged_has_no_level(self):
+        self.write("a.csv", recording(seconds=3.0))
+        text = self.succeed("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS).stdout
+        self.assertRegex(text, r"state +learning")
+        self.assertRegex(text, r"level +not judged")
+
+    def test_a_robots_joint_is_named_as_elsewhere(self):
+        robot.write_bag(self.path("a.bag"), 120.0)
+        options = ["--config", "joints/elbow.yaml", "--set", "indicators.window_turns=5.0",
+                   "--set", f"telemetry.torque_per_current={robot.GAIN}"]
+        self.fail_with(1, ["no state of", "/joint_states"], "indicators", "a.bag", *options, "--joint", "base")
+        windows = self.succeed_json("indicators", "a.bag", *options, "--joint", "elbow")["windows"]
+        # Torque at the motor: the current's share of the gain, not the current itself.
+        self.assertLess(max(abs(window["indicators"]["running_torque"]) for window in windows), 1.0)
 
     def test_what_cannot_be_read_is_said(self):
         self.write("short.csv", recording(seconds=1.0))

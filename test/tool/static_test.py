@@ -25,6 +25,19 @@ class CommandLine(tool.ToolTest):
             with self.subTest(arguments):
                 self.fail_with(2, [], *arguments)
 
+    def test_a_misspelt_subcommand_is_named(self):
+        self.fail_with(2, ["unknown subcommand 'compar'", "did you mean compare?"], "compar", "a.bag")
+        self.fail_with(2, ["unknown subcommand 'ag'", "did you mean age?"], "life", "ag")
+        self.fail_with(2, ["unknown subcommand 'xylophone'"], "xylophone")
+
+    def test_the_list_of_faults_fits_a_terminal(self):
+        lines = self.succeed("faults").stdout.splitlines()
+        self.assertLessEqual(max(map(len, lines)), 100)
+        self.assertIn("bearing_cage", lines)
+
+    def test_help_says_which_way_a_torque_turns(self):
+        self.assertIn("negative angles", " ".join(self.succeed("stiffness", "--help").stdout.split()))
+
     def test_help_and_version_end_with_0(self):
         self.assertIn("SI units", self.succeed("--help").stdout)
         self.assertRegex(self.succeed("--version").stdout, r"^joint_twin \d+\.\d+\.\d+$")
@@ -140,6 +153,24 @@ class Stiffness(tool.ToolTest):
             self.assertAlmostEqual(mean / row["cup_rotation"], 1.0, delta=1e-9)
         self.fail_with(1, ["teeth.csv exists; --force overwrites it"], "stiffness", "--torques", "14", "--csv",
                        "teeth.csv")
+
+    def test_one_torque_is_enough_for_another_size(self):
+        size_14 = ("--config", os.path.join(tool.CHECKOUT, "config/size_14.yaml"))
+        alone = self.succeed_json("stiffness", "--torques", "100", *size_14)["rows"]
+        among = self.succeed_json("stiffness", "--torques", "75,-20,100", *size_14)["rows"]
+        self.assertEqual(alone[0], among[2])
+        self.assertAlmostEqual(alone[0]["output_angle"], -13.873e-3, delta=1e-6)
+
+    def test_a_gear_that_does_not_fit_is_named(self):
+        done = self.fail_with(1, ["no equilibrium found for the row of torque 5 N.m: no output angle balances the load "
+                                  "(DISENGAGED, no tooth touches)", "gear.rim_thickness"],
+                              "stiffness", "--torques", "5", "--set", "gear.rim_thickness=0.4e-3")
+        self.assertNotIn("solver.max_iterations", done.stderr)
+        done = self.run_tool("stiffness", "--torques", "5", "--set", "gear.teeth_flexspline=160", "--set",
+                             "gear.teeth_circular_spline=162")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("warning: the teeth jam without load: 78 of 160 loaded, 13519", done.stderr)
+        self.assertEqual(self.succeed("stiffness", "--torques", "5").stderr, "")
 
     def test_torque_may_be_negative(self):
         forth = self.succeed_json("stiffness", "--torques", "14")["rows"][0]

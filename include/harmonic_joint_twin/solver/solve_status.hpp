@@ -12,7 +12,8 @@ enum class SolveCode
   NO_DESCENT,       ///< no step reduced the forces, on the shortest path neither
   SINGULAR,         ///< the tangent has no inverse
   NOT_FINITE,       ///< NaN or Inf came up
-  UNBALANCED        ///< no output angle within reach balances the load
+  UNBALANCED,       ///< no output angle within reach balances the load
+  DISENGAGED        ///< no tooth touches, at any output angle within reach
 };
 
 /// What the solver was doing.

@@ -45,6 +45,19 @@ struct InsertionResult
 };
 InsertionResult analyseInsertion(const Parameters& parameters);
 
+/// Whether the teeth have room where the gear carries no load.
+struct FitCheck
+{
+  SolveStatus status;
+  int teeth_loaded{};                       ///< without load
+  double wave_generator_force{};            ///< sum over the teeth, without load [N]
+  double wave_generator_force_insertion{};  ///< the same without the circular spline [N]
+
+  /// The teeth press harder on the wave generator than the bent rim does.
+  bool jams() const noexcept { return status.ok() && wave_generator_force > 2.0 * wave_generator_force_insertion; }
+};
+FitCheck checkFit(const Parameters& parameters);
+
 /// Wave generator locked, load on the circular spline, friction left out.
 struct StiffnessRow
 {

@@ -29,11 +29,19 @@ std::vector<const Subcommand*>& subcommands()
   return all;
 }
 
-std::string notFinite(const std::string& text)
+using Check = std::function<std::string(const std::string&)>;
+
+/// Numbers for which `holds`, else "'TEXT' WRONG".
+Check bound(const std::function<bool(double)>& holds, const std::string& wrong)
 {
-  const auto number = decimalNumber(text);
-  return number && std::isfinite(*number) ? std::string() : "'" + text + "' is not a finite number";
+  return [=](const std::string& text)
+  {
+    const auto number = decimalNumber(text);
+    return number && holds(*number) ? std::string() : "'" + text + "' " + wrong;
+  };
 }
+
+const Check FINITE = bound([](double number) { return std::isfinite(number); }, "is not a finite number");
 
 /// The file's name ends in one of these.
 std::string wrongEnding(const std::string& path, const std::vector<std::string>& endings)
@@ -78,34 +86,18 @@ const CommandOption& CommandOption::group(const char* name) const
 
 const CommandOption& CommandOption::range(double lowest, double highest) const
 {
-  return check(
-      [=](const std::string& text)
-      {
-        const auto number = decimalNumber(text);
-        return number && *number >= lowest && *number <= highest ?
-                   std::string() :
-                   "'" + text + "' is not within " + shortNumber(lowest) + " ... " + shortNumber(highest);
-      });
+  return check(bound([=](double number) { return number >= lowest && number <= highest; },
+                     "is not within " + shortNumber(lowest) + " ... " + shortNumber(highest)));
 }
 
 const CommandOption& CommandOption::atLeast(double lowest) const
 {
-  return check(
-      [=](const std::string& text)
-      {
-        const auto number = decimalNumber(text);
-        return number && *number >= lowest ? std::string() : "'" + text + "' is less than " + shortNumber(lowest);
-      });
+  return check(bound([=](double number) { return number >= lowest; }, "is less than " + shortNumber(lowest)));
 }
 
 const CommandOption& CommandOption::positive() const
 {
-  return check(
-      [](const std::string& text)
-      {
-        const auto number = decimalNumber(text);
-        return number && *number > 0.0 ? std::string() : "'" + text + "' is not more than 0";
-      });
+  return check(bound([](double number) { return number > 0.0; }, "is not more than 0"));
 }
 
 const CommandOption& CommandOption::choice(const std::vector<std::string>& names) const
@@ -162,7 +154,7 @@ const CommandOption& CommandOption::check(const std::function<std::string(const 
 
 CommandOption Command::add(const char* name, double& field, const std::string& help)
 {
-  return addWithDefault(app_, name, field, help).check(notFinite);
+  return addWithDefault(app_, name, field, help).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, int& field, const std::string& help)
@@ -182,7 +174,7 @@ CommandOption Command::add(const char* name, std::string& field, const std::stri
 
 CommandOption Command::add(const char* name, std::optional<double>& field, const std::string& help)
 {
-  return CommandOption(*app_.add_option(name, field, help)).check(notFinite);
+  return CommandOption(*app_.add_option(name, field, help)).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, std::optional<std::string>& field, const std::string& help)
@@ -192,7 +184,7 @@ CommandOption Command::add(const char* name, std::optional<std::string>& field, 
 
 CommandOption Command::add(const char* name, std::vector<double>& field, const std::string& help)
 {
-  return CommandOption(*app_.add_option(name, field, help)->delimiter(',')).check(notFinite);
+  return CommandOption(*app_.add_option(name, field, help)->delimiter(',')).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, std::vector<std::string>& field, const std::string& help)

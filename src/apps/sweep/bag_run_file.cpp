@@ -12,6 +12,8 @@
 #include "apps/common/run_summary.hpp"
 
 #include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "ros_io/bag_file.hpp"
 
 namespace hjt
 {
@@ -19,6 +21,21 @@ namespace
 {
 /// Opening and closing look for plugins (compression, encryption), which is not made for several threads.
 std::mutex g_opening;
+
+/// Writes. A run that cannot be written is removed: an error must not tell how to read what is left of it.
+template <class Action>
+void writeOrRefuse(const Action& action)
+{
+  try
+  {
+    action();
+  }
+  catch (const InputError& error)
+  {
+    const std::string text = error.what();
+    throw InputError(text.substr(0, text.find("; ")));
+  }
+}
 }  // namespace
 
 BagRunFile::BagRunFile(const Twin* twin, std::string path)
@@ -42,7 +59,7 @@ BagRunFile::~BagRunFile()
 
 void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
 {
-  recorder_->record(twin);
+  writeOrRefuse([&] { recorder_->record(twin); });
   last_ = twin.stamp();
 }
 
@@ -50,11 +67,13 @@ void BagRunFile::finish(const nlohmann::ordered_json& record)
 {
   std_msgs::String message;
   message.data = record.dump();
-  bag_->write(RECORD_TOPIC, last_, message);
-  {
-    const std::lock_guard<std::mutex> lock(g_opening);
-    bag_->close();
-  }
+  writeOrRefuse(
+      [&]
+      {
+        bag_->write(RECORD_TOPIC, last_, message);
+        const std::lock_guard<std::mutex> lock(g_opening);
+        bag_->close();
+      });
   bringToDisk(temporary_, path_);
 }
 
@@ -63,7 +82,8 @@ std::string BagRunFile::readRecord(const std::string& path)
   const std::lock_guard<std::mutex> lock(g_opening);
   try
   {
-    const rosbag::Bag bag(path);
+    rosbag::Bag bag;
+    openForReading(bag, path);
     rosbag::View view(bag, rosbag::TopicQuery(RECORD_TOPIC));
     for (const rosbag::MessageInstance& message : view)
     {
@@ -71,9 +91,9 @@ std::string BagRunFile::readRecord(const std::string& path)
       return text ? text->data : std::string();
     }
   }
-  catch (const rosbag::BagException&)
+  catch (const std::exception&)
   {
-    // Not a bag: as if it were not there.
+    // Not a bag, or a damaged one: as if it were not there.
   }
   return {};
 }

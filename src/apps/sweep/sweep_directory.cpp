@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -118,16 +119,14 @@ bool lockByte(int file, std::uint64_t place, int command, short kind)
 SweepDirectory::SweepDirectory(const Plan& plan, std::string path) : plan_(plan), path_(std::move(path))
 {
   std::ifstream index(path_ + "/index.csv");
-  std::string line;
-  for (std::getline(index, line); std::getline(index, line);)
+  for (std::string line; std::getline(index, line);)
   {
-    // run,file,hash,...
-    const std::size_t file = line.find(',');
-    const std::size_t hash = line.find(',', file + 1);
-    const std::size_t end = line.find(',', hash + 1);
-    if (end != std::string::npos)
+    // run,"file","hash",...
+    const std::size_t hash = line.find(",\"", line.find("\",\"")) + 2;
+    const std::size_t end = line.find('"', hash);
+    if (std::isdigit(static_cast<unsigned char>(line[0])) != 0 && end != std::string::npos)
     {
-      hashes_[std::strtoull(line.c_str(), nullptr, 10)] = line.substr(hash + 1, end - hash - 1);
+      hashes_[std::strtoull(line.c_str(), nullptr, 10)] = line.substr(hash, end - hash);
     }
   }
 }

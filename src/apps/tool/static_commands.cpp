@@ -67,6 +67,21 @@ void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothT
   }
 }
 
+/// Warns of a gear whose teeth press against each other without load.
+void warnIfJammed(const Parameters& parameters)
+{
+  const FitCheck fit = checkFit(parameters);
+  if (fit.jams())
+  {
+    std::cerr << "joint_twin: warning: the teeth jam without load: " << fit.teeth_loaded << " of "
+              << parameters.gear.teeth_flexspline << " loaded, " << shortNumber(fit.wave_generator_force)
+              << " N on the wave generator, " << shortNumber(fit.wave_generator_force_insertion)
+              << " N without the circular spline; compare gear.wave_amplitude, gear.rim_thickness, "
+                 "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers "
+                 "of teeth\n";
+  }
+}
+
 struct InsertOptions : CommonOptions
 {
   std::string csv;
@@ -79,6 +94,7 @@ int insert(const InsertOptions& options)
   {
     requireWritable(options.csv, options.force);
   }
+  warnIfJammed(parameters);
   const InsertionResult result = analyseInsertion(parameters);
   if (!result.status.ok())
   {
@@ -163,6 +179,7 @@ int stiffness(const StiffnessOptions& options)
   {
     requireWritable(options.csv, options.force);
   }
+  warnIfJammed(parameters);
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)
   {
