@@ -13,7 +13,7 @@ namespace hjt
 ///           lg lg(nu + 0.7) = lg lg(nu_0 + 0.7) - m lg(T / T_0), T in kelvin
 ///       n   in rpm, d_m in mm
 ///       F   sum of the contact forces between wave generator and flexspline [N]
-///       F_race  what the bearing's own outer race adds to the ball forces, bent to the ellipse as it is [N]
+///       F_race  ball forces of the bearing's own outer race, bent to the ellipse [N]
 class BearingFriction
 {
 public:

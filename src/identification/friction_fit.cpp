@@ -230,7 +230,7 @@ FrictionFit::Verdict FrictionFit::whyRefused(std::size_t i) const
   }
   if (size <= 1e-6 * half_width_[i] && i != PRELOAD && i != GREASE)
   {
-    return { 1e3, "comes out at zero" };
+    return { 1e3, "its estimate is zero" };
   }
   if (half_width_[i] > widest(i) * size && size > 1e-6 * half_width_[i])
   {
@@ -240,7 +240,7 @@ FrictionFit::Verdict FrictionFit::whyRefused(std::size_t i) const
   return {};
 }
 
-/// True if something was refused, and the rest must be fitted anew.
+/// True if a parameter was dropped, so that the rest must be refitted.
 bool FrictionFit::refuseWorst()
 {
   double worst = 0.0;

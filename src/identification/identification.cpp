@@ -229,7 +229,7 @@ public:
                 share.configured,
                 share.configured,
                 0.0,
-                trial.share <= 0.0 ? "comes out at zero" : "no rest of this motion shows it" };
+                trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it" };
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;

@@ -163,7 +163,7 @@ void RippleFit::solve(const std::vector<RippleRow>& rows)
   }
 }
 
-/// True if a line was refused, and the rest must be fitted anew.
+/// True if a line was dropped, so that the rest must be refitted.
 bool RippleFit::refuseWorst()
 {
   double worst = WIDEST;

@@ -32,7 +32,7 @@ public:
 
   struct Life
   {
-    double hours{};                ///< until the end of use, or as long as asked for
+    double hours{};                ///< until the end of use, or the requested time
     std::optional<EndOfLife> end;  ///< none: still in use
     DriveAge age;
   };

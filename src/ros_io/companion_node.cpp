@@ -21,13 +21,13 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-/// Telemetry that brings nothing for so long has stopped [s].
+/// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
 /// Of the names in a message without this joint that are shown [bytes].
 constexpr std::size_t LONGEST_NAMES = 500;
-/// Share of the last seconds' rows outside their band beyond which the joint is said to depart [-].
+/// Warn when a larger share of the last seconds' rows is outside the band [-].
 constexpr double OUTSIDE_WARNING = 0.1;
-/// Stamps further off the clock are said to be [s].
+/// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
 
 /// Whether two rows can be of the same clock: their receptions less stamps [ns].
@@ -122,7 +122,7 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
 }
 
 /// Sets the companion's zero with the first row. False: the stamp is far from where those of the rows before lead to; if the
-/// next row agrees with this one, the clock of the robot or this machine's was set, and all starts anew.
+/// next row agrees with this one, the clock of the robot or this machine's was set, and everything restarts.
 bool CompanionNode::start(Stamp stamp)
 {
   const Stamp offset = last_received_ - stamp;
@@ -229,7 +229,7 @@ bool CompanionNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respon
   const std::lock_guard<std::mutex> lock(mutex_);
   companion_.reset();
   response.success = true;
-  response.message = "the twin starts anew with the next row";
+  response.message = "the twin restarts with the next row";
   return true;
 }
 
@@ -269,7 +269,7 @@ DiagnosticVerdict CompanionNode::judgeTelemetry() const
   }
   if (recent_restarts_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Stamps jumped back: started anew" };
+    return { DiagnosticStatus::WARN, "Stamps jumped back: restarted" };
   }
   if (refused)
   {
@@ -290,7 +290,7 @@ DiagnosticVerdict CompanionNode::judgeTelemetry() const
   }
   if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_)
   {
-    return { DiagnosticStatus::WARN, "No load has been told: weight and inertia as configured" };
+    return { DiagnosticStatus::WARN, "No load received: weight and inertia as configured" };
   }
   return { DiagnosticStatus::OK, "Telemetry arrives" };
 }
@@ -335,7 +335,7 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Gaps that cut the stream", counters.gaps);
   status.add("Stamps repeated", timing.repeated);
   status.add("Stamps going back", timing.backward);
-  status.add("Starts anew", counters.restarts + clock_changes_);
+  status.add("Restarts", counters.restarts + clock_changes_);
   status.add("Reception less stamp [s]", timing.offset);
   status.add("Jitter of reception, 95 % [s]", timing.jitter);
   status.add("Unknown joint, refused", refusals_.unknown_joint);
@@ -345,7 +345,7 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Too large, refused", too_large_.load());
   status.add("Stamp far from the clock, refused", refusals_.far_stamp);
   status.add("Loads refused", refusals_.load);
-  status.add("Rows without a told load", counters.without_load);
+  status.add("Rows without a received load", counters.without_load);
   if (last_load_)
   {
     status.add("Load's stamp before the newest row's reception [s]", toSeconds(last_received_ - last_load_->stamp));
@@ -372,7 +372,7 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
   }
   else
   {
-    status.add("Measured after predicted [s]", "not told");
+    status.add("Measured after predicted [s]", "unknown");
   }
 }
 

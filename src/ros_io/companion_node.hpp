@@ -82,9 +82,9 @@ private:
   Stamp last_received_{};                // [ns]
   Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
   std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
-  std::uint64_t clock_changes_{};        // starts anew because all stamps had moved far
+  std::uint64_t clock_changes_{};        // restarts because all stamps had moved far
   std::optional<LoadAt> last_load_;
-  std::deque<LoadAt> early_loads_;  // told before there was a zero
+  std::deque<LoadAt> early_loads_;  // received before the start
   std::string found_names_;         // in the last message without this joint
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;

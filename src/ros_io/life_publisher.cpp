@@ -99,7 +99,7 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   last_ = instant;
   if (elapsed < 0 || elapsed > STRETCH)
   {
-    return;  // started anew at another instant
+    return;  // restarted at another instant
   }
   counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
   counted_.until = instant;

@@ -231,7 +231,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
     {
       found += (found.empty() ? "" : ", ") + name;
     }
-    throw InputError(source.topic + " never tells angle and effort of joint '" + source.joint +
+    throw InputError(source.topic + " never contains angle and effort of joint '" + source.joint +
                      "'; joints found: " + (found.empty() ? "none" : found));
   }
   return rows.count();

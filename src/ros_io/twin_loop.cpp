@@ -50,7 +50,7 @@ __attribute__((noinline)) void touchStack()
 void prepareThread()
 {
   pthread_setname_np(pthread_self(), "twin_loop");
-  // Linux may let a thread without real-time priority sleep 50 us longer than it asked for.
+  // Linux may let a thread without real-time priority sleep 50 us longer than requested.
   prctl(PR_SET_TIMERSLACK, 1UL);
   touchStack();
 }
@@ -110,7 +110,7 @@ void TwinLoop::run()
 
 void TwinLoop::cycle() noexcept
 {
-  // Without a time there is nothing to start anew, and inputs cannot be put in order yet.
+  // Without a time there is nothing to restart, and inputs cannot be ordered yet.
   if (clock_() == 0)
   {
     resets_done_ = resets_requested_.load();

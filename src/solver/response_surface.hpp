@@ -41,8 +41,8 @@ struct SurfaceTable
   std::vector<Node> nodes;    ///< (columns + 1) a line; the last is the first again
 };
 
-/// What a gear whose teeth differ departs by from the gear of equal teeth, at the same angles, over the turn after which it
-/// is the same again: a table of its own for every tooth pitch of that turn. At the edge between two pitches both tables
+/// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
+/// one table per tooth pitch. At the edge between two pitches both tables
 /// are the same function of v, so that energy and torques are continuous.
 struct DepartureTable
 {

@@ -30,7 +30,7 @@ RingPrediction::RingPrediction(const RingModel& model)
 
 void RingPrediction::predict(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double ALIKE = 0.8;  // less has come about by chance
+  constexpr double ALIKE = 0.8;  // smaller similarities are chance
   double share = 0.0;
   if (guessed_)
   {

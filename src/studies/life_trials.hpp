@@ -22,7 +22,7 @@ struct LifeTrialOptions
   bool grease_changes{};
 };
 
-/// What the filter said at one reading, and what came.
+/// A forecast of the filter at one reading, and the true life.
 struct LifeForecast
 {
   double hours{};           ///< of use when it was said

@@ -19,7 +19,7 @@ struct TrialSample
   double joint_torque{};
 };
 
-/// What a trial of the twin was like, and all that the twin said of itself.
+/// Course of a trial of the twin, and the twin's own messages.
 struct TrialResult
 {
   std::vector<TrialSample> samples;

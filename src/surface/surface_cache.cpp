@@ -259,7 +259,7 @@ void tell(const SurfaceSource& source, const std::string& what)
   }
 }
 
-/// A table from the cache, or built and put there. Empty: it could not be built, and why has been told.
+/// A table from the cache, or built and stored there. Empty: it could not be built, and the reason was reported.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {

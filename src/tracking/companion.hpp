@@ -37,7 +37,7 @@ struct Comparison
   double joint_torque{};     ///< what the joint gives to the arm: measured, less friction and the rotor's inertia [N.m]
   double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
-  bool load_told{};          ///< it was told; else it is weight and inertia as configured
+  bool load_told{};          ///< a load was received; else weight and inertia as configured
   bool sticking{};           ///< friction holds the joint: any current within the band fits
   bool after_gap{};          ///< first after a gap in the telemetry
 
@@ -54,7 +54,7 @@ struct CompanionCounters
   std::uint64_t gaps{};             ///< longer than MotionSmoother::LONGEST_GAP
   std::uint64_t restarts{};         ///< stamps went back by more than Companion::RESTART
   std::uint64_t outside{};          ///< comparisons whose current lies outside its band
-  std::uint64_t without_load{};     ///< comparisons with a load that was not told, though input is to tell it
+  std::uint64_t without_load{};     ///< comparisons without a received load, though telemetry.load expects one
   std::uint64_t solver_failures{};  ///< steps of the twin in torque mode that did not converge
 };
 
@@ -91,8 +91,8 @@ public:
   /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// By how much what was measured comes after what is predicted from the other signals: current (motion) or speed (torque);
-  /// the observer tells nothing of it [s].
+  /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
+  /// [s].
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Health of the measured joint, from its own signals.

@@ -8,8 +8,8 @@ namespace hjt
 {
 namespace
 {
-constexpr double LONGEST_GAP = 0.1;    // beyond it the stream begins anew [s]
-constexpr double LEAST_SECONDS = 2.0;  // of signal before anything is told
+constexpr double LONGEST_GAP = 0.1;    // beyond it the stream restarts [s]
+constexpr double LEAST_SECONDS = 2.0;  // of signal before a delay is given
 }  // namespace
 
 void LagEstimate::add(double time, double leading, double lagging) noexcept

@@ -18,7 +18,7 @@ public:
   static constexpr double LONGEST = 0.1;            ///< [s]
   static constexpr double GRID = 0.004;             ///< between lags tried [s]
   static constexpr double MEMORY = 20.0;            ///< [s]
-  static constexpr double LEAST_CORRELATION = 0.7;  ///< below it nothing is told [-]
+  static constexpr double LEAST_CORRELATION = 0.7;  ///< below it no delay is given [-]
 
   void reset() noexcept { *this = LagEstimate(); }
 

@@ -25,7 +25,7 @@ struct MotionSample : MotionRow
 {
   double velocity{};      ///< [rad/s]
   double acceleration{};  ///< [rad/s^2]
-  bool after_gap{};       ///< first after a gap: what was before is forgotten
+  bool after_gap{};       ///< first after a gap: the state before is discarded
 };
 
 /// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.

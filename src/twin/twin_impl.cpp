@@ -179,7 +179,7 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
-/// The surface of the present faults that is built beside: asked for, and used when it is there.
+/// The surface of the present faults, built in the background: requested, and used when ready.
 void Twin::Impl::takeSurface() noexcept
 {
   if (!surface_awaited)
@@ -281,7 +281,7 @@ void Twin::Impl::observe() noexcept
   }
 }
 
-/// What a drive would know: readings, the load it was told, its temperature.
+/// Signals known to a drive: readings, received load, temperature.
 void Twin::Impl::takeReadings() noexcept
 {
   const EncoderReadings readings = sensors.encoders();

@@ -23,7 +23,7 @@ enum class AssessmentState : std::uint8_t
 {
   WAITING = 0,      ///< no window has been completed
   LEARNING = 1,     ///< the reference of this operating point is being learned
-  ASSESSED = 2,     ///< the last window was held against it
+  ASSESSED = 2,     ///< the last window was compared with the reference
   NO_REFERENCE = 3  ///< the given reference does not know this operating point
 };
 

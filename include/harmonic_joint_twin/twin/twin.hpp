@@ -19,7 +19,7 @@
 
 namespace hjt
 {
-/// What the joint does at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
+/// State of the joint at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
 struct JointOutputs
 {
   Stamp stamp{};         ///< simulated instant [ns]
@@ -104,7 +104,7 @@ public:
 
   const Parameters& parameters() const noexcept;
 
-  /// Starts anew at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
+  /// Restarts at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
   /// inputs, other faults and counters.
   void reset(Stamp stamp) noexcept;
 
@@ -130,7 +130,7 @@ public:
 
   const JointOutputs& outputs() const noexcept;
   EncoderReadings encoders() const noexcept;
-  double motorTorqueReading() const noexcept;  ///< as the drive tells it from its current [N.m]
+  double motorTorqueReading() const noexcept;  ///< as the drive estimates it from its current [N.m]
   const TwinCounters& counters() const noexcept;
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 

@@ -58,7 +58,7 @@ void addFaultOption(Command& command, CommonOptions& options)
 {
   command
       .add("--fault", options.faults,
-           "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
+           "a fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
       .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 

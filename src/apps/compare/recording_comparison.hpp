@@ -76,7 +76,7 @@ public:
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return assessed_; }
-  /// The last window of those at the worst level; none: no window was held against a reference.
+  /// The last window of those at the worst level; none: no window was compared with a reference.
   const std::optional<JudgedWindow>& worst() const { return worst_; }
   double alarmTime() const { return alarm_time_; }  ///< when the level first left OK [s]
   Cause cause() const;                              ///< that most windows in alarm name

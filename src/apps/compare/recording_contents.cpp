@@ -18,7 +18,7 @@ namespace
 constexpr const char* ANGLE_AND_CURRENT = "angle and current of the joint";
 constexpr const char* MOTOR_ANGLE = "angle of the motor: torsion, stiffness, kinematic error";
 constexpr const char* LOAD = "load at the output; else weight and inertia as configured";
-constexpr const char* TWIN = "the twin's own angle and speed, of a run beside the robot";
+constexpr const char* TWIN = "angle and speed of a twin that ran beside the robot";
 
 std::uint64_t messagesOn(const rosbag::Bag& bag, const std::string& topic)
 {

@@ -127,16 +127,16 @@ void print(const FollowSummary& summary, bool json)
       json, { { "rows", "rows", summary.count.rows },
               { "duration", "duration", summary.count.duration, "s" },
               { "unreadable", "messages unreadable", summary.count.corrupt },
-              { "refused", "rows refused: repeated, out of order, beyond what can be", summary.counters.refused },
+              { "refused", "rows refused: repeated, out of order, impossible values", summary.counters.refused },
               { "missing", "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
                 summary.timing.missing },
               { "period", "", summary.timing.period },
               { "gaps", "gaps that cut the recording", summary.counters.gaps },
-              { "reception_offset", "reception less stamp", summary.timing.offset, "s" },
+              { "reception_offset", "reception minus stamp", summary.timing.offset, "s" },
               { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
               { "lag", "", summary.lag },
-              { "", "measured after predicted", summary.lag ? Json(*summary.lag) : "not told", summary.lag ? "s" : "" },
-              { "without_load", "rows without a told load", summary.counters.without_load },
+              { "", "delay of the measurement", summary.lag ? Json(*summary.lag) : "unknown", summary.lag ? "s" : "" },
+              { "without_load", "rows without a received load", summary.counters.without_load },
               { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
               { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
               { "position_residual_rms", "measured less predicted position, rms", summary.position.value(), "rad" },
@@ -182,13 +182,13 @@ void declare(Command& command, FollowOptions& options)
 {
   addMotionOptions(command, options);
   options.mode = "motion";
-  command.add("--mode", options.mode, "what drives the twin: the recorded current, motion, or both")
+  command.add("--mode", options.mode, "input of the twin: the recorded current, motion, or both")
       .choice({ "motion", "observer", "torque" });
-  command.add("--out", options.out, "every row, measured beside predicted").type("FILE.csv");
+  command.add("--out", options.out, "every row, measured and predicted").type("FILE.csv");
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",
-                         "a healthy joint beside a recorded one: measured and predicted motion and current", declare,
+                         "runs a healthy joint on a recording: measured and predicted motion and current", declare,
                          follow };
 }  // namespace
 }  // namespace hjt

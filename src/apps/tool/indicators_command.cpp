@@ -357,7 +357,7 @@ void declare(Command& command, IndicatorsOptions& options)
   column("--load-torque", source.load_torque, "CSV: load torque at the output, > 0 resists positive motion [N.m]");
   column("--temperature", source.temperature, "CSV: temperature [degC]");
   command.add("--torque-scale", options.torque_scale,
-              "motor torque per unit of what is recorded for it [N.m]; default: 1, and with --joint "
+              "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
               "telemetry.torque_per_current / ratio [N.m/A]");
   command
       .add("--states-topic", options.states_topic,

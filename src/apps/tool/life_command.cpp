@@ -210,7 +210,7 @@ void declareLife(Command& command, LifeOptions& options)
 {
   command
       .add("DUTY", options.duty,
-           "CSV file of what the joint does over and over: duration [s], motor_speed [rad/s], load_torque [N.m], "
+           "CSV file of a duty cycle, repeated: duration [s], motor_speed [rad/s], load_torque [N.m], "
            "temperature [degC]")
       .required()
       .existingFile();

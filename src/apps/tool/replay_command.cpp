@@ -44,7 +44,7 @@ std::string joined(const std::vector<std::string>& texts)
   return all;
 }
 
-/// An original message under an output's name could not be told from a simulated one.
+/// An original message under an output's name would look like a simulated one.
 void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
 {
   rosbag::View view(bag, rosbag::TopicQuery(outputTopics(options.joint_namespace)));

@@ -75,7 +75,7 @@ Stamp TorqueProfile::duration() const
 void TorqueProfile::feed(Twin& twin, Stamp begin)
 {
   const Stamp instant = twin.stamp() + twin.stepLength();
-  // A profile holds its torque however long; said anew at every instant, the command does not time out.
+  // A profile holds its torque for any time; the command is repeated at every instant, so it does not time out.
   twin.commandMotorTorque(instant, motor_torque_);
   for (; next_ < inputs_.size() && begin + inputs_[next_].stamp <= instant; ++next_)
   {

@@ -102,6 +102,6 @@ void declare(Command& command, TrialOptions& options)
 }
 
 const Subcommand TRIAL{ Subject::STUDY, "trial",
-                        "run the twin under a profile and tell what its solver said, step by step", declare, trial };
+                        "run the twin under a profile and print the solver's messages, step by step", declare, trial };
 }  // namespace
 }  // namespace hjt
