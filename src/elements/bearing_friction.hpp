@@ -25,7 +25,7 @@ public:
   /// Grease of another viscosity, by this factor at any temperature [-].
   void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
   /// Reduces the preload of the race by `loss`, not below min(`least`, present preload) [N].
-  void loosen(double loss, double least) noexcept;
+  void reducePreload(double loss, double least) noexcept;
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept

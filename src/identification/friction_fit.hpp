@@ -7,7 +7,7 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/friction_map.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {

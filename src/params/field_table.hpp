@@ -295,12 +295,12 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("commands: the twin alone; beside a robot, driven by its measured torque, motion or both (observer)"));
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         ofOthers("a torque command older than this counts as zero"));
-  visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
+  visit("input.delay", "s", p.input.delay, Range{ 0.0, 10.0 },
         ofOthers("live, the twin stays this far behind the clock, so that stamped commands arrive in time"));
   visit(
       "input.wait_for_first_input", p.input.wait_for_first_input,
       ofOthers("true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant"));
-  visit("input.temperature", "degC", p.input.temperature, Range{ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE },
+  visit("input.temperature", "degC", p.input.temperature, Range{ MIN_TEMPERATURE, MAX_TEMPERATURE },
         ofOthers("temperature of the drive"));
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
@@ -429,7 +429,7 @@ void visitFields(P& p, Visitor&& visit)
         ofFaults("spalls in the bearing at severity 1: depth"));
   visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
         ofFaults("spalls in the bearing: length along the race or on the ball"));
-  visit("fault_scale.cage_sag", "m", scale.cage_sag, depth,
+  visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
         ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
 }
 

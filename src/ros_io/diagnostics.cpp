@@ -189,7 +189,7 @@ DiagnosticVerdict Diagnostics::judgeInput() const
   }
   if (late_inputs_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.hold_back" };
+    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.delay" };
   }
   if (!snapshot_.loop.command_seen)
   {

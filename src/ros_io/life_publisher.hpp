@@ -36,7 +36,7 @@ private:
   struct Stretch
   {
     Stamp until;
-    UseRecord use;
+    UsageHistory use;
   };
   void readRecord();
   void run();
@@ -50,7 +50,7 @@ private:
   Stamp counted_from_{};
   Stamp last_{};
   SlotRing<Stretch> stretches_;
-  UseRecord record_;
+  UsageHistory record_;
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

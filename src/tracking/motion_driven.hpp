@@ -4,7 +4,7 @@
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
 #include "tracking/friction_map.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 #include "tracking/presliding.hpp"
 #include "tracking/torque_ripple.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "elements/load.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {

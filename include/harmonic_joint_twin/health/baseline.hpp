@@ -82,16 +82,16 @@ enum class BaselineState : std::uint8_t
 class Baseline
 {
 public:
-  static constexpr std::size_t MOST_BINS = 64;
+  static constexpr std::size_t MAX_BINS = 64;
 
   explicit Baseline(const Parameters& parameters);
 
   /// Uses the reference of a file; learning stops.
-  void give(std::vector<ReferenceBin> bins);
+  void setReference(std::vector<ReferenceBin> bins);
 
   void reset() noexcept;  ///< forgets what was learned, not what was given
 
-  BaselineState take(const SignalIndicators& indicators, Deviations& deviations) noexcept;
+  BaselineState update(const SignalIndicators& indicators, Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }

@@ -251,8 +251,8 @@ struct LifeParameters
 };
 
 /// Temperatures that the drive can have [degC].
-constexpr double LOWEST_TEMPERATURE = -40.0;
-constexpr double HIGHEST_TEMPERATURE = 150.0;
+constexpr double MIN_TEMPERATURE = -40.0;
+constexpr double MAX_TEMPERATURE = 150.0;
 
 /// Input of the node.
 enum class InputMode
@@ -275,7 +275,7 @@ struct InputParameters
 {
   InputMode mode{};
   double command_timeout{};
-  double hold_back{};
+  double delay{};
   bool wait_for_first_input{};
   double temperature{};
 };
@@ -366,7 +366,7 @@ struct FaultScaleParameters
   double ratcheting_tip_loss{};
   double spall_depth{};
   double spall_length{};
-  double cage_sag{};
+  double cage_deflection{};
 };
 
 /// Everything the twin is made from.

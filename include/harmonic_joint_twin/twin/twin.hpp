@@ -40,7 +40,7 @@ struct JointOutputs
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
   double residual{};           ///< largest out-of-balance force [N]
-  double swing_phase{};        ///< of the joint's fastest swing, in one step [rad]
+  double phase_advance{};      ///< of the joint's fastest swing, in one step [rad]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
@@ -120,7 +120,7 @@ public:
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;
 
-  void give(const Input& input) noexcept;  ///< one of these, by its kind
+  void push(const Input& input) noexcept;  ///< one of these, by its kind
 
   /// Advances by one solver step if the next instant is not after `until`. False: nothing was done.
   bool step(Stamp until) noexcept;

@@ -72,9 +72,9 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   return contents;
 }
 
-Thinned<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start)
+Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start)
 {
-  Thinned<TwinState> states;
+  Decimated<TwinState> states;
   if (isCsv(source) || twin_topic == source.topic)
   {
     return states;

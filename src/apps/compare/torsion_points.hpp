@@ -40,9 +40,9 @@ public:
   double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
 
 private:
-  static constexpr double STEPS = 142.0;         // up to the largest load
-  static constexpr double LEAST_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
-                                                 // estimate [rad]
+  static constexpr double STEPS = 142.0;       // up to the largest load
+  static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
+                                               // estimate [rad]
   struct Bin
   {
     double sum{};

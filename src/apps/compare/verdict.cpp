@@ -26,10 +26,10 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
 }
 
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
-constexpr double LEAST_LOADING = 0.035;
+constexpr double MIN_LOADING = 0.035;
 
 /// Part of a fault's signature, a unit vector, from which on the fault is said to move a feature.
-constexpr double LEAST_PART = 0.2;
+constexpr double MIN_PART = 0.2;
 
 /// @param sign +1: up, -1: down.
 std::vector<Cause> causesOf(Feature feature, double sign)
@@ -37,7 +37,7 @@ std::vector<Cause> causesOf(Feature feature, double sign)
   std::vector<Cause> causes;
   for (const Signature& signature : faultSignatures())
   {
-    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= LEAST_PART;
+    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= MIN_PART;
     if (moves && std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {
       causes.push_back(signature.cause);
@@ -292,7 +292,7 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
   {
     missing.emplace_back("How friction depends on the speed: fewer than three speeds.");
   }
-  if (reach.most_load - reach.least_load < LEAST_LOADING * parameters.output.load_torque_limit)
+  if (reach.most_load - reach.least_load < MIN_LOADING * parameters.output.load_torque_limit)
   {
     missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
                          rounded(reach.most_load - reach.least_load, 1) + " N.m.");

@@ -129,7 +129,7 @@ int compare(const CompareOptions& options)
   RecordingComparison comparison(parameters, sound.baseline,
                                  [&](const JudgedWindow& window) { windows.write(window); });
   const MotionFindings found =
-      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.take(sample); });
+      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.update(sample); });
   windows.close();
   if (interruptSignal() != 0)
   {

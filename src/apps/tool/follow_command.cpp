@@ -17,7 +17,7 @@
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
 
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
@@ -51,7 +51,7 @@ const std::vector<Column<Comparison>> COLUMNS{
   { "joint_torque", &Comparison::joint_torque },
   { "friction_torque", &Comparison::friction_torque },
   { "load_torque", &Comparison::load_torque },
-  { "load_told", &Comparison::load_told },
+  { "load_told", &Comparison::load_provided },
   { "sticking", &Comparison::sticking },
   { "after_gap", &Comparison::after_gap },
   { "outside_band", &Comparison::isOutside }
@@ -76,7 +76,7 @@ private:
 struct FollowSummary
 {
   MotionCount count;
-  CompanionCounters counters;
+  TrackerCounters counters;
   StreamTimingReport timing;
   std::optional<double> lag;
   Rms current;
@@ -84,7 +84,7 @@ struct FollowSummary
   Rms position;
 };
 
-FollowSummary compare(const FollowOptions& options, Companion& companion,
+FollowSummary compare(const FollowOptions& options, Tracker& tracker,
                       const std::function<void(const Comparison&)>& visit)
 {
   const MotionSource source = motionSource(options);
@@ -93,7 +93,7 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
   FollowSummary summary;
   const auto take_all = [&](bool at_end)
   {
-    while (const std::optional<Comparison> now = companion.take(at_end))
+    while (const std::optional<Comparison> now = tracker.pop(at_end))
     {
       summary.current.add(now->current.residual());
       summary.velocity.add(now->velocity.residual());
@@ -107,17 +107,17 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
       {
         if (has_load)
         {
-          companion.giveLoad(row.time, row.load);
+          tracker.pushLoad(row.time, row.load);
         }
-        companion.give(row);
+        tracker.push(row);
         take_all(false);
         return interruptSignal() == 0;
       },
       [&](double done) { progress.update(done); });
   take_all(true);
-  summary.counters = companion.counters();
-  summary.timing = companion.timing();
-  summary.lag = companion.lag();
+  summary.counters = tracker.counters();
+  summary.timing = tracker.timing();
+  summary.lag = tracker.lag();
   return summary;
 }
 
@@ -160,8 +160,8 @@ int follow(const FollowOptions& options)
               << "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give --config "
                  "recorded_load.yaml after the joint's own file\n";
   }
-  Companion companion(parameters, MODES.at(options.mode), surfaceSource());
-  const FollowSummary summary = compare(options, companion,
+  Tracker tracker(parameters, MODES.at(options.mode), surfaceSource());
+  const FollowSummary summary = compare(options, tracker,
                                         [&](const Comparison& now)
                                         {
                                           if (csv)

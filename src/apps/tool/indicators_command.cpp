@@ -281,7 +281,7 @@ int run(const IndicatorsOptions& given)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.give(readBaseline(options.baseline, parameters));
+    assessor.setReference(readBaseline(options.baseline, parameters));
   }
   std::vector<WindowResult> windows;
   for (const std::string& recording : options.recordings)
@@ -297,7 +297,7 @@ int run(const IndicatorsOptions& given)
     }
     for (const SignalIndicators& indicators : measured)
     {
-      const Assessment assessment = assessor.take(indicators);
+      const Assessment assessment = assessor.update(indicators);
       windows.push_back({ recording, indicators, assessor.deviations(), assessment });
     }
   }
