@@ -15,6 +15,7 @@ import catkin_lint
 import clang_tidy
 import config_files
 import doc_tables
+import examples
 import launch_docs
 import layering
 import links
@@ -91,6 +92,21 @@ class Layering(Tree):
 
     def test_nothing_to_check(self):
         self.assert_fault(layering.check, "no sources")
+
+
+class Examples(Tree):
+    PATCH = "Run: nothing\n\n--- a/src/one.cpp\n+++ b/src/one.cpp\n@@ -1 +1,2 @@\n int one;\n+int two;\n"
+
+    def test_a_patch_that_applies(self):
+        self.write("src/one.cpp", "int one;\n")
+        self.write("test/extending/one.patch", self.PATCH)
+        self.assert_clean(examples.check)
+        self.assertEqual(project.text(self.root, "src/one.cpp"), "int one;\n")
+
+    def test_a_patch_that_does_not(self):
+        self.write("src/one.cpp", "int uno;\n")
+        self.write("test/extending/one.patch", self.PATCH)
+        self.assert_fault(examples.check, "one.patch:1", "does not apply")
 
 
 class TypeNames(Tree):
