@@ -22,8 +22,8 @@ import subprocess
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COPIED = ("CMakeLists.txt", "package.xml", "LICENSE", "README.md", "bench", "cmake", "config", "docs", "include", "launch", "msg",
-          "plans", "scripts", "src", "test")
+COPIED = ("CMakeLists.txt", "package.xml", "LICENSE", "README.md", "bench", "cmake", "config", "docs", "include", "launch",
+          "msg", "plans", "scripts", "src", "test")
 PROGRAMS = ("lib/harmonic_joint_twin", "bin", ".")
 
 
