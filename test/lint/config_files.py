@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""config/: numbers are spelt so that rosparam takes them for numbers, each key says its unit in the comment above, and the
-launch file loads the stages of the default configuration.
+"""config/: numbers are spelt so that rosparam takes them for numbers, each key says its unit in the comment above, and
+the launch file loads the stages of the default configuration.
 
 To YAML 1.1, which rosparam reads, 1.0e-3 is a number and 1e-3, 1e3 and 1.0e4 are texts. A node
 reads those as well, but `rosparam get` would show them in quotes.
