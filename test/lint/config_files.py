@@ -69,7 +69,8 @@ def check(root):
             for scalar in scalars(node):
                 plain = isinstance(scalar, yaml.ScalarNode) and scalar.style is None
                 if plain and scalar.tag == "tag:yaml.org,2002:str" and is_number(scalar.value):
-                    problems.append(f"{path}:{scalar.start_mark.line + 1}: {key}: {scalar.value} is a text to rosparam, "
+                    problems.append(f"{path}:{scalar.start_mark.line + 1}: {key}: {scalar.value} is a text to "
+                                    f"rosparam, "
                                     "which wants a dot and a signed exponent: 1.0e-3")
             if not UNIT.search(comment_above(content.splitlines(), line)):
                 problems.append(f"{path}:{line + 1}: {key}: no [unit] in the comment above it")
