@@ -104,8 +104,8 @@ class Parameters(unittest.TestCase):
 
     def test_numbers_that_yaml_reads_as_texts_are_numbers(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-            file.write("mesh: {stiffness: 5e7}\nmotor: {rotor_inertia: 1e-04}\ncup: {torsion_breakpoints: [14, "
-                       "4.8e1]}\n")
+            file.write("mesh: {stiffness: 5e7}\nmotor: {rotor_inertia: 1e-04}\n"
+                       "cup: {torsion_breakpoints: [14, 4.8e1]}\n")
             file.flush()
             self.check_start(configuration_files("elbow", [file.name]))
         self.check_clean_exit(signal.SIGINT)

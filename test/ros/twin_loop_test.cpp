@@ -225,6 +225,7 @@ TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
     inbox_.push({ stamp, InputKind::MOTOR_TORQUE, 0.5 });
   }
   inbox_.push({ 100'001 * SECOND, InputKind::MOTOR_TORQUE, 0.25 });
+  waitForCycles(2);
   setClock(100'002 * SECOND);
   waitFor([this] { return loop_->status().counters.input.accepted == 1; });
   EXPECT_EQ(loop_->status().far_stamps, 3U);
@@ -247,8 +248,8 @@ TEST_F(LoopFixture, OutlivesAClockThatJumpsToTheEndOfTimeAndBack)
 
 TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
 {
-  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(twin_->parameters()));
   start(false);
+  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(twin_->parameters()));
   setClock(100 * SECOND);
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
