@@ -24,7 +24,7 @@ JOINT = "elbow_joint"
 START = 1000.0      # first stamp [s]
 DURATION = 2.0      # [s]
 INPUT_RATE = 125.0  # [Hz]
-HOLD_BACK = 0.5     # [s]; long, so that no message is late on a busy machine: equality rests on that
+INPUT_DELAY = 0.5     # [s]; long, so that no message is late on a busy machine: equality rests on that
 OUTPUTS = {"joint_states": 1000, "encoders": 1000, "contact_forces": 100, "health": 10}  # [Hz]
 LAUNCH_TIMEOUT = 120.0  # [s]
 
@@ -87,7 +87,7 @@ class Replay(unittest.TestCase):
 
     def launch(self):
         launch = Launch(self.path("launch.log"), "replay.launch", f"bag:={self.recording}", f"out:={self.live}",
-                        f"hold_back:={HOLD_BACK}")
+                        f"input_delay:={INPUT_DELAY}")
         self.addCleanup(launch.kill)
         return launch
 
