@@ -38,7 +38,6 @@ public:
   /// False: interrupted, and no file left. @throws InputError if the file cannot be written.
   bool simulate(std::uint64_t number)
   {
-    directory_.lock(number);
     const RunSpec spec = plan_.run(number);
     Json record = recordOf(spec, directory_.runFileName(number));
     const std::string path = directory_.runFile(number);
@@ -253,6 +252,7 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
     else
     {
       result.damaged += std::filesystem::exists(directory.runFile(run)) ? 1 : 0;
+      directory.lock(run);  // all before any work: of two sweeps one goes on to its end
       todo.push_back(run);
     }
   }
