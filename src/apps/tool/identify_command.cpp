@@ -179,7 +179,7 @@ void print(const IdentifyReport& report, bool json)
     std::cout << "\nnot identifiable from this motion:\n";
     for (const std::string& line : refused)
     {
-      std::cout << "  " << line << '\n';
+      printWrapped(line, 2);
     }
   }
 }
