@@ -155,22 +155,31 @@ void print(const IdentifyReport& report, bool json)
   };
   span("identified on", report.train);
   span("judged on", report.judge);
-  lines.push_back({ "", "the current itself, rms", shortNumber(found.judged.identified.signal), "A" });
-  lines.push_back({ "", "error of the current on the judged part, rms", "" });
-  addErrors("judged", found.judged, true, lines);
+  // A block of its own: its values are long, the names above are.
+  std::vector<ReportLine> errors{ { "", "the current itself, rms", found.judged.identified.signal, "A" },
+                                  { "", "error of the current on the judged part, rms", "" } };
+  addErrors("judged", found.judged, true, errors);
   const bool folded = report.left_out.identified.rows > 0;
   if (folded)
   {
-    lines.push_back({ "", "on pieces of the part to identify on, each left out in turn", "" });
+    errors.push_back({ "", "on pieces left out in turn", "" });
   }
-  addErrors("left_out", report.left_out, folded, lines);
-  printReport(json, lines);
-  if (!json && !refused.empty())
+  addErrors("left_out", report.left_out, folded, errors);
+  if (json)
+  {
+    lines.insert(lines.end(), errors.begin(), errors.end());
+    printReport(true, lines);
+    return;
+  }
+  printReport(false, lines);
+  std::cout << '\n';
+  printReport(false, errors);
+  if (!refused.empty())
   {
     std::cout << "\nnot identifiable from this motion:\n";
     for (const std::string& line : refused)
     {
-      std::cout << "  " << line << '\n';
+      printWrapped(line, 2);
     }
   }
 }
