@@ -64,8 +64,8 @@ public:
     (void)dynamics.place(state[joint_state::MOTOR_ANGLE], state[joint_state::OUTPUT_ANGLE]);  // its status is kept
     series_.angles.row(taken_) = state.head<2>();
     series_.positions.row(taken_) = dynamics.ring().shape().points;
-    series_.forces.row(taken_) << dynamics.ring().forces().contact_force.transpose(),
-        dynamics.ring().forces().flank_force.transpose();
+    series_.forces.row(taken_) << dynamics.ring().forces().of<WaveGeneratorContact>().force.transpose(),
+        dynamics.ring().forces().of<ToothMesh>().flank_force.transpose();
     ++taken_;
   }
 

@@ -37,7 +37,7 @@ Problem insertion()
   Parameters parameters = thesisParameters();
   Problem problem = fromParameters("insertion", "Insertion of the wave generator, thesis masses, 0.05 s", parameters);
   auto model = std::make_shared<JointModel>(*problem.parameters);
-  model->ring.meshed = false;
+  model->ring.setMeshed(false);
   problem.model = model;
   problem.drive.wave_generator_driven = true;
   problem.drive.output_driven = true;
@@ -217,7 +217,8 @@ Series Recorder::series() const
       series.angles.row(i) = q.tail(2);
     }
     series.positions.row(i) = q.head(n - 2);
-    series.forces.row(i) << ring.forces().contact_force.transpose(), ring.forces().flank_force.transpose();
+    series.forces.row(i) << ring.forces().of<WaveGeneratorContact>().force.transpose(),
+        ring.forces().of<ToothMesh>().flank_force.transpose();
   }
   return series;
 }

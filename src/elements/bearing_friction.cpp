@@ -10,7 +10,7 @@ namespace hjt
 {
 void BearingFriction::loosen(double loss, double least) noexcept
 {
-  preload_ = std::max(parameters_.race_preload - loss, std::min(least, parameters_.race_preload));
+  preload_ = std::max(preload_ - loss, std::min(least, preload_));
 }
 
 double BearingFriction::torqueAtViscosity(double speed, double load, double viscosity) const noexcept

@@ -22,9 +22,9 @@ public:
   {
   }
 
-  /// Grease of another viscosity, by this factor to the configured one at any temperature [-].
-  void scaleViscosity(double factor) noexcept { viscosity_factor_ = factor; }
-  /// Race that sits looser by this than configured, but presses with `least` or what it was if that is less [N].
+  /// Grease of another viscosity, by this factor at any temperature [-].
+  void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
+  /// Reduces the preload of the race by `loss`, not below min(`least`, present preload) [N].
   void loosen(double loss, double least) noexcept;
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].

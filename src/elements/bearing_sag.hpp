@@ -27,7 +27,6 @@ class BearingSag
 public:
   explicit BearingSag(const BearingParameters& bearing);
 
-  void clear() noexcept { size_ = 0; }
   bool sound() const noexcept { return size_ == 0; }
 
   /// A spall `depth` deep and `length` long [m]; `place`: angle along the inner race from the wave generator's angle,
@@ -43,7 +42,6 @@ public:
           Eigen::VectorXd& second) const noexcept;
 
   double cageRate() const noexcept { return cage_rate_; }  ///< turns of the cage per turn of the wave generator [-]
-  double spinRate() const noexcept { return spin_rate_; }  ///< turns of a ball against the cage, likewise [-]
 
 private:
   enum class Where

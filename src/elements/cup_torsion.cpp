@@ -8,20 +8,17 @@
 
 namespace hjt
 {
-CupTorsion::CupTorsion(const CupParameters& parameters, const ToothRing& rest)
-  : made_slopes_(parameters.torsion_stiffness)
-  , slopes_(made_slopes_)
-  , torques_(parameters.torsion_breakpoints)
-  , rest_radial_(rest.radial())
+CupTorsion::CupTorsion(const Parameters& parameters, const ToothRing& rest)
+  : slopes_(parameters.cup.torsion_stiffness), torques_(parameters.cup.torsion_breakpoints), rest_radial_(rest.radial())
 {
   scaleStiffness(1.0);
 }
 
 void CupTorsion::scaleStiffness(double factor) noexcept
 {
-  for (std::size_t i = 0; i < slopes_.size(); ++i)
+  for (double& slope : slopes_)
   {
-    slopes_[i] = factor * made_slopes_[i];
+    slope *= factor;
   }
   rotations_[0] = torques_[0] / slopes_[0];
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
@@ -107,14 +104,15 @@ double CupTorsion::stiffness(double rotation) const noexcept
   return size > rotations_[1] ? slopes_[2] : size > rotations_[0] ? slopes_[1] : slopes_[0];
 }
 
-HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch,
+                                             ForceSum& sum) const noexcept
 {
   const double rotation = meanRotation(shape);
-  forces.cup_rotation = rotation;
+  scratch.rotation = rotation;
   const int n = shape.teeth();
   const double share = torque(rotation) / n;
   const double* __restrict__ point = shape.points.data();
-  double* __restrict__ force = forces.teeth.data();
+  double* __restrict__ force = sum.teeth.data();
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
@@ -124,14 +122,14 @@ HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, RingForces&
     force[2 * i] += scale * y;
     force[2 * i + 1] -= scale * x;
   }
-  forces.energy += storedEnergy(rotation);
+  sum.energy += storedEnergy(rotation);
 }
 
-HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const RingForces& forces,
+HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Scratch& scratch,
                                               RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
-  const double rotation = forces.cup_rotation;
+  const double rotation = scratch.rotation;
   const double share = torque(rotation) / n;
   const double part = 1.0 / n;
   const double* __restrict__ point = shape.points.data();

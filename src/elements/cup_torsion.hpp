@@ -5,9 +5,11 @@
 
 #include <Eigen/Core>
 
-#include "elements/ring_forces.hpp"
+#include "elements/force_sum.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
@@ -21,9 +23,9 @@ namespace hjt
 class CupTorsion
 {
 public:
-  CupTorsion(const CupParameters& parameters, const ToothRing& rest);
+  CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// The cup's stiffness becomes this part of what was configured, > 0; the torques where it changes stay [-].
+  /// The cup's stiffness times this, > 0; the torques where it changes stay [-].
   void scaleStiffness(double factor) noexcept;
 
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
@@ -38,12 +40,17 @@ public:
     return size > torques_[1] ? slopes_[2] : size > torques_[0] ? slopes_[1] : slopes_[0];
   }
 
-  void addForces(const RingShape& shape, RingForces& forces) const noexcept;
-  /// `forces`: of the same shape.
-  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  struct Scratch
+  {
+    explicit Scratch(int /*teeth*/) {}
+    void setZero() noexcept {}
+
+    double rotation{};  ///< mean rotation of the tooth points [rad]
+  };
+  void addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch, ForceSum& sum) const noexcept;
+  void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
 private:
-  std::array<double, 3> made_slopes_;
   std::array<double, 3> slopes_;
   std::array<double, 2> torques_;
   std::array<double, 2> rotations_;  // where the slope changes [rad]

@@ -23,7 +23,7 @@ struct FrictionTerm
 struct JointFriction
 {
   /// Room for one term a tooth, the motor shaft's and the cup's.
-  explicit JointFriction(int teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 2); }
+  explicit JointFriction(int teeth) : running(2 * teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 2); }
 
   void setZero() noexcept
   {
@@ -44,5 +44,6 @@ struct JointFriction
 
   std::vector<FrictionTerm> terms;
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
+  Eigen::VectorXd running;  ///< 2 N, rates of the ring's points by motor angle while the output follows [m/rad]
 };
 }  // namespace hjt

@@ -8,9 +8,9 @@
 
 namespace hjt
 {
-RimBending::RimBending(const RingParameters& parameters, const ToothRing& rest)
-  : law_(parameters.bending_law)
-  , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.bending_stiffness))
+RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
+  : law_(parameters.ring.bending_law)
+  , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.ring.bending_stiffness))
   , preset_(Eigen::VectorXd::Zero(rest.teeth()))
   , rest_directions_(rest.segments())
   , rest_cos_(std::cos(rest.pitchAngle()))
@@ -19,17 +19,17 @@ RimBending::RimBending(const RingParameters& parameters, const ToothRing& rest)
 }
 
 /// Moments at the teeth: the angles that stiffness_[i] resists, times it. Adds the energy.
-HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept
 {
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
   const double* __restrict__ preset = preset_.data();
-  double* reference = forces.segment.data();
-  double* moment = forces.bending_moment.data();
+  double* reference = sum.segment.data();
+  double* moment = scratch.moment.data();
   if (law_ == BendingLaw::ABSOLUTE)
   {
-    forces.segment = rest_directions_;
+    sum.segment = rest_directions_;
   }
   else
   {
@@ -69,17 +69,18 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, RingForces
       energy += 0.5 * stiffness[i] * angle * angle;
     }
   }
-  forces.energy += energy;
+  sum.energy += energy;
 }
 
-HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch,
+                                             ForceSum& sum) const noexcept
 {
-  addMoments(shape, forces);
+  addMoments(shape, scratch, sum);
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
-  const double* moment = forces.bending_moment.data();
-  double* segment = forces.segment.data();
+  const double* moment = scratch.moment.data();
+  double* segment = sum.segment.data();
   const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
   const auto turn_back = [&](int i, int j)
   {
@@ -93,12 +94,12 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, RingForces&
     turn_back(i, i + 1);
   }
   turn_back(n - 1, 0);
-  forces.addSegmentForces();
+  sum.addSegmentForces();
 }
 
-void RimBending::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
+void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept
 {
-  addTurnTangent(shape, forces, tangent);
+  addTurnTangent(shape, scratch, tangent);
   if (law_ == BendingLaw::CURVATURE)
   {
     addCurvatureTangent(shape, tangent);
@@ -106,13 +107,13 @@ void RimBending::addTangent(const RingShape& shape, const RingForces& forces, Ri
 }
 
 /// The part that acts between the ends of a segment: its couple as it turns, and with the absolute law its stiffness.
-HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const RingForces& forces,
+HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const Scratch& scratch,
                                                   RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
-  const double* moment = forces.bending_moment.data();
+  const double* moment = scratch.moment.data();
   const double* __restrict__ stiffness = stiffness_.data();
   double* __restrict__ xx = tangent.segment.xx.data();
   double* __restrict__ xy = tangent.segment.xy.data();

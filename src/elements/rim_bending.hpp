@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 
-#include "elements/ring_forces.hpp"
+#include "elements/force_sum.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
@@ -19,25 +21,32 @@ namespace hjt
 class RimBending
 {
 public:
-  RimBending(const RingParameters& parameters, const ToothRing& rest);
+  RimBending(const Parameters& parameters, const ToothRing& rest);
 
-  void addForces(const RingShape& shape, RingForces& forces) const noexcept;
-  /// `forces`: of the same shape.
-  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  struct Scratch
+  {
+    explicit Scratch(int teeth) : moment(teeth) {}
+    void setZero() noexcept {}  // `addForces` writes every entry
+
+    Eigen::VectorXd moment;  ///< N, at each tooth (absolute law: on each segment) [N.m]
+  };
+  void addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch, ForceSum& sum) const noexcept;
+  void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
   /// Force of the couple that turns segment i back, at its ends (thesis eq. 5.52) [N].
-  double bendingForce(const RingShape& shape, const RingForces& forces, int i) const noexcept
+  double bendingForce(const RingShape& shape, const Scratch& scratch, int i) const noexcept
   {
-    const double next = law_ == BendingLaw::ABSOLUTE ? 0.0 : forces.bending_moment[shape.next(i)];
-    return (forces.bending_moment[i] - next) / shape.lengths[i];
+    const double next = law_ == BendingLaw::ABSOLUTE ? 0.0 : scratch.moment[shape.next(i)];
+    return (scratch.moment[i] - next) / shape.lengths[i];
   }
 
+  const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
   Eigen::VectorXd& preset() noexcept { return preset_; }        ///< N, editable per tooth [rad]
 
 private:
-  void addMoments(const RingShape& shape, RingForces& forces) const noexcept;
-  void addTurnTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  void addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept;
+  void addTurnTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
   void addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
 
   BendingLaw law_;

@@ -5,19 +5,20 @@
 
 namespace hjt
 {
-RimTension::RimTension(const RingParameters& parameters, const ToothRing& rest)
-  : stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.tension_stiffness))
+RimTension::RimTension(const Parameters& parameters, const ToothRing& rest)
+  : stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.ring.tension_stiffness))
   , rest_length_(rest.segmentLength())
 {
 }
 
-HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, RingForces& forces) const noexcept
+HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, const DrivePosition&, Scratch&,
+                                             ForceSum& sum) const noexcept
 {
   const int n = shape.teeth();
   const double* __restrict__ length = shape.lengths.data();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
-  double* __restrict__ segment = forces.segment.data();
+  double* __restrict__ segment = sum.segment.data();
   const double rest = rest_length_;
   double energy = 0.0;
 #pragma omp simd reduction(+ : energy)
@@ -29,11 +30,12 @@ HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, RingForces&
     segment[2 * i + 1] = pull * direction[2 * i + 1];
     energy += 0.5 * pull * stretch;
   }
-  forces.energy += energy;
-  forces.addSegmentForces();
+  sum.energy += energy;
+  sum.addSegmentForces();
 }
 
-HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scratch&,
+                                              RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
   const double* __restrict__ length = shape.lengths.data();

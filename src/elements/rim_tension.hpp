@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 
-#include "elements/ring_forces.hpp"
+#include "elements/force_sum.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
@@ -18,10 +20,15 @@ namespace hjt
 class RimTension
 {
 public:
-  RimTension(const RingParameters& parameters, const ToothRing& rest);
+  RimTension(const Parameters& parameters, const ToothRing& rest);
 
-  void addForces(const RingShape& shape, RingForces& forces) const noexcept;
-  void addTangent(const RingShape& shape, RingTangent& tangent) const noexcept;
+  struct Scratch
+  {
+    explicit Scratch(int /*teeth*/) {}
+    void setZero() noexcept {}
+  };
+  void addForces(const RingShape& shape, const DrivePosition&, Scratch&, ForceSum& sum) const noexcept;
+  void addTangent(const RingShape& shape, const Scratch&, RingTangent& tangent) const noexcept;
 
   /// Tension of segment i, pull > 0 [N].
   double tension(const RingShape& shape, int i) const noexcept
@@ -29,6 +36,7 @@ public:
     return stiffness_[i] * (shape.lengths[i] - rest_length_);
   }
 
+  const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per segment [N/m]
 
 private:

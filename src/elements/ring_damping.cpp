@@ -9,29 +9,29 @@ namespace hjt
 namespace
 {
 /// Speed of the wave generator's surface along a tooth's normal, by its angular speed [m/rad].
-double surfaceLever(const RingShape& shape, const RingForces& forces, int i) noexcept
+double surfaceLever(const RingShape& shape, const WaveGeneratorContact::Scratch& contact, int i) noexcept
 {
-  return shape.points[2 * i] * forces.contact_normal[2 * i + 1] -
-         shape.points[2 * i + 1] * forces.contact_normal[2 * i];
+  return shape.points[2 * i] * contact.normal[2 * i + 1] - shape.points[2 * i + 1] * contact.normal[2 * i];
 }
 }  // namespace
 
 /// Dashpot between tooth i and the wave generator [N.s/m].
-double RingDamping::contactStrength(const RingForces& forces, int i) const noexcept
+double RingDamping::contactStrength(const Contact& contact, int i) const noexcept
 {
-  return forces.contact_force[i] > 0.0 ? contact_ * ContactRamp(forces.contact_depth[i], smoothing_).tangent : 0.0;
+  return contact.force[i] > 0.0 ? contact_ * ContactRamp(contact.depth[i], smoothing_).tangent : 0.0;
 }
 
-HJT_VECTOR_CLONES void RingDamping::add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
+HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates& rates,
                                         JointFriction& friction) const noexcept
 {
+  const RingShape& shape = rates.shape;
   const int n = shape.teeth();
   const double* m = rates.by_motor.data();
   const double* o = rates.by_output.data();
   const double* direction = shape.directions.data();
   const double* point = shape.points.data();
-  const double* normal = forces.contact_normal.data();
-  const double* depth = forces.contact_depth.data();
+  const double* normal = contact.normal.data();
+  const double* depth = contact.depth.data();
   const double smoothing = smoothing_;
   const auto stretch = [&](const double* rate, int i, int j) {
     return direction[2 * i] * (rate[2 * j] - rate[2 * i]) + direction[2 * i + 1] * (rate[2 * j + 1] - rate[2 * i + 1]);
@@ -69,7 +69,7 @@ HJT_VECTOR_CLONES void RingDamping::add(const RingShape& shape, const RingForces
   friction.viscous(1, 1) += oo;
 }
 
-HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, const RingForces& forces,
+HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, const Contact& contact,
                                                       const Eigen::VectorXd& speeds, const Eigen::VectorXd& growth,
                                                       Eigen::VectorXd& force) const noexcept
 {
@@ -77,14 +77,14 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   const double* __restrict__ speed = speeds.data();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ point = shape.points.data();
-  const double* __restrict__ normal = forces.contact_normal.data();
-  const double* __restrict__ depth = forces.contact_depth.data();
-  const double* __restrict__ pressed = forces.contact_force.data();
+  const double* __restrict__ normal = contact.normal.data();
+  const double* __restrict__ depth = contact.depth.data();
+  const double* __restrict__ pressed = contact.force.data();
   const double* __restrict__ grows = growth.data();
   double* __restrict__ out = force.data();
   const double tension = tension_;
   const double tooth = tooth_;
-  const double contact = contact_;
+  const double dashpot = contact_;
   const double smoothing = smoothing_;
   const double turning = speed[2 * n];
   double dissipated = 0.0;
@@ -116,7 +116,7 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   {
     const double vx = speed[2 * i];
     const double vy = speed[2 * i + 1];
-    const double strength = pressed[i] > 0.0 ? contact * ContactRamp(depth[i], smoothing).tangent : 0.0;
+    const double strength = pressed[i] > 0.0 ? dashpot * ContactRamp(depth[i], smoothing).tangent : 0.0;
     const double lever = point[2 * i] * normal[2 * i + 1] - point[2 * i + 1] * normal[2 * i];
     const double rate = lever * turning + grows[i] - normal[2 * i] * vx - normal[2 * i + 1] * vy;
     const double push = strength * rate;
@@ -130,7 +130,7 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   return { dissipated, supplied };
 }
 
-void RingDamping::addTangent(const RingShape& shape, const RingForces& forces, double scale,
+void RingDamping::addTangent(const RingShape& shape, const Contact& contact, double scale,
                              RingTangent& tangent) const noexcept
 {
   for (int i = 0; i < shape.teeth(); ++i)
@@ -138,14 +138,14 @@ void RingDamping::addTangent(const RingShape& shape, const RingForces& forces, d
     const int j = shape.next(i);
     const Eigen::Vector2d along = shape.directions.segment<2>(2 * i);
     const Block2 stretch = scale * tension_ * along * along.transpose();
-    const Eigen::Vector2d normal = forces.contact_normal.segment<2>(2 * i);
-    const double contact = scale * contactStrength(forces, i);
-    const double lever = surfaceLever(shape, forces, i);
-    tangent.addDiagonal(i, scale * tooth_ * Block2::Identity() + stretch + contact * normal * normal.transpose());
+    const Eigen::Vector2d normal = contact.normal.segment<2>(2 * i);
+    const double strength = scale * contactStrength(contact, i);
+    const double lever = surfaceLever(shape, contact, i);
+    tangent.addDiagonal(i, scale * tooth_ * Block2::Identity() + stretch + strength * normal * normal.transpose());
     tangent.addDiagonal(j, stretch);
     tangent.addPair(i, j, -stretch);
-    tangent.wave_generator.segment<2>(2 * i) -= contact * lever * normal;
-    tangent.wave_generator_stiffness += contact * lever * lever;
+    tangent.wave_generator.segment<2>(2 * i) -= strength * lever * normal;
+    tangent.wave_generator_stiffness += strength * lever * lever;
   }
 }
 }  // namespace hjt

@@ -4,8 +4,9 @@
 #include <Eigen/Core>
 
 #include "elements/joint_friction.hpp"
-#include "elements/ring_forces.hpp"
 #include "elements/ring_friction.hpp"
+#include "elements/ring_tangent.hpp"
+#include "elements/wave_generator_contact.hpp"
 #include "gear/ring_shape.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
@@ -36,21 +37,22 @@ public:
   {
   }
 
+  using Contact = WaveGeneratorContact::Scratch;  ///< what the contact found at the same shape
+
   /// Seen through the joint's two angles, the ring following them: adds to the viscous matrix.
-  void add(const RingShape& shape, const RingForces& forces, const RingRates& rates,
-           JointFriction& friction) const noexcept;
+  void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;
 
   /// Adds the dashpots' force on each coordinate of the ring: 2 N of the tooth points, wave generator and output angle.
   /// `speeds`: of the same coordinates; `growth`: N, speed of the wave generator's surface by its growing amplitude along
-  /// each tooth's normal [m/s]; `forces`: of the same shape.
-  DashpotPower addForces(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& speeds,
+  /// each tooth's normal [m/s].
+  DashpotPower addForces(const RingShape& shape, const Contact& contact, const Eigen::VectorXd& speeds,
                          const Eigen::VectorXd& growth, Eigen::VectorXd& force) const noexcept;
 
   /// Adds `scale` [1/s] times the damping matrix.
-  void addTangent(const RingShape& shape, const RingForces& forces, double scale, RingTangent& tangent) const noexcept;
+  void addTangent(const RingShape& shape, const Contact& contact, double scale, RingTangent& tangent) const noexcept;
 
 private:
-  double contactStrength(const RingForces& forces, int i) const noexcept;
+  double contactStrength(const Contact& contact, int i) const noexcept;
 
   double tension_;    // [N.s/m]
   double tooth_;      // [N.s/m]

@@ -7,29 +7,28 @@
 
 namespace hjt
 {
-void MeshFriction::addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces,
-                            const RingRates& rates, const Eigen::Vector2d& speeds,
-                            JointFriction& friction) const noexcept
+void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
+                            const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept
 {
-  for (const FlankContact& contact : forces.flanks)
+  for (const FlankContact& contact : found.flanks)
   {
-    const double force = forces.flank_force[contact.tooth];
+    const double force = found.flank_force[contact.tooth];
     if (force == 0.0)
     {
       continue;
     }
-    const Eigen::Vector2d slip(mesh.slidingSpeed(shape, contact, rates.by_motor, 0.0),
-                               mesh.slidingSpeed(shape, contact, rates.by_output, 1.0));
+    const Eigen::Vector2d slip(mesh.slidingSpeed(rates.shape, contact, rates.by_motor, 0.0),
+                               mesh.slidingSpeed(rates.shape, contact, rates.by_output, 1.0));
     friction.terms.push_back({ tooth_factor_[contact.tooth] * coefficient(slip.dot(speeds)) * std::abs(force), slip });
   }
 }
 
-HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const RingForces& forces,
+HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                                                    const Eigen::VectorXd& rates) const noexcept
 {
   const int n = shape.teeth();
   const double* point = shape.points.data();
-  const double* force = forces.contact_force.data();
+  const double* force = found.force.data();
   const double* rate = rates.data();
   const auto lost = [&](int h, int i, int j)
   {
@@ -44,6 +43,6 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
   {
     sum += lost(i - 1, i, i + 1);
   }
-  return coefficient_ * parameters_.slip_lever * sum;
+  return coefficient_ * slip_lever_ * sum;
 }
 }  // namespace hjt

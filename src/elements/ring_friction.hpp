@@ -7,8 +7,8 @@
 
 #include "elements/cup_torsion.hpp"
 #include "elements/joint_friction.hpp"
-#include "elements/ring_forces.hpp"
 #include "elements/tooth_mesh.hpp"
+#include "elements/wave_generator_contact.hpp"
 #include "gear/ring_shape.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
@@ -17,6 +17,7 @@ namespace hjt
 /// How the ring's points move with the two angles of the joint.
 struct RingRates
 {
+  const RingShape& shape;
   const Eigen::VectorXd& by_motor;   ///< 2 N, by wave generator angle [m/rad]
   const Eigen::VectorXd& by_output;  ///< 2 N, by output angle [m/rad]
 };
@@ -27,30 +28,31 @@ class MeshFriction
 {
 public:
   MeshFriction(const MeshParameters& parameters, int teeth)
-    : parameters_(parameters)
-    , friction_static_(parameters.friction_static)
+    : friction_static_(parameters.friction_static)
     , friction_kinetic_(parameters.friction_kinetic)
+    , stribeck_velocity_(parameters.stribeck_velocity)
     , tooth_factor_(Eigen::VectorXd::Ones(teeth))
   {
   }
 
-  /// Friction of all flanks, to the configured one [-].
+  /// Friction of all flanks times this [-].
   void scale(double factor) noexcept
   {
-    friction_static_ = factor * parameters_.friction_static;
-    friction_kinetic_ = factor * parameters_.friction_kinetic;
+    friction_static_ *= factor;
+    friction_kinetic_ *= factor;
   }
   /// N, friction of each tooth's flanks to that of the others, editable [-].
   Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
 
-  /// One term per loaded tooth. `forces`: of the same shape; `speeds`: motor and output [rad/s], for the Stribeck curve.
-  void addTerms(const ToothMesh& mesh, const RingShape& shape, const RingForces& forces, const RingRates& rates,
+  /// One term per loaded tooth. `found`: by the mesh, at the same shape; `speeds`: motor and output [rad/s], for the
+  /// Stribeck curve.
+  void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
   /// At a sliding speed along the flank [m/s]: the Stribeck curve [-].
   double coefficient(double sliding_speed) const noexcept
   {
-    const double relative = sliding_speed / parameters_.stribeck_velocity;
+    const double relative = sliding_speed / stribeck_velocity_;
     return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
   }
 
@@ -59,7 +61,7 @@ public:
   template <class Speeds>
   Speeds coefficients(const Speeds& sliding_speeds) const noexcept
   {
-    const double scale = 1.0 / (32.0 * parameters_.stribeck_velocity * parameters_.stribeck_velocity);
+    const double scale = 1.0 / (32.0 * stribeck_velocity_ * stribeck_velocity_);
     const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond it nothing is left of the difference
     const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
     return friction_kinetic_ +
@@ -67,9 +69,9 @@ public:
   }
 
 private:
-  MeshParameters parameters_;
   double friction_static_;
   double friction_kinetic_;
+  double stribeck_velocity_;  // [m/s]
   Eigen::VectorXd tooth_factor_;
 };
 
@@ -79,20 +81,16 @@ private:
 class CupFriction
 {
 public:
-  explicit CupFriction(const CupParameters& parameters)
-    : made_torque_(parameters.friction_torque), torque_(parameters.friction_torque)
-  {
-  }
+  explicit CupFriction(const CupParameters& parameters) : torque_(parameters.friction_torque) {}
 
-  /// To the configured one [-].
-  void scale(double factor) noexcept { torque_ = factor * made_torque_; }
+  void scale(double factor) noexcept { torque_ *= factor; }
 
   /// Adds one term, or none if there is no friction.
-  void addTerm(const RingShape& shape, const RingRates& rates, JointFriction& friction) const noexcept
+  void addTerm(const RingRates& rates, JointFriction& friction) const noexcept
   {
-    addTerm(
-        { CupTorsion::meanRotationRate(shape, rates.by_motor), CupTorsion::meanRotationRate(shape, rates.by_output) },
-        friction);
+    addTerm({ CupTorsion::meanRotationRate(rates.shape, rates.by_motor),
+              CupTorsion::meanRotationRate(rates.shape, rates.by_output) },
+            friction);
   }
 
   /// The same where the mean rotation's rates by motor and output angle [-] are known.
@@ -105,7 +103,6 @@ public:
   }
 
 private:
-  double made_torque_;
   double torque_;  // [N.m]
 };
 
@@ -118,18 +115,19 @@ class InterfaceFriction
 {
 public:
   explicit InterfaceFriction(const ContactParameters& parameters)
-    : parameters_(parameters), coefficient_(parameters.friction_coefficient)
+    : slip_lever_(parameters.slip_lever), coefficient_(parameters.friction_coefficient)
   {
   }
 
-  /// To the configured one [-].
-  void scale(double factor) noexcept { coefficient_ = factor * parameters_.friction_coefficient; }
+  void scale(double factor) noexcept { coefficient_ *= factor; }
 
-  /// Size of the torque at the motor shaft, >= 0 [N.m]; `rates`: of the points by motor angle while running [m/rad].
-  double torque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& rates) const noexcept;
+  /// Size of the torque at the motor shaft, >= 0 [N.m]. `found`: by the contact, at the same shape; `rates`: of the points
+  /// by motor angle while running [m/rad].
+  double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
+                const Eigen::VectorXd& rates) const noexcept;
 
 private:
-  ContactParameters parameters_;
+  double slip_lever_;  // [m]
   double coefficient_;
 };
 }  // namespace hjt

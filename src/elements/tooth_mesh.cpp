@@ -32,6 +32,16 @@ inline Stand standOf(const double* point, double mid_height, int h, int i, int j
 }
 }  // namespace
 
+ToothMesh::Scratch::Scratch(int teeth)
+  : flank_force(Eigen::VectorXd::Zero(teeth)), meshed(static_cast<std::size_t>(teeth)), flanks(teeth), pressed(teeth)
+{
+}
+
+ToothMesh::ToothMesh(const Parameters& parameters, const ToothRing& /*rest*/)
+  : ToothMesh(parameters.mesh, parameters.gear, ManufactureErrors(parameters.manufacture, parameters.gear))
+{
+}
+
 ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors)
   : spaces_(gear.teeth_circular_spline)
   , mid_height_(gear.toothMidHeight())
@@ -52,18 +62,16 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
     const double angle = TWO_PI * k / spaces_;
     space_.push_back({ std::cos(angle), std::sin(angle), errors.space_across[k], errors.space_along[k] });
   }
-  made_space_ = space_;
-  made_reach_ = reach_;
 }
 
 void ToothMesh::moveSpaces(double distance) noexcept
 {
-  for (std::size_t k = 0; k < space_.size(); ++k)
+  for (Space& space : space_)
   {
-    space_[k].across = made_space_[k].across - distance * made_space_[k].axis_y;
-    space_[k].along = made_space_[k].along + distance * made_space_[k].axis_x;
+    space.across -= distance * space.axis_y;
+    space.along += distance * space.axis_x;
   }
-  reach_ = made_reach_ - std::abs(distance);
+  reach_ -= std::abs(distance);
 }
 
 ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept
@@ -169,18 +177,19 @@ double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
              OUTSIDE;
 }
 
-void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept
+void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch,
+                          ForceSum& sum) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  findPressed(shape, cos_output, sin_output, forces.pressed);
+  findPressed(shape, cos_output, sin_output, scratch.pressed);
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    if (!(forces.pressed[i] > 0.0))
+    if (!(scratch.pressed[i] > 0.0))
     {
       continue;
     }
-    FlankContact& contact = forces.flanks.add();
+    FlankContact& contact = scratch.flanks.add();
     contact.tooth = i;
     contact.place = engage(shape, cos_output, sin_output, i);
     contact.law = law(contact.place, i);
@@ -190,19 +199,19 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     // The tooth tilts with the chord: its couple acts on the two neighbours, along the chord's normal.
     const Eigen::Vector2d& normal = tooth.chord.normal;
     const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
-    forces.teeth.segment<2>(2 * i) -= gradient;
-    forces.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
-    forces.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
-    forces.meshed[static_cast<std::size_t>(i)] = 1;
-    forces.flank_force[i] = at.by_xi / at.cosine;
-    forces.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
-    forces.energy += at.energy;
+    sum.teeth.segment<2>(2 * i) -= gradient;
+    sum.teeth.segment<2>(2 * shape.next(i)) += couple * normal;
+    sum.teeth.segment<2>(2 * shape.previous(i)) -= couple * normal;
+    scratch.meshed[static_cast<std::size_t>(i)] = 1;
+    scratch.flank_force[i] = at.by_xi / at.cosine;
+    sum.output_torque += at.by_xi * tooth.zeta - at.by_zeta * tooth.xi;
+    sum.energy += at.energy;
   }
 }
 
-void ToothMesh::addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
+void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept
 {
-  for (const FlankContact& contact : forces.flanks)
+  for (const FlankContact& contact : scratch.flanks)
   {
     const ToothEngagement& tooth = contact.place;
     const FlankLaw& at = contact.law;

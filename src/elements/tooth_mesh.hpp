@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "elements/ring_forces.hpp"
+#include "elements/flank_contact.hpp"
+#include "elements/force_sum.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/manufacture_errors.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_profile.hpp"
+#include "gear/tooth_ring.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -37,11 +41,28 @@ struct ToothPlace
 class ToothMesh
 {
 public:
-  ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
+  /// @throws ParameterError on a bad table of pitch errors.
+  ToothMesh(const Parameters& parameters, const ToothRing& rest);
 
-  void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
-  /// `forces`: of the same shape.
-  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  /// What it found, one entry per tooth.
+  struct Scratch
+  {
+    explicit Scratch(int teeth);
+    void setZero() noexcept
+    {
+      flank_force.setZero();
+      std::fill(meshed.begin(), meshed.end(), 0);
+      flanks.clear();
+    }
+
+    Eigen::VectorXd flank_force;  ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
+    std::vector<char> meshed;     ///< N, tooth touches a flank [-]
+    FlankContacts flanks;         ///< the teeth that touch
+    Eigen::VectorXd pressed;      ///< N, depth of each tooth in the nearer flank, across; touching if > 0 [m]
+  };
+  /// `scratch`: set to zero before.
+  void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
+  void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
   /// Pairs every tooth with the space nearest to its angle at rest.
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
@@ -56,14 +77,17 @@ public:
   double slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,
                       double output_speed) const noexcept;
 
+  const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
   /// N, height lost at the tip, editable per tooth, >= 0 [m]
   Eigen::VectorXd& tipLoss() noexcept { return tip_loss_; }
-  /// Moves the circular spline's spaces off their axis, towards space 0, from where manufacture left them [m].
+  /// Moves the circular spline's spaces off their axis, towards space 0 [m].
   void moveSpaces(double distance) noexcept;
   Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
 
 private:
+  ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
+
   struct Space
   {
     double axis_x;  // unit vector at output angle 0
@@ -89,8 +113,6 @@ private:
   double half_space_;  // tangent of half a space
   ToothProfile profile_;
   std::vector<Space> space_;
-  std::vector<Space> made_space_;  // as manufacture left them
-  double made_reach_;
   Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd clearance_;

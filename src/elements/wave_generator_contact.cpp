@@ -27,29 +27,36 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
 }
 }  // namespace
 
-WaveGeneratorContact::WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear,
-                                           const ManufactureParameters& manufacture, const BearingParameters& bearing)
-  : law_(parameters.law)
-  , smoothing_(parameters.smoothing)
-  , mean_radius_(gear.flexspline_inner_radius)
-  , ellipticity_(manufacture.wave_generator_ellipticity)
-  , centre_x_(manufacture.wave_generator_eccentricity[0])
-  , centre_y_(manufacture.wave_generator_eccentricity[1])
-  , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
-  , gap_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
-  , bearing_(bearing)
-  , made_radius_(mean_radius_)
-  , made_ellipticity_(ellipticity_)
-  , made_centre_x_(centre_x_)
+WaveGeneratorContact::Scratch::Scratch(int teeth)
+  : force(Eigen::VectorXd::Zero(teeth))
+  , depth(teeth)
+  , curvature(teeth)
+  , normal(2 * teeth)
+  , gap(teeth)
+  , gap_rate(teeth)
+  , gap_second(teeth)
+{
+}
+
+WaveGeneratorContact::WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest)
+  : law_(parameters.contact.law)
+  , smoothing_(parameters.contact.smoothing)
+  , mean_radius_(parameters.gear.flexspline_inner_radius)
+  , ellipticity_(parameters.manufacture.wave_generator_ellipticity)
+  , centre_x_(parameters.manufacture.wave_generator_eccentricity[0])
+  , centre_y_(parameters.manufacture.wave_generator_eccentricity[1])
+  , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.contact.stiffness))
+  , gap_(Eigen::VectorXd::Zero(rest.teeth()))
+  , bearing_(parameters.bearing)
 {
 }
 
 void WaveGeneratorContact::wear(double lobe, double other_lobe) noexcept
 {
   const double quarter = 0.25 * (lobe + other_lobe);
-  mean_radius_ = made_radius_ - quarter;
-  ellipticity_ = made_ellipticity_ - quarter;
-  centre_x_ = made_centre_x_ - 0.5 * (lobe - other_lobe);
+  mean_radius_ -= quarter;
+  ellipticity_ -= quarter;
+  centre_x_ -= 0.5 * (lobe - other_lobe);
 }
 
 Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) const noexcept
@@ -61,7 +68,7 @@ Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) cons
 
 /// Feet of the normals from all tooth points, in the housing's axes.
 HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position,
-                                                      RingForces& forces) const noexcept
+                                                      Scratch& scratch) const noexcept
 {
   const double c = std::cos(position.wave_generator_angle);
   const double s = std::sin(position.wave_generator_angle);
@@ -72,9 +79,9 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   const double centre_y = centre_y_;
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
-  double* __restrict__ normal = forces.contact_normal.data();
-  double* __restrict__ depth = forces.contact_depth.data();
-  double* __restrict__ curvature = forces.contact_curvature.data();
+  double* __restrict__ normal = scratch.normal.data();
+  double* __restrict__ depth = scratch.depth.data();
+  double* __restrict__ curvature = scratch.curvature.data();
   const auto store = [&](int i, const EllipseFoot& foot)
   {
     normal[2 * i] = c * foot.normal_x - s * foot.normal_y;
@@ -110,29 +117,29 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   }
 }
 
-/// The gap with the sag of the faulty bearing, left in `forces`.
-void WaveGeneratorContact::addSag(const DrivePosition& position, RingForces& forces) const noexcept
+/// The gap with the sag of the faulty bearing, left in `scratch`.
+void WaveGeneratorContact::addSag(const DrivePosition& position, Scratch& scratch) const noexcept
 {
-  bearing_.at(position.wave_generator_angle, forces.gap, forces.gap_rate, forces.gap_second);
-  forces.gap += gap_;
+  bearing_.at(position.wave_generator_angle, scratch.gap, scratch.gap_rate, scratch.gap_second);
+  scratch.gap += gap_;
 }
 
 HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
-                                                       RingForces& forces) const noexcept
+                                                       Scratch& scratch, ForceSum& sum) const noexcept
 {
-  findFeet(shape, position, forces);
+  findFeet(shape, position, scratch);
   if (!bearing_.sound())
   {
-    addSag(position, forces);
+    addSag(position, scratch);
   }
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ stiffness = stiffness_.data();
-  const double* __restrict__ gap = gapOf(forces);
-  double* __restrict__ depth = forces.contact_depth.data();
-  const double* __restrict__ normal = forces.contact_normal.data();
-  double* __restrict__ contact_force = forces.contact_force.data();
-  double* __restrict__ teeth = forces.teeth.data();
+  const double* __restrict__ gap = gapOf(scratch);
+  double* __restrict__ depth = scratch.depth.data();
+  const double* __restrict__ normal = scratch.normal.data();
+  double* __restrict__ contact_force = scratch.force.data();
+  double* __restrict__ teeth = sum.teeth.data();
   const double smoothing = smoothing_;
   double torque = 0.0;
   double energy = 0.0;
@@ -153,31 +160,31 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
   }
   if (!bearing_.sound())
   {
-    torque += forces.contact_force.dot(forces.gap_rate);
+    torque += scratch.force.dot(scratch.gap_rate);
   }
-  forces.wave_generator_torque += torque;
-  forces.energy += energy;
+  sum.wave_generator_torque += torque;
+  sum.energy += energy;
 }
 
 /// A tooth out of contact has neither force nor stiffness and adds nothing.
-HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const RingForces& forces,
+HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const Scratch& scratch,
                                                         RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ tooth_stiffness = stiffness_.data();
-  const double* __restrict__ gap = gapOf(forces);
-  const double* __restrict__ depth = forces.contact_depth.data();
-  const double* __restrict__ normal = forces.contact_normal.data();
-  const double* __restrict__ curvature = forces.contact_curvature.data();
-  const double* __restrict__ contact_force = forces.contact_force.data();
+  const double* __restrict__ gap = gapOf(scratch);
+  const double* __restrict__ depth = scratch.depth.data();
+  const double* __restrict__ normal = scratch.normal.data();
+  const double* __restrict__ curvature = scratch.curvature.data();
+  const double* __restrict__ contact_force = scratch.force.data();
   double* __restrict__ xx = tangent.diagonal.xx.data();
   double* __restrict__ xy = tangent.diagonal.xy.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   double* __restrict__ by_angle = tangent.wave_generator.data();
   const double smoothing = smoothing_;
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
+  double by_angle_twice = 0.0;
+#pragma omp simd reduction(+ : by_angle_twice)
   for (int i = 0; i < n; ++i)
   {
     const double x = point[2 * i];
@@ -199,7 +206,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double sideways = force * (1.0 - turn * reach);
     by_angle[2 * i] -= along * nx - sideways * ny;
     by_angle[2 * i + 1] -= along * ny + sideways * nx;
-    sum += along * lever + sideways * reach;
+    by_angle_twice += along * lever + sideways * reach;
   }
   if (!bearing_.sound())
   {
@@ -210,16 +217,16 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
       const double nx = normal[2 * i];
       const double ny = normal[2 * i + 1];
       const double lever = point[2 * i] * ny - point[2 * i + 1] * nx;
-      const double rate = forces.gap_rate[i];
+      const double rate = scratch.gap_rate[i];
       by_angle[2 * i] += stiffness * rate * nx;
       by_angle[2 * i + 1] += stiffness * rate * ny;
-      sum += stiffness * rate * (rate - 2.0 * lever) - contact_force[i] * forces.gap_second[i];
+      by_angle_twice += stiffness * rate * (rate - 2.0 * lever) - contact_force[i] * scratch.gap_second[i];
     }
   }
-  tangent.wave_generator_stiffness += sum;
+  tangent.wave_generator_stiffness += by_angle_twice;
 }
 
-void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
+void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const Scratch& scratch,
                                               Eigen::VectorXd& rates) const noexcept
 {
   const double c = std::cos(position.wave_generator_angle);
@@ -229,10 +236,10 @@ void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, con
   for (Eigen::Index i = 0; i < rates.size(); ++i)
   {
     rates[i] = 0.0;
-    if (forces.contact_force[i] > 0.0)
+    if (scratch.force[i] > 0.0)
     {
-      const double nx = c * forces.contact_normal[2 * i] + s * forces.contact_normal[2 * i + 1];
-      const double ny = c * forces.contact_normal[2 * i + 1] - s * forces.contact_normal[2 * i];
+      const double nx = c * scratch.normal[2 * i] + s * scratch.normal[2 * i + 1];
+      const double ny = c * scratch.normal[2 * i + 1] - s * scratch.normal[2 * i];
       // The point on the surface is (a u, b v), (u, v) a unit vector; it moves by (u, -v).
       const double u = law_ == ContactLaw::POLAR ? a * a * nx : a * nx;
       const double v = law_ == ContactLaw::POLAR ? b * b * ny : b * ny;

@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 
 #include "elements/bearing_sag.hpp"
-#include "elements/ring_forces.hpp"
+#include "elements/force_sum.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/ellipse.hpp"
 #include "gear/ring_shape.hpp"
+#include "gear/tooth_ring.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -23,35 +25,47 @@ namespace hjt
 class WaveGeneratorContact
 {
 public:
-  WaveGeneratorContact(const ContactParameters& parameters, const GearParameters& gear,
-                       const ManufactureParameters& manufacture, const BearingParameters& bearing);
+  WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest);
 
-  void addForces(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
-  /// `forces`: of the same shape and position.
-  void addTangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+  /// What it found, one entry per tooth.
+  struct Scratch
+  {
+    explicit Scratch(int teeth);
+    void setZero() noexcept {}  // `addForces` writes every entry
+
+    Eigen::VectorXd force;       ///< N, normal force of the wave generator on each tooth, >= 0 [N]
+    Eigen::VectorXd depth;       ///< N, depth of each tooth point inside the wave generator, less the gap [m]
+    Eigen::VectorXd curvature;   ///< N, of the wave generator there [1/m]
+    Eigen::VectorXd normal;      ///< 2 N, direction of the force, outward [-]
+    Eigen::VectorXd gap;         ///< N, while the bearing is faulty: between wave generator and rim [m]
+    Eigen::VectorXd gap_rate;    ///< N, likewise: its derivative by the wave generator's angle [m/rad]
+    Eigen::VectorXd gap_second;  ///< N, likewise: the second derivative [m/rad^2]
+  };
+  void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
+  void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
   /// Of the ellipse, in the housing's axes [m].
   Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
 
   /// Advance of the wave generator's surface along the normal of each touching tooth by the wave amplitude, 0 for the
-  /// others; N [-]. `forces`: of the same position.
-  void surfaceByAmplitude(const DrivePosition& position, const RingForces& forces,
-                          Eigen::VectorXd& rates) const noexcept;
+  /// others; N [-]. `scratch`: of the same position.
+  void surfaceByAmplitude(const DrivePosition& position, const Scratch& scratch, Eigen::VectorXd& rates) const noexcept;
 
+  const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
   Eigen::VectorXd& gap() noexcept { return gap_; }              ///< N, editable per tooth, >= 0 [m]
   BearingSag& bearing() noexcept { return bearing_; }           ///< editable
 
-  /// Shortens the major semi-axis at lobe 0 and at lobe 1, from how it was made [m]. The minor axis stays.
+  /// Shortens the major semi-axis at lobe 0 and at lobe 1 [m]. The minor axis stays.
   void wear(double lobe, double other_lobe) noexcept;
 
 private:
-  void addSag(const DrivePosition& position, RingForces& forces) const noexcept;
-  const double* gapOf(const RingForces& forces) const noexcept
+  void addSag(const DrivePosition& position, Scratch& scratch) const noexcept;
+  const double* gapOf(const Scratch& scratch) const noexcept
   {
-    return bearing_.sound() ? gap_.data() : forces.gap.data();
+    return bearing_.sound() ? gap_.data() : scratch.gap.data();
   }
-  void findFeet(const RingShape& shape, const DrivePosition& position, RingForces& forces) const noexcept;
+  void findFeet(const RingShape& shape, const DrivePosition& position, Scratch& scratch) const noexcept;
 
   ContactLaw law_;
   double smoothing_;
@@ -62,8 +76,5 @@ private:
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd gap_;
   BearingSag bearing_;
-  double made_radius_;  // mean, as manufacture left it, and so on [m]
-  double made_ellipticity_;
-  double made_centre_x_;
 };
 }  // namespace hjt

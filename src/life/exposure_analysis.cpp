@@ -7,26 +7,18 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "params/variants.hpp"
 #include "statics/pitch_walk.hpp"
 
 namespace hjt
 {
-namespace
-{
-ContactParameters withUnitFriction(ContactParameters contact)
-{
-  contact.friction_coefficient = 1.0;
-  return contact;
-}
-}  // namespace
-
 struct ExposureAnalysis::Impl
 {
   Impl(const Parameters& p, int positions)
     : parameters(p)
     , positions(positions)
     , walk(p, positions)
-    , interface(withUnitFriction(p.contact))
+    , interface(withUnitFriction(p).contact)
     , running(2 * p.gear.teeth_flexspline)
   {
   }
@@ -44,7 +36,7 @@ struct ExposureAnalysis::Impl
     const double curvature = (turn - ring.rest.pitchAngle()) / ring.rest.segmentLength();
     const double section = parameters.life.face_width * parameters.gear.rim_thickness;
     return 0.5 * parameters.gear.rim_thickness * parameters.life.elastic_modulus * curvature +
-           ring.tension.tension(shape, i) / section;
+           ring.of<RimTension>().tension(shape, i) / section;
   }
 
   Parameters parameters;
@@ -73,27 +65,28 @@ Exposure ExposureAnalysis::under(double load_torque)
   Exposure exposure;
   double highest = std::numeric_limits<double>::lowest();
   double lowest = std::numeric_limits<double>::max();
-  impl.walk.under(load_torque,
-                  [&](double follow)
-                  {
-                    const JointModel& model = impl.walk.model();
-                    const RingEquilibrium& ring = impl.walk.ring();
-                    impl.running = ring.byWaveGenerator() + follow * ring.byOutput();
-                    for (const FlankContact& contact : ring.forces().flanks)
-                    {
-                      exposure.flank_sliding +=
-                          step * std::abs(ring.forces().flank_force[contact.tooth] *
-                                          model.ring.mesh.slidingSpeed(ring.shape(), contact, impl.running, follow));
-                    }
-                    for (int i = 0; i < teeth; ++i)
-                    {
-                      const double stress = impl.rimStress(i);
-                      highest = std::max(highest, stress);
-                      lowest = std::min(lowest, stress);
-                    }
-                    exposure.interface_sliding +=
-                        step * teeth * impl.interface.torque(ring.shape(), ring.forces(), impl.running);
-                  });
+  impl.walk.under(
+      load_torque,
+      [&](double follow)
+      {
+        const JointModel& model = impl.walk.model();
+        const RingEquilibrium& ring = impl.walk.ring();
+        impl.running = ring.byWaveGenerator() + follow * ring.byOutput();
+        for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
+        {
+          exposure.flank_sliding +=
+              step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
+                              model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, impl.running, follow));
+        }
+        for (int i = 0; i < teeth; ++i)
+        {
+          const double stress = impl.rimStress(i);
+          highest = std::max(highest, stress);
+          lowest = std::min(lowest, stress);
+        }
+        exposure.interface_sliding +=
+            step * teeth * impl.interface.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), impl.running);
+      });
   if (!impl.walk.status().ok())
   {
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +

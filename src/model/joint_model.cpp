@@ -16,34 +16,37 @@ JointModel::JointModel(const Parameters& parameters)
 {
 }
 
-void JointModel::friction(const RingShape& shape, const RingForces& forces, const RingRates& rates, double follow,
-                          const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
-                          Eigen::VectorXd& running, JointFriction& friction) const noexcept
+/// Dry friction at the motor's shaft, flanks apart [N.m].
+double JointModel::shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept
 {
+  return motor.coulombTorque() + (running.inputs.brake_engaged ? brake_torque : 0.0) +
+         bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity) + interface_torque;
+}
+
+void JointModel::friction(const RingForces& forces, const RingRates& rates, double follow, const Running& running,
+                          JointFriction& friction) const noexcept
+{
+  const auto& contact = forces.of<WaveGeneratorContact>();
   friction.setZero();
-  running = rates.by_motor + follow * rates.by_output;
-  const double shaft = motor.coulombTorque() + (inputs.brake_engaged ? brake_torque : 0.0) +
-                       bearing.torqueAtViscosity(speeds[0], forces.contact_force.sum(), viscosity) +
-                       interface_friction.torque(shape, forces, running);
-  friction.terms.push_back({ shaft, { 1.0, 0.0 } });
-  mesh_friction.addTerms(ring.mesh, shape, forces, rates, speeds, friction);
-  cup_friction.addTerm(shape, rates, friction);
+  friction.running = rates.by_motor + follow * rates.by_output;
+  const double interface_torque = interface_friction.torque(rates.shape, contact, friction.running);
+  friction.terms.push_back({ shaftTorque(running, contact.force.sum(), interface_torque), { 1.0, 0.0 } });
+  mesh_friction.addTerms(ring.of<ToothMesh>(), forces.of<ToothMesh>(), rates, running.speeds, friction);
+  cup_friction.addTerm(rates, friction);
   friction.viscous(0, 0) += motor.viscousFriction();
   friction.viscous(1, 1) += load.viscousFriction();
-  damping.add(shape, forces, rates, friction);
+  damping.add(contact, rates, friction);
 }
 
 void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
-                          const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
-                          JointFriction& friction) const noexcept
+                          const Running& running, JointFriction& friction) const noexcept
 {
   friction.terms.clear();
-  const double shaft = motor.coulombTorque() + (inputs.brake_engaged ? brake_torque : 0.0) +
-                       bearing.torqueAtViscosity(speeds[0], ring_response.contact_force, viscosity) +
-                       ring_response.interface_torque;
+  const double shaft = shaftTorque(running, ring_response.contact_force, ring_response.interface_torque);
   friction.terms.push_back({ shaft, { 1.0, 0.0 } });
   using Groups = RingFrictionResponse::Groups;
-  const Groups sliding = ring_response.rms_slip_by_motor * speeds[0] + ring_response.rms_slip_by_output * speeds[1];
+  const Groups sliding =
+      ring_response.rms_slip_by_motor * running.speeds[0] + ring_response.rms_slip_by_output * running.speeds[1];
   const Groups coefficients = mesh_friction.coefficients(sliding);
   for (int i = 0; i < RingFrictionResponse::FLANK_GROUPS; ++i)
   {

@@ -23,7 +23,7 @@ struct JointInputs
   double temperature{};  ///< of the drive [degC]
 };
 
-/// The whole joint: ring, motor, bearing, load, frictions. Faults edit it between steps.
+/// The whole joint: ring, motor, bearing, load, frictions. Solvers hold it const; JointFaults keeps one that changes.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);
@@ -63,16 +63,21 @@ struct JointModel
     return response;
   }
 
-  /// All friction. `running`: rates of the points by motor angle while the output follows [m/rad]; scratch of size 2 N.
-  /// `follow`: output speed over motor speed at constant load, from the ring's own stiffness [-]; `viscosity`: of the
-  /// bearing's grease [m^2/s].
-  void friction(const RingShape& shape, const RingForces& forces, const RingRates& rates, double follow,
-                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity, Eigen::VectorXd& running,
+  /// What the friction depends on beside the ring.
+  struct Running
+  {
+    Eigen::Vector2d speeds;  ///< of motor and output [rad/s]
+    const JointInputs& inputs;
+    double viscosity;  ///< of the bearing's grease [m^2/s]
+  };
+
+  /// All friction. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from the
+  /// ring's own stiffness [-].
+  void friction(const RingForces& forces, const RingRates& rates, double follow, const Running& running,
                 JointFriction& friction) const noexcept;
 
   /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].
-  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
-                const Eigen::Vector2d& speeds, const JointInputs& inputs, double viscosity,
+  void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
 
   RingModel ring;
@@ -84,5 +89,8 @@ struct JointModel
   InterfaceFriction interface_friction;
   RingDamping damping;
   double brake_torque;  ///< holding torque of the engaged brake, motor side [N.m]
+
+private:
+  double shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept;
 };
 }  // namespace hjt

@@ -1,16 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/ring_model.hpp"
 
+#include <cassert>
+#include <type_traits>
+
 namespace hjt
 {
+namespace
+{
+template <class... Elements>
+std::tuple<Elements...> makeElements(const Parameters& parameters, const ToothRing& rest, std::tuple<Elements...>*)
+{
+  return std::tuple<Elements...>(Elements(parameters, rest)...);
+}
+
+/// Calls `add` with each of the elements, with the teeth only if they are in.
+template <class Add>
+void forEach(const RingElements& elements, bool with_mesh, const Add& add) noexcept
+{
+  const auto add_one = [&](const auto& element)
+  {
+    if (with_mesh || !std::is_same_v<std::decay_t<decltype(element)>, ToothMesh>)
+    {
+      add(element);
+    }
+  };
+  std::apply([&](const auto&... element) { (add_one(element), ...); }, elements);
+}
+}  // namespace
+
 RingModel::RingModel(const Parameters& parameters)
   : gear(parameters.gear)
   , rest(parameters.gear)
-  , tension(parameters.ring, rest)
-  , bending(parameters.ring, rest)
-  , contact(parameters.contact, parameters.gear, parameters.manufacture, parameters.bearing)
-  , cup(parameters.cup, rest)
-  , mesh(parameters.mesh, parameters.gear, ManufactureErrors(parameters.manufacture, parameters.gear))
+  , elements_(makeElements(parameters, rest, static_cast<RingElements*>(nullptr)))
 {
 }
 
@@ -18,27 +40,25 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
                        bool circular_spline_in) const noexcept
 {
   forces.setZero();
-  tension.addForces(shape, forces);
-  bending.addForces(shape, forces);
-  contact.addForces(shape, position, forces);
-  cup.addForces(shape, forces);
-  if (meshed && circular_spline_in)
-  {
-    mesh.addForces(shape, position, forces);
-  }
+  forces.stamp(shape);
+  forEach(elements_, meshed_ && circular_spline_in,
+          [&](const auto& element)
+          {
+            using Element = std::decay_t<decltype(element)>;
+            element.addForces(shape, position, forces.of<Element>(), forces);
+          });
 }
 
 void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
+  assert(forces.areOf(shape) && "forces computed last for the same shape");
   tangent.setZero();
-  tension.addTangent(shape, tangent);
-  bending.addTangent(shape, forces, tangent);
-  contact.addTangent(shape, forces, tangent);
-  cup.addTangent(shape, forces, tangent);
-  if (meshed)
-  {
-    mesh.addTangent(shape, forces, tangent);
-  }
+  forEach(elements_, meshed_,
+          [&](const auto& element)
+          {
+            using Element = std::decay_t<decltype(element)>;
+            element.addTangent(shape, forces.of<Element>(), tangent);
+          });
 }
 
 RingShape RingModel::restShape(const DrivePosition& position) const
@@ -46,7 +66,7 @@ RingShape RingModel::restShape(const DrivePosition& position) const
   RingShape shape(rest.teeth());
   shape.points = rest.points();
   shape.updateGeometry();
-  mesh.pairAtRest(position, shape);
+  of<ToothMesh>().pairAtRest(position, shape);
   return shape;
 }
 }  // namespace hjt

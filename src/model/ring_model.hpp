@@ -1,21 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "elements/cup_torsion.hpp"
-#include "elements/rim_bending.hpp"
-#include "elements/rim_tension.hpp"
-#include "elements/ring_forces.hpp"
-#include "elements/tooth_mesh.hpp"
-#include "elements/wave_generator_contact.hpp"
+#include <cstdint>
+#include <tuple>
+
+#include "elements/ring_tangent.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "model/ring_forces.hpp"
 
 namespace hjt
 {
-/// All conservative elements on the ring. Faults edit it between steps.
-struct RingModel
+/// Another number after every change of a model, and after every assignment to it.
+class ModelVersion
 {
+public:
+  ModelVersion() = default;
+  ModelVersion(const ModelVersion&) = default;
+  ModelVersion& operator=(const ModelVersion&) noexcept  // NOLINT(cert-oop54-cpp): to itself is a change too
+  {
+    next();
+    return *this;
+  }
+  ~ModelVersion() = default;
+
+  void next() noexcept { ++number_; }
+  bool operator!=(const ModelVersion& other) const noexcept { return number_ != other.number_; }
+  std::uint64_t number() const noexcept { return number_; }
+
+private:
+  std::uint64_t number_{};
+};
+
+/// All conservative elements on the ring.
+///
+/// It changes by assignment and through `edit` and `setMeshed` alone, and each of them gives it another version: who has
+/// solved it before sees that.
+class RingModel
+{
+public:
   /// @throws ParameterError on a bad table of pitch errors.
   explicit RingModel(const Parameters& parameters);
 
@@ -30,13 +54,36 @@ struct RingModel
   /// The ring at rest, every tooth paired with its nearest space.
   RingShape restShape(const DrivePosition& position) const;
 
+  template <class Element>
+  const Element& of() const noexcept
+  {
+    return std::get<Element>(elements_);
+  }
+
+  /// An element, to change it now: the reference is good until the model is solved.
+  template <class Element>
+  Element& edit() noexcept
+  {
+    version_.next();
+    return std::get<Element>(elements_);
+  }
+
+  /// Whether the circular spline is there at all.
+  bool meshed() const noexcept { return meshed_; }
+  void setMeshed(bool meshed) noexcept
+  {
+    version_.next();
+    meshed_ = meshed;
+  }
+
+  std::uint64_t version() const noexcept { return version_.number(); }
+
   GearParameters gear;
   ToothRing rest;
-  RimTension tension;
-  RimBending bending;
-  WaveGeneratorContact contact;
-  CupTorsion cup;
-  ToothMesh mesh;
-  bool meshed{ true };  ///< false: circular spline left out
+
+private:
+  RingElements elements_;
+  bool meshed_{ true };
+  ModelVersion version_;
 };
 }  // namespace hjt

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <utility>
 #include <vector>
 
 #include "base/number_text.hpp"
@@ -15,63 +18,20 @@ namespace
 {
 constexpr double LATEST_ONSET = 1e9;  // s
 
-constexpr std::array<FaultDescription, FAULT_KINDS> DESCRIPTIONS{ {
-    { FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
-      "rim and outer race worn by fault_scale.interface_wear_depth, rougher by its friction factor",
-      "stiffness and lost motion about zero torque" },
-    { FaultKind::REAR_SECTION_CRACK, "rear_section_crack", FaultPlace::MEMBER, true,
-      "crack behind the teeth over fault_scale.cup_crack_fraction of the circumference",
-      "torsion loop, torsional stiffness" },
-    { FaultKind::LUBRICANT_DEGRADATION, "lubricant_degradation", FaultPlace::MEMBER, true,
-      "viscosity and boundary friction times the factors of fault_scale", "running torque" },
-    { FaultKind::TOOTH_WEAR, "tooth_wear", FaultPlace::TOOTH, true,
-      "fault_scale.tooth_wear_depth off both flanks, along their normal", "lost motion" },
-    { FaultKind::TOOTH_ROOT_CRACK, "tooth_root_crack", FaultPlace::TOOTH, false,
-      "crack through the tooth (broken off), or fault_scale.rim_crack_depth into the rim, by the backup ratio",
-      "orders 2, 4, 6 ... of the kinematic error" },
-    { FaultKind::FLANGE_CRACK, "flange_crack", FaultPlace::MEMBER, true,
-      "crack at the cup's flange over fault_scale.cup_crack_fraction of the circumference",
-      "torsional stiffness, torsion loop" },
-    { FaultKind::TOOTH_TIP_CRACK, "tooth_tip_crack", FaultPlace::TOOTH, false,
-      "crack along the tooth's middle as long as the tooth is high: two leaves",
-      "orders 2, 4, 6 ... of the kinematic error" },
-    { FaultKind::PITTING, "pitting", FaultPlace::TOOTH, true,
-      "fault_scale.pitted_fraction of the flank's width lost, its friction times fault_scale.pitted_friction_factor",
-      "one tooth: orders 2, 4, 6 ... of the kinematic error" },
-    { FaultKind::WAVE_GENERATOR_WEAR, "wave_generator_wear", FaultPlace::LOBE, true,
-      "major semi-axis less by fault_scale.wave_generator_wear_depth", "lost motion, stiffness, lower running torque" },
-    { FaultKind::FLEXSPLINE_CRACK, "flexspline_crack", FaultPlace::SEGMENT, false,
-      "rim cracked by fault_scale.rim_crack_depth here, fading out over fault_scale.rim_crack_segments either side",
-      "orders 2, 4, 6 ... of the kinematic error" },
-    { FaultKind::BUCKLING, "buckling", FaultPlace::MEMBER, true,
-      "cup softer by fault_scale.buckling_stiffness_loss, rim bent to waves of fault_scale.buckling_out_of_round",
-      "torsional stiffness, torsion loop" },
-    { FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
-      "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by its tip loss",
-      "running torque, orders 2 and 1.98" },
-    { FaultKind::BEARING_INNER_RACE, "bearing_inner_race", FaultPlace::INNER_RACE, false,
-      "spall of fault_scale.spall_depth and spall_length on the inner race", "order 12.68" },
-    { FaultKind::BEARING_OUTER_RACE, "bearing_outer_race", FaultPlace::OUTER_RACE, false,
-      "spall of fault_scale.spall_depth and spall_length on the outer race", "order 10.32 and its sidebands at 2" },
-    { FaultKind::BEARING_BALL, "bearing_ball", FaultPlace::BALL, false,
-      "spall of fault_scale.spall_depth and spall_length on a ball", "orders 9.65 and 1.10" },
-    { FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
-      "the ball of a broken pocket lets the outer race down by fault_scale.cage_sag",
-      "order 1.10: twice 1 less the cage's 0.45" },
-} };
-
-constexpr bool inOrder() noexcept
+/// Orders per turn of the motor at which parts of the drive repeat, by their name in FaultDescription::shows.
+std::array<std::pair<const char*, double>, 6> orders(const Parameters& parameters)
 {
-  for (std::size_t i = 0; i < FAULT_KINDS; ++i)
-  {
-    if (static_cast<std::size_t>(DESCRIPTIONS[i].kind) != i)
-    {
-      return false;
-    }
-  }
-  return true;
+  const double balls = parameters.bearing.balls;
+  const double ratio = parameters.bearing.ball_diameter / parameters.bearing.pitch_diameter;
+  const double cage = 0.5 * (1.0 - ratio);
+  const GearParameters& gear = parameters.gear;
+  return { { { "{inner}", balls * (1.0 - cage) },
+             { "{outer}", balls * cage },
+             { "{ball}", 1.0 / ratio - ratio },
+             { "{cage}", cage },
+             { "{lobe}", 2.0 * (1.0 - cage) },
+             { "{spline}", 2.0 * gear.teeth_flexspline / gear.teeth_circular_spline } } };
 }
-static_assert(inOrder(), "described in the order of FaultKind");
 
 std::vector<std::string> split(const std::string& text)
 {
@@ -88,27 +48,17 @@ std::vector<std::string> split(const std::string& text)
 
 }  // namespace
 
-const std::array<FaultDescription, FAULT_KINDS>& faultDescriptions() noexcept
-{
-  return DESCRIPTIONS;
-}
-
-const FaultDescription& describe(FaultKind kind) noexcept
-{
-  return DESCRIPTIONS[static_cast<std::size_t>(kind)];
-}
-
 std::optional<FaultKind> faultNamed(const std::string& name)
 {
-  const auto found = std::find_if(DESCRIPTIONS.begin(), DESCRIPTIONS.end(),
+  const auto found = std::find_if(FAULT_DESCRIPTIONS.begin(), FAULT_DESCRIPTIONS.end(),
                                   [&](const FaultDescription& description) { return name == description.name; });
-  return found == DESCRIPTIONS.end() ? std::nullopt : std::optional<FaultKind>(found->kind);
+  return found == FAULT_DESCRIPTIONS.end() ? std::nullopt : std::optional<FaultKind>(found->kind);
 }
 
 std::string faultNames()
 {
   std::string names;
-  for (const FaultDescription& description : DESCRIPTIONS)
+  for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     names += (names.empty() ? "" : ", ") + std::string(description.name);
   }
@@ -164,6 +114,22 @@ int firstPlace(FaultKind kind) noexcept
 int lastPlace(FaultKind kind, const Parameters& parameters) noexcept
 {
   return placesOf(describe(kind).place, parameters) - 1;
+}
+
+std::string shownFirst(FaultKind kind, const Parameters& parameters)
+{
+  std::string text = describe(kind).shows;
+  for (const auto& [name, order] : orders(parameters))
+  {
+    const std::size_t at = text.find(name);
+    if (at != std::string::npos)
+    {
+      std::array<char, 32> number{};
+      std::snprintf(number.data(), number.size(), "%.2f", order);
+      text.replace(at, std::strlen(name), number.data());
+    }
+  }
+  return text;
 }
 
 std::string placeText(FaultKind kind, const Parameters& parameters)

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "elements/ring_forces.hpp"
+#include "elements/ring_tangent.hpp"
 #include "solver/arc_elimination.hpp"
 
 namespace hjt

@@ -109,9 +109,9 @@ bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingSt
 bool EnergyDescent::pairsAgain(RingState& state) noexcept
 {
   old_space_ = state.shape.space;
-  if (model_.meshed)
+  if (model_.meshed())
   {
-    model_.mesh.pairNearest(state.position, state.shape);
+    model_.of<ToothMesh>().pairNearest(state.position, state.shape);
   }
   return old_space_ != state.shape.space;
 }

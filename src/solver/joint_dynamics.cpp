@@ -12,7 +12,6 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
-  , running_(2 * model.ring.rest.teeth())
   , temperature_(inputs.temperature)
   , viscosity_(model.bearing.viscosity(temperature_))
 {
@@ -154,12 +153,12 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     surface_->friction(place_, ring_friction);
     // The rim turns with the torque that it leans on the housing with.
     const double cup_stiffness =
-        model_.ring.cup.stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
-    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, speeds, inputs, viscosity(), friction_);
+        model_.ring.of<CupTorsion>().stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
+    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, { speeds, inputs, viscosity() }, friction_);
     return;
   }
-  const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.shape(), ring_.forces(), rates, follow(), speeds, inputs, viscosity(), running_, friction_);
+  const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
+  model_.friction(ring_.forces(), rates, follow(), { speeds, inputs, viscosity() }, friction_);
 }
 
 /// Of the bearing's grease, at the present temperature.

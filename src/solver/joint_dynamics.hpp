@@ -81,8 +81,7 @@ private:
   bool surface_agrees_{};  // at the present angles, while on the full ring
   DryFriction dry_;
   JointFriction friction_;
-  Eigen::VectorXd running_;  // scratch
-  double temperature_;       // that the viscosity is known for [degC]
-  double viscosity_;         // [m^2/s]
+  double temperature_;  // that the viscosity is known for [degC]
+  double viscosity_;    // [m^2/s]
 };
 }  // namespace hjt

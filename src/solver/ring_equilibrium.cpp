@@ -19,6 +19,7 @@ DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fra
 
 RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters& parameters)
   : model_(model)
+  , model_version_(model.version())
   , now_(model)
   , start_(now_)
   , halfway_(now_)
@@ -91,7 +92,7 @@ SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePos
 /// The round ring about the wave generator's centre, before the insertion.
 void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
 {
-  const Eigen::Vector2d centre = model_.contact.centre(target);
+  const Eigen::Vector2d centre = model_.of<WaveGeneratorContact>().centre(target);
   for (int i = 0; i < now_.shape.teeth(); ++i)
   {
     round_.segment<2>(2 * i) = model_.rest.points().segment<2>(2 * i) + centre;
@@ -106,7 +107,8 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.shape.points = points;
   now_.shape.updateGeometry();
   prediction_.forget();
-  model_.mesh.pairAtRest(now_.position, now_.shape);
+  model_version_ = model_.version();
+  model_.of<ToothMesh>().pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
@@ -135,6 +137,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::followModel() noexcept
 {
+  model_version_ = model_.version();
   system_.forgetFactors();
   prediction_.forget();
   system_.updateForces(now_);
@@ -151,6 +154,11 @@ SolveStatus RingEquilibrium::followModel() noexcept
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
+  if (model_version_ != model_.version())
+  {
+    const SolveStatus followed = followModel();
+    return followed.ok() ? moveTo(target).addEffort(followed) : followed;
+  }
   if (target == now_.position && now_.residual <= tolerance_)
   {
     SolveStatus unmoved;
@@ -221,7 +229,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
   prediction_.predict(target, now_);
-  const int jumps = model_.meshed ? model_.mesh.pairNearest(now_.position, now_.shape) : 0;
+  const int jumps = model_.meshed() ? model_.of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
   system_.updateForces(now_);
   SolveStatus status = newton_.solve(system_, now_, descending_ ? &descent_ : nullptr);
   status.jumps = jumps;

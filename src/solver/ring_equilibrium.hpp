@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "harmonic_joint_twin/solver/solve_status.hpp"
@@ -33,7 +35,8 @@ public:
   /// As `insert`, in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After an edit of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  /// After a change of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  /// `moveTo` does so first if nobody has.
   SolveStatus followModel() noexcept;
 
   /// From the present equilibrium to another position.
@@ -76,6 +79,7 @@ private:
   double measureRounding() noexcept;
 
   const RingModel& model_;
+  std::uint64_t model_version_;  // that the present state is of
   RingState now_;
   RingState start_;    // of the present move
   RingState halfway_;  // the farthest point of the present move

@@ -12,8 +12,8 @@ RingLinearisation::RingLinearisation(const RingModel& model)
   , solver_(model.rest.teeth())
   , tangent_(model.rest.teeth())
   , forces_(model.rest.teeth())
-  , factored_meshed_(forces_.meshed)
-  , factored_depth_(forces_.contact_depth)
+  , factored_meshed_(forces_.of<ToothMesh>().meshed)
+  , factored_depth_(forces_.of<WaveGeneratorContact>().depth)
   , step_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , by_wave_generator_(step_)
   , by_output_(step_)
@@ -39,8 +39,8 @@ void RingLinearisation::shift(double stiffness) noexcept
 bool RingLinearisation::refactor(const RingState& state) noexcept
 {
   factored_ = true;
-  factored_meshed_ = forces_.meshed;
-  factored_depth_ = forces_.contact_depth;
+  factored_meshed_ = forces_.of<ToothMesh>().meshed;
+  factored_depth_ = forces_.of<WaveGeneratorContact>().depth;
   updateTangent(state);
   rates_known_ = false;
   return factor();
@@ -48,11 +48,12 @@ bool RingLinearisation::refactor(const RingState& state) noexcept
 
 bool RingLinearisation::slopesChanged() const noexcept
 {
-  if (!factored_ || model_.cup.stiffness(forces_.cup_rotation) != tangent_.cup_stiffness)
+  if (!factored_ || model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) != tangent_.cup_stiffness)
   {
     return true;
   }
-  return forces_.meshed != factored_meshed_ || ring_vectors::signsChanged(forces_.contact_depth, factored_depth_) != 0;
+  return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
+         ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_) != 0;
 }
 
 void RingLinearisation::solve(Eigen::VectorXd& step) noexcept

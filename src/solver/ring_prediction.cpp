@@ -62,7 +62,7 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
   constexpr double MOST_PITCHES = 1e9;  // counted as an int
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
-  if (model_.meshed && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
+  if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
   {
     const int whole = static_cast<int>(pitches);
     if (whole != 0)

@@ -18,7 +18,6 @@ public:
   LossMeter(const Parameters& parameters, int positions)
     : walk_(parameters, positions)
     , friction_(parameters.gear.teeth_flexspline)
-    , running_(2 * parameters.gear.teeth_flexspline)
     , temperature_(parameters.input.temperature)
   {
   }
@@ -32,20 +31,22 @@ public:
     const Eigen::Vector2d rates(1.0, follow);  // of both angles by the motor's
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
-    const RingRates by_angle{ ring.byWaveGenerator(), ring.byOutput() };
-    running_ = by_angle.by_motor + follow * by_angle.by_output;
+    const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
+    const auto& contact = ring.forces().of<WaveGeneratorContact>();
+    friction_.running = by_angle.by_motor + follow * by_angle.by_output;
     LossShares shares;
-    shares.bearing = model.bearing.torque(speed, ring.forces().contact_force.sum(), temperature_);
-    shares.interface = model.interface_friction.torque(ring.shape(), ring.forces(), running_);
+    shares.bearing = model.bearing.torque(speed, contact.force.sum(), temperature_);
+    shares.interface = model.interface_friction.torque(ring.shape(), contact, friction_.running);
     shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
                    model.load.viscousFriction() * follow * follow * std::abs(speed);
     friction_.setZero();
-    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), by_angle, speed * rates, friction_);
+    model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), by_angle, speed * rates,
+                                 friction_);
     shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
-    model.cup_friction.addTerm(ring.shape(), by_angle, friction_);
+    model.cup_friction.addTerm(by_angle, friction_);
     shares.cup = friction_.dryPower(rates);
-    model.damping.add(ring.shape(), ring.forces(), by_angle, friction_);
+    model.damping.add(contact, by_angle, friction_);
     shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
     return shares;
   }
@@ -53,7 +54,6 @@ public:
 private:
   PitchWalk walk_;
   JointFriction friction_;
-  Eigen::VectorXd running_;
   double temperature_;
 };
 

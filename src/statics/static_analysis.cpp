@@ -27,11 +27,11 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
     table.tooth_y.push_back(point.y());
     table.radius.push_back(point.norm());
     table.angle_deviation.push_back(smallAngle(rest.x() * point.y() - rest.y() * point.x(), rest.dot(point)));
-    table.wave_generator_force.push_back(ring.forces().contact_force[i]);
-    table.rim_tension.push_back(model.tension.tension(shape, i));
-    table.bending_force.push_back(model.bending.bendingForce(shape, ring.forces(), i));
-    table.mesh_force.push_back(ring.forces().flank_force[i]);
-    const ToothPlace place = model.mesh.place(shape, ring.position(), i);
+    table.wave_generator_force.push_back(ring.forces().of<WaveGeneratorContact>().force[i]);
+    table.rim_tension.push_back(model.of<RimTension>().tension(shape, i));
+    table.bending_force.push_back(model.of<RimBending>().bendingForce(shape, ring.forces().of<RimBending>(), i));
+    table.mesh_force.push_back(ring.forces().of<ToothMesh>().flank_force[i]);
+    const ToothPlace place = model.of<ToothMesh>().place(shape, ring.position(), i);
     table.across.push_back(place.across);
     table.depth.push_back(place.depth);
     table.tilt.push_back(place.tilt);
@@ -43,7 +43,7 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
 /// Of the housing on the flexspline [N.m].
 double housingTorque(const RingEquilibrium& ring)
 {
-  return -ring.model().cup.torque(ring.forces().cup_rotation);
+  return -ring.model().of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);
 }
 
 double sum(const std::vector<double>& values)
@@ -60,7 +60,7 @@ double sum(const std::vector<double>& values)
 InsertionResult analyseInsertion(const Parameters& parameters)
 {
   RingModel model(parameters);
-  model.meshed = false;
+  model.setMeshed(false);
   InsertionResult result;
   const auto start = std::chrono::steady_clock::now();
   RingEquilibrium ring(model, staticSolver(parameters.solver));
@@ -92,15 +92,16 @@ FitCheck checkFit(const Parameters& parameters)
   for (const bool meshed : { false, true })
   {
     RingModel model(parameters);
-    model.meshed = meshed;
+    model.setMeshed(meshed);
     RingEquilibrium ring(model, staticSolver(parameters.solver));
     check.status = meshed ? insertUnderLoad(ring, 0.0, 0.0) : ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
     if (!check.status.ok())
     {
       break;
     }
-    (meshed ? check.wave_generator_force : check.wave_generator_force_insertion) = ring.forces().contact_force.sum();
-    check.teeth_loaded = static_cast<int>((ring.forces().flank_force.array() != 0.0).count());
+    (meshed ? check.wave_generator_force : check.wave_generator_force_insertion) =
+        ring.forces().of<WaveGeneratorContact>().force.sum();
+    check.teeth_loaded = static_cast<int>((ring.forces().of<ToothMesh>().flank_force.array() != 0.0).count());
   }
   return check;
 }
@@ -121,14 +122,14 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
     row.output_angle = ring.position().output_angle - unloaded.position().output_angle;
     row.wave_generator_torque = ring.forces().wave_generator_torque;
     row.housing_torque = housingTorque(ring);
-    row.cup_rotation = ring.forces().cup_rotation;
+    row.cup_rotation = ring.forces().of<CupTorsion>().rotation;
     row.teeth = tabulateTeeth(ring);
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
-      const double mesh = std::abs(ring.forces().flank_force[i]);
+      const double mesh = std::abs(ring.forces().of<ToothMesh>().flank_force[i]);
       row.teeth_loaded += mesh > 0.0 ? 1 : 0;
       row.mesh_force_max = std::max(row.mesh_force_max, mesh);
-      row.wave_generator_force_sum += ring.forces().contact_force[i];
+      row.wave_generator_force_sum += ring.forces().of<WaveGeneratorContact>().force[i];
     }
     rows.push_back(row);
   }

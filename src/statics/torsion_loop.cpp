@@ -43,10 +43,10 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     const double elastic = amplitude * (2.0 * i / steps - 1.0);
     loop.status = balanceOutput(ring, 0.0, elastic);
     friction.setZero();
-    const RingRates rates{ ring.byWaveGenerator(), ring.byOutput() };
-    model.mesh_friction.addTerms(model.ring.mesh, ring.shape(), ring.forces(), rates, Eigen::Vector2d::Zero(),
+    const RingRates rates{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
+    model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), rates, { 0.0, 0.0 },
                                  friction);
-    model.cup_friction.addTerm(ring.shape(), rates, friction);
+    model.cup_friction.addTerm(rates, friction);
     const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;
     up.push_back({ elastic + drag, angle });

@@ -35,14 +35,14 @@ DynamicRing::DynamicRing(const JointModel& model, const RingParameters& paramete
 
 void DynamicRing::pairTeeth(const Eigen::VectorXd& q, double time) noexcept
 {
-  if (!model_.ring.meshed)
+  if (!model_.ring.meshed())
   {
     return;
   }
   position_ = { q[waveGenerator()], q[output()], drive_.wave.at(time) };
   shape_.points = q.head(2 * teeth());
   shape_.updateGeometry();
-  model_.ring.mesh.pairNearest(position_, shape_);
+  model_.ring.of<ToothMesh>().pairNearest(position_, shape_);
 }
 
 void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time) noexcept
@@ -54,6 +54,7 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   shape_.points = q.head(2 * teeth());
   shape_.updateGeometry();
   model_.ring.forces(shape_, position_, forces_);
+  const auto& contact = forces_.of<WaveGeneratorContact>();
   force_.head(2 * teeth()) = forces_.teeth;
   JointInputs inputs;
   inputs.motor_torque = drive_.motor_torque;
@@ -64,17 +65,17 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   force_[output()] -= model_.load.viscousFriction() * output_speed;
   if (growth_speed != 0.0)
   {
-    model_.ring.contact.surfaceByAmplitude(position_, forces_, growth_);
+    model_.ring.of<WaveGeneratorContact>().surfaceByAmplitude(position_, contact, growth_);
     growth_ *= growth_speed;
   }
   else
   {
     growth_.setZero();
   }
-  const DashpotPower dashpots = model_.damping.addForces(shape_, forces_, v, growth_, force_);
+  const DashpotPower dashpots = model_.damping.addForces(shape_, contact, v, growth_, force_);
   power_.dissipated = dashpots.dissipated + model_.motor.viscousFriction() * motor_speed * motor_speed +
                       model_.load.viscousFriction() * output_speed * output_speed;
-  power_.supplied = dashpots.supplied + forces_.contact_force.dot(growth_) + drive_.motor_torque * motor_speed -
+  power_.supplied = dashpots.supplied + contact.force.dot(growth_) + drive_.motor_torque * motor_speed -
                     drive_.load_torque * output_speed;
   // Whatever keeps a driven body at its speed has to balance all that acts on it.
   for (const int k : { waveGenerator(), output() })
@@ -86,7 +87,7 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
 void DynamicRing::tangent(double by_speed, RingTangent& tangent) const noexcept
 {
   model_.ring.tangent(shape_, forces_, tangent);
-  model_.damping.addTangent(shape_, forces_, by_speed, tangent);
+  model_.damping.addTangent(shape_, forces_.of<WaveGeneratorContact>(), by_speed, tangent);
   tangent.wave_generator_stiffness += by_speed * model_.motor.viscousFriction();
   tangent.output_stiffness +=
       by_speed * model_.load.viscousFriction() + model_.load.gravityStiffness(position_.output_angle);

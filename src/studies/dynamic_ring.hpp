@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "elements/ring_forces.hpp"
 #include "gear/ring_shape.hpp"
 #include "model/joint_model.hpp"
 

@@ -65,10 +65,11 @@ public:
     double mesh_square = 0.0;
     for (int i = 0; i < ring.teeth(); ++i)
     {
-      contact_.add(now.contact_force[i], should.contact_force[i]);
-      mesh_.add(now.flank_force[i], should.flank_force[i]);
-      contact_square += std::pow(now.contact_force[i] - should.contact_force[i], 2);
-      mesh_square += std::pow(now.flank_force[i] - should.flank_force[i], 2);
+      contact_.add(now.of<WaveGeneratorContact>().force[i], should.of<WaveGeneratorContact>().force[i]);
+      mesh_.add(now.of<ToothMesh>().flank_force[i], should.of<ToothMesh>().flank_force[i]);
+      contact_square +=
+          std::pow(now.of<WaveGeneratorContact>().force[i] - should.of<WaveGeneratorContact>().force[i], 2);
+      mesh_square += std::pow(now.of<ToothMesh>().flank_force[i] - should.of<ToothMesh>().flank_force[i], 2);
     }
     for (Eigen::Index k = 0; k < rest_.size(); ++k)
     {
@@ -81,8 +82,9 @@ public:
     torsion_.add(torsion, balanced_torsion);
     result.rows.push_back({ time, torsion, balanced_torsion, now.wave_generator_torque, should.wave_generator_torque,
                             std::sqrt(contact_square / ring.teeth()), std::sqrt(mesh_square / ring.teeth()) });
-    result.last = { time, toVector(now.contact_force), toVector(should.contact_force), toVector(now.flank_force),
-                    toVector(should.flank_force) };
+    result.last = { time, toVector(now.of<WaveGeneratorContact>().force),
+                    toVector(should.of<WaveGeneratorContact>().force), toVector(now.of<ToothMesh>().flank_force),
+                    toVector(should.of<ToothMesh>().flank_force) };
   }
 
   void sumUp(QuasiStaticResult& result) const

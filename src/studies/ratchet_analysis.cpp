@@ -41,8 +41,9 @@ private:
   /// Derivative of the stored energy by the wave amplitude: force with which the ring presses it in [N].
   double amplitudeForce()
   {
-    ring_.model().contact.surfaceByAmplitude(ring_.position(), ring_.forces(), surface_);
-    return ring_.forces().contact_force.dot(surface_);
+    ring_.model().of<WaveGeneratorContact>().surfaceByAmplitude(ring_.position(),
+                                                                ring_.forces().of<WaveGeneratorContact>(), surface_);
+    return ring_.forces().of<WaveGeneratorContact>().force.dot(surface_);
   }
 
   /// Force on the amplitude that is not balanced [N]. The lobes' springs alone give it a slope of 2 k over the amplitude.
@@ -133,13 +134,13 @@ RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unlo
   row.wave_amplitude = ring.position().wave_amplitude;
   row.lobe_force = drive.lobeForce();
   row.snaps = drive.snaps();
-  row.wave_generator_force_max = forces.contact_force.maxCoeff();
-  row.mesh_force_max = forces.flank_force.lpNorm<Eigen::Infinity>();
+  row.wave_generator_force_max = forces.of<WaveGeneratorContact>().force.maxCoeff();
+  row.mesh_force_max = forces.of<ToothMesh>().flank_force.lpNorm<Eigen::Infinity>();
   for (int i = 0; i < ring.shape().teeth(); ++i)
   {
-    row.depth_max = std::max(row.depth_max, ring.model().mesh.place(ring.shape(), ring.position(), i).depth);
-    row.teeth_loaded += forces.meshed[i];
-    row.teeth_jumped += forces.meshed[i] != 0 && ring.shape().space[i] != unloaded_space[i] ? 1 : 0;
+    row.depth_max = std::max(row.depth_max, ring.model().of<ToothMesh>().place(ring.shape(), ring.position(), i).depth);
+    row.teeth_loaded += forces.of<ToothMesh>().meshed[i];
+    row.teeth_jumped += forces.of<ToothMesh>().meshed[i] != 0 && ring.shape().space[i] != unloaded_space[i] ? 1 : 0;
   }
   return row;
 }

@@ -27,7 +27,7 @@ public:
 
   void add(const DynamicRing& ring, const RingMotion& motion, TransientResult& result)
   {
-    const double force = ring.forces().contact_force.maxCoeff();
+    const double force = ring.forces().of<WaveGeneratorContact>().force.maxCoeff();
     lowest_ = std::min(lowest_, force);
     highest_ = std::max(highest_, force);
     if (motion.time >= setup_.window_start)
@@ -62,7 +62,7 @@ TransientResult analyseTransient(const Parameters& parameters, const TransientSe
 {
   using Clock = std::chrono::steady_clock;
   JointModel model(parameters);
-  model.ring.meshed = false;
+  model.ring.setMeshed(false);
   const double full = parameters.gear.wave_amplitude;
   RingDrive drive;
   drive.wave_generator_driven = true;

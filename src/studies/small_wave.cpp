@@ -102,7 +102,7 @@ ShapeError errorOf(const RingTheory& theory, const RingModel& model, const RingS
 std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBending kind, double smallest, int count)
 {
   RingModel model(parameters);
-  model.meshed = false;
+  model.setMeshed(false);
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   const double largest = parameters.gear.wave_amplitude;
   SolveStatus status = ring.insert({ 0.0, 0.0, largest });
@@ -111,7 +111,7 @@ std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBen
   {
     const double w = count > 1 ? largest * std::pow(smallest / largest, static_cast<double>(k) / (count - 1)) : largest;
     const double bending = parameters.ring.bending_stiffness * (kind == WaveBending::PROPORTIONAL ? w / largest : 1.0);
-    model.bending.stiffness().setConstant(bending);
+    model.edit<RimBending>().stiffness().setConstant(bending);
     if (status.ok())
     {
       // A ring in proportion is wrong only in the second order of w.
@@ -121,9 +121,9 @@ std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBen
     SmallWaveRow row;
     row.status = status;
     row.wave_amplitude = w;
-    row.teeth_in_contact = static_cast<int>((ring.forces().contact_force.array() > 0.0).count());
-    row.contact_force_min = ring.forces().contact_force.minCoeff();
-    row.contact_force_max = ring.forces().contact_force.maxCoeff();
+    row.teeth_in_contact = static_cast<int>((ring.forces().of<WaveGeneratorContact>().force.array() > 0.0).count());
+    row.contact_force_min = ring.forces().of<WaveGeneratorContact>().force.minCoeff();
+    row.contact_force_max = ring.forces().of<WaveGeneratorContact>().force.maxCoeff();
     row.thin_ring = errorOf(thinRing(parameters, w), model, ring.shape(), w);
     row.linear = errorOf(linearRing(parameters, bending, w), model, ring.shape(), w);
     row.second_order = errorOf(secondOrderRing(parameters, bending, w), model, ring.shape(), w);

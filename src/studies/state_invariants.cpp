@@ -28,10 +28,10 @@ RingDifference renumberedDifference(const RingEquilibrium& here, const RingEquil
     const Eigen::Vector2d expected = turn * here.shape().points.segment<2>(2 * i);
     const auto off = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return std::abs(a[i] - b[j]); };
     difference.position = std::max(difference.position, (expected - there.shape().points.segment<2>(2 * j)).norm());
-    difference.contact_force =
-        std::max(difference.contact_force, off(here.forces().contact_force, there.forces().contact_force));
-    difference.flank_force =
-        std::max(difference.flank_force, off(here.forces().flank_force, there.forces().flank_force));
+    difference.contact_force = std::max(difference.contact_force, off(here.forces().of<WaveGeneratorContact>().force,
+                                                                      there.forces().of<WaveGeneratorContact>().force));
+    difference.flank_force = std::max(difference.flank_force, off(here.forces().of<ToothMesh>().flank_force,
+                                                                  there.forces().of<ToothMesh>().flank_force));
   }
   return difference;
 }
@@ -89,14 +89,14 @@ StateInvariants analyseState(const Parameters& parameters, double angle, double 
   state.residual =
       std::max(ring.forces().teeth.lpNorm<Eigen::Infinity>(), shifted.forces().teeth.lpNorm<Eigen::Infinity>());
   state.softest_stiffness = softestStiffness(ring);
-  state.contact_force_max = ring.forces().contact_force.maxCoeff();
-  state.flank_force_max = ring.forces().flank_force.lpNorm<Eigen::Infinity>();
+  state.contact_force_max = ring.forces().of<WaveGeneratorContact>().force.maxCoeff();
+  state.flank_force_max = ring.forces().of<ToothMesh>().flank_force.lpNorm<Eigen::Infinity>();
   state.half_turn = renumberedDifference(ring, ring, model.rest.teeth() / 2);
   state.pitch_shift = renumberedDifference(ring, shifted, pitches);
   state.pitch_shift_energy = shifted.forces().energy / ring.forces().energy - 1.0;
   state.wave_generator_torque = ring.forces().wave_generator_torque;
   state.output_torque = ring.forces().output_torque;
-  state.cup_torque = model.cup.torque(ring.forces().cup_rotation);
+  state.cup_torque = model.of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);
   return state;
 }
 

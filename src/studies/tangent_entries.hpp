@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "elements/ring_forces.hpp"
+#include "elements/ring_tangent.hpp"
 
 namespace hjt
 {

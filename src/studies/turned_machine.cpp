@@ -75,10 +75,17 @@ TurnedElement compare(const std::string& name, const AddForces& add, const State
   return element;
 }
 
-RimBending bendingOf(RingParameters parameters, BendingLaw law, const ToothRing& rest)
+RimBending bendingOf(Parameters parameters, BendingLaw law, const ToothRing& rest)
 {
-  parameters.bending_law = law;
+  parameters.ring.bending_law = law;
   return RimBending(parameters, rest);
+}
+
+template <class Element>
+AddForces adderOf(const Element& element)
+{
+  return [&](const State& state, RingForces& forces)
+  { element.addForces(state.shape, state.position, forces.of<Element>(), forces); };
 }
 
 double bendingForceMax(const RimBending& bending, const RingShape& shape, const RingForces& forces)
@@ -86,7 +93,7 @@ double bendingForceMax(const RimBending& bending, const RingShape& shape, const 
   double largest = 0.0;
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    largest = std::max(largest, std::abs(bending.bendingForce(shape, forces, i)));
+    largest = std::max(largest, std::abs(bending.bendingForce(shape, forces.of<RimBending>(), i)));
   }
   return largest;
 }
@@ -100,8 +107,8 @@ TurnedMachine analyseTurnedMachine(const Parameters& parameters, double load, un
   TurnedMachine result;
   result.status = insertUnderLoad(ring, 0.0, load);
   const State state{ ring.shape(), ring.position() };
-  const RimBending curvature = bendingOf(parameters.ring, BendingLaw::CURVATURE, model.rest);
-  const RimBending absolute = bendingOf(parameters.ring, BendingLaw::ABSOLUTE, model.rest);
+  const RimBending curvature = bendingOf(parameters, BendingLaw::CURVATURE, model.rest);
+  const RimBending absolute = bendingOf(parameters, BendingLaw::ABSOLUTE, model.rest);
 
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> angle(-PI, PI);
@@ -109,20 +116,19 @@ TurnedMachine analyseTurnedMachine(const Parameters& parameters, double load, un
   std::generate(angles.begin(), angles.end(), [&] { return angle(random); });
   const auto add = [&](const std::string& name, const AddForces& forces)
   { result.elements.push_back(compare(name, forces, state, angles)); };
-  add("rim_tension", [&](const State& s, RingForces& f) { model.tension.addForces(s.shape, f); });
-  add("rim_bending_curvature", [&](const State& s, RingForces& f) { curvature.addForces(s.shape, f); });
-  add("rim_bending_absolute", [&](const State& s, RingForces& f) { absolute.addForces(s.shape, f); });
-  add("wave_generator_contact",
-      [&](const State& s, RingForces& f) { model.contact.addForces(s.shape, s.position, f); });
-  add("tooth_mesh", [&](const State& s, RingForces& f) { model.mesh.addForces(s.shape, s.position, f); });
+  add("rim_tension", adderOf(model.of<RimTension>()));
+  add("rim_bending_curvature", adderOf(curvature));
+  add("rim_bending_absolute", adderOf(absolute));
+  add("wave_generator_contact", adderOf(model.of<WaveGeneratorContact>()));
+  add("tooth_mesh", adderOf(model.of<ToothMesh>()));
 
   for (int i = 0; i < samples; ++i)
   {
     TurnedBending row;
     row.angle = samples > 1 ? SCAN * (2.0 * i / (samples - 1) - 1.0) : 0.0;
     const State at = turned(state, row.angle);
-    const RingForces curved = forcesOf([&](const State& s, RingForces& f) { curvature.addForces(s.shape, f); }, at);
-    const RingForces absolutely = forcesOf([&](const State& s, RingForces& f) { absolute.addForces(s.shape, f); }, at);
+    const RingForces curved = forcesOf(adderOf(curvature), at);
+    const RingForces absolutely = forcesOf(adderOf(absolute), at);
     row.curvature_force = bendingForceMax(curvature, at.shape, curved);
     row.absolute_force = bendingForceMax(absolute, at.shape, absolutely);
     row.curvature_energy = curved.energy;

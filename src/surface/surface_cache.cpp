@@ -26,6 +26,7 @@
 #include "base/whole_file.hpp"
 #include "gear/angle.hpp"
 #include "params/field_table.hpp"
+#include "params/variants.hpp"
 #include "surface/departure_builder.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
@@ -58,20 +59,6 @@ std::string header(const Parameters& parameters, const std::string& faults)
     text += '\n';
   }
   return text;
-}
-
-/// These parameters with teeth and spaces that are all equal.
-Parameters withEqualTeeth(Parameters parameters)
-{
-  ManufactureParameters& errors = parameters.manufacture;
-  for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
-  {
-    pitch->deviation = 0.0;
-    pitch->table = NO_FILE;
-  }
-  errors.circular_spline_eccentricity = {};
-  errors.circular_spline_ellipticity = {};
-  return parameters;
 }
 
 template <class T>
@@ -355,65 +342,6 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
     tables.departures = std::move(*departures);
   }
   return tables;
-}
-
-SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::function<Surface()>& make)
-{
-  while (true)
-  {
-    std::promise<Surface> promise;
-    std::shared_future<Surface> surface;
-    bool mine = false;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      const auto found = find(key);
-      mine = found == entries_.end();
-      if (mine)
-      {
-        entries_.emplace_front(key, promise.get_future().share());
-        if (entries_.size() > kept_)
-        {
-          entries_.pop_back();
-        }
-      }
-      else
-      {
-        entries_.splice(entries_.begin(), entries_, found);
-      }
-      surface = entries_.front().second;
-    }
-    if (mine)
-    {
-      try
-      {
-        promise.set_value(make());
-      }
-      catch (...)
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        const auto found = find(key);
-        if (found != entries_.end())
-        {
-          entries_.erase(found);
-        }
-        promise.set_exception(std::current_exception());
-        throw;
-      }
-    }
-    try
-    {
-      return surface.get();
-    }
-    catch (...)
-    {
-      // What stopped the other maker, perhaps only that it was told to give up, need not stop this one.
-    }
-  }
-}
-
-std::list<SurfacePool::Entry>::iterator SurfacePool::find(const std::string& key)
-{
-  return std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.first == key; });
 }
 
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,

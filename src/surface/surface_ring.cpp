@@ -9,6 +9,7 @@
 
 #include "gear/ratio.hpp"
 #include "model/lobe_loads.hpp"
+#include "params/variants.hpp"
 #include "statics/static_solver.hpp"
 
 namespace hjt
@@ -20,13 +21,6 @@ using Node = SurfaceTable::Node;
 constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
-
-MeshParameters unitFriction(MeshParameters parameters)
-{
-  parameters.friction_static = 1.0;
-  parameters.friction_kinetic = 1.0;
-  return parameters;
-}
 
 /// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in three by
 /// the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor speed.
@@ -88,10 +82,9 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
 
 SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   : model_(std::move(model))
-  , unit_friction_(unitFriction(parameters.mesh), parameters.gear.teeth_flexspline)
+  , unit_friction_(withUnitFriction(parameters).mesh, parameters.gear.teeth_flexspline)
   , ring_(model_.ring, staticSolver(parameters.solver))
   , friction_(parameters.gear.teeth_flexspline)
-  , running_(2 * parameters.gear.teeth_flexspline)
   , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,
                                              (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))
   , pitch_(model_.ring.rest.pitchAngle())
@@ -121,27 +114,29 @@ Node SurfaceRing::measure()
 {
   Node node{};
   const RingForces& forces = ring_.forces();
+  const auto& contact = forces.of<WaveGeneratorContact>();
+  const auto& mesh = forces.of<ToothMesh>();
   const Eigen::Matrix2d& k = ring_.stiffness();
   const double follow = ring_.follow();
-  const RingRates rates{ ring_.byWaveGenerator(), ring_.byOutput() };
+  const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
   node[SurfaceTable::ENERGY] = forces.energy;
   node[SurfaceTable::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
   node[SurfaceTable::ENERGY_BY_V] = -forces.output_torque;
   node[SurfaceTable::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
   node[SurfaceTable::FOLLOW] = follow;
   node[SurfaceTable::OUTPUT_STIFFNESS] = k(1, 1);
-  node[SurfaceTable::CONTACT_FORCE] = forces.contact_force.sum();
-  running_ = rates.by_motor + follow * rates.by_output;
-  node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), forces, running_);
+  node[SurfaceTable::CONTACT_FORCE] = contact.force.sum();
+  friction_.running = rates.by_motor + follow * rates.by_output;
+  node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), contact, friction_.running);
   friction_.setZero();
-  model_.damping.add(ring_.shape(), forces, rates, friction_);
+  model_.damping.add(contact, rates, friction_);
   node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
   node[SurfaceTable::VISCOUS + 1] = friction_.viscous(0, 1);
   node[SurfaceTable::VISCOUS + 2] = friction_.viscous(1, 1);
-  unit_friction_.addTerms(model_.ring.mesh, ring_.shape(), forces, rates, { 0.0, 0.0 }, friction_);
+  unit_friction_.addTerms(model_.ring.of<ToothMesh>(), mesh, rates, { 0.0, 0.0 }, friction_);
   groupFlanks(friction_.terms, follow, &node[SurfaceTable::FLANKS]);
   const LobeLoads lobes =
-      lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles_, ring_.position().wave_generator_angle });
+      lobeLoads({ mesh.flank_force, contact.force, tooth_angles_, ring_.position().wave_generator_angle });
   node[SurfaceTable::TEETH_LOADED] = lobes.teeth_loaded;
   node[SurfaceTable::LOBE_FORCE] = lobes.mesh_force[0];
   node[SurfaceTable::LOBE_FORCE + 1] = lobes.mesh_force[1];

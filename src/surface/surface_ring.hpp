@@ -58,7 +58,6 @@ private:
   MeshFriction unit_friction_;
   RingEquilibrium ring_;
   JointFriction friction_;
-  Eigen::VectorXd running_;  // scratch
   Eigen::VectorXd tooth_angles_;
   double pitch_;
   double ratio_;

@@ -53,9 +53,7 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
     }
     return nullptr;
   }
-  JointModel model(parameters);
-  JointFaults(parameters, model).apply(faults);
-  return sharedSurface(parameters, model, keyOf(faults), source);
+  return sharedSurface(parameters, JointFaults(parameters, faults).model(), keyOf(faults), source);
 }
 
 SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source)

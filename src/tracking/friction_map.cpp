@@ -8,6 +8,7 @@
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "params/variants.hpp"
 
 namespace hjt
 {
@@ -18,14 +19,6 @@ constexpr int POSITIONS = 8;  // over a tooth pitch
 constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
 // Shares of the load that the motor can hold.
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
-
-Parameters withoutErrors(Parameters parameters)
-{
-  parameters.manufacture = {};
-  parameters.manufacture.flexspline_pitch.table = NO_FILE;
-  parameters.manufacture.circular_spline_pitch.table = NO_FILE;
-  return parameters;
-}
 }  // namespace
 
 FrictionMap::FrictionMap(const Parameters& parameters)

@@ -4,24 +4,15 @@
 #include <cmath>
 
 #include "gear/ratio.hpp"
+#include "params/variants.hpp"
 
 namespace hjt
 {
-namespace
-{
-/// The load of a sample holds the weight, which the monitor must not add again.
-Parameters weightless(Parameters parameters)
-{
-  parameters.output.gravity_torque = 0.0;
-  return parameters;
-}
-}  // namespace
-
 SignalWatch::SignalWatch(const Parameters& parameters)
   : telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
   , temperature_(parameters.input.temperature)
-  , monitor_(weightless(parameters))
+  , monitor_(withoutWeight(parameters))  // the load of a sample holds the weight
   , assessor_(parameters)
 {
 }

@@ -4,20 +4,12 @@
 #include <cmath>
 
 #include "gear/ratio.hpp"
+#include "params/variants.hpp"
 
 namespace hjt
 {
-namespace
-{
-Parameters weightless(Parameters parameters)
-{
-  parameters.output.gravity_torque = 0.0;
-  return parameters;
-}
-}  // namespace
-
 TorqueDriven::TorqueDriven(const Parameters& parameters, const SurfaceSource& surface_source)
-  : twin_(weightless(parameters), surface_source)
+  : twin_(withoutWeight(parameters), surface_source)
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))

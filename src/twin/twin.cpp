@@ -175,10 +175,10 @@ bool Twin::toothForces(ToothForces& out) noexcept
   const RingShape& shape = ring->shape();
   for (int i = 0; i < shape.teeth(); ++i)
   {
-    out.wave_generator_force[i] = forces.contact_force[i];
-    out.rim_tension[i] = model.tension.tension(shape, i);
-    out.bending_force[i] = model.bending.bendingForce(shape, forces, i);
-    out.mesh_force[i] = forces.flank_force[i];
+    out.wave_generator_force[i] = forces.of<WaveGeneratorContact>().force[i];
+    out.rim_tension[i] = model.of<RimTension>().tension(shape, i);
+    out.bending_force[i] = model.of<RimBending>().bendingForce(shape, forces.of<RimBending>(), i);
+    out.mesh_force[i] = forces.of<ToothMesh>().flank_force[i];
     out.tooth_x[i] = shape.points[2 * i];
     out.tooth_y[i] = shape.points[2 * i + 1];
   }

@@ -23,8 +23,8 @@ bool isSame(const FaultList& one, const FaultList& other) noexcept
 
 Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   : parameters(given)
-  , model(given)
-  , faults(given, model)
+  , faults(given)
+  , model(faults.model())
   , waiting(given)
   , stepper(given, model)
   , observed_ring(model.ring, given.solver)
@@ -312,7 +312,8 @@ LobeLoads Twin::Impl::lobes() const noexcept
   if (!dynamics.onSurface())
   {
     const RingForces& forces = dynamics.ring().forces();
-    return lobeLoads({ forces.flank_force, forces.contact_force, tooth_angles, outputs.motor_angle });
+    return lobeLoads({ forces.of<ToothMesh>().flank_force, forces.of<WaveGeneratorContact>().force, tooth_angles,
+                       outputs.motor_angle });
   }
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;

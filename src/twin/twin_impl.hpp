@@ -31,8 +31,8 @@ struct Twin::Impl
   SolverState solverState(Stamp since) const noexcept;
 
   Parameters parameters;
-  JointModel model;
   JointFaults faults;
+  const JointModel& model;
   FaultList active;
   FaultSchedule waiting;
   FaultList surface_faults;  // that the surface was asked for with

@@ -11,20 +11,19 @@
 
 namespace hjt
 {
-/// One element of the ring behind the one interface the tests of all elements need.
+/// One element of the ring, or all of them, behind the one interface the tests need.
 struct ElementUnderTest
 {
   using Shape = const RingShape&;
   using Position = const DrivePosition&;
 
   std::function<void(Shape, Position, RingForces&)> add_forces;
-  std::function<void(Shape, Position, const RingForces&, RingTangent&)> add_tangent;
+  std::function<void(Shape, const RingForces&, RingTangent&)> add_tangent;
 
   RingForces forces(Shape shape, Position position) const
   {
     RingForces forces(shape.teeth());
     forces.setZero();
-    forces.contact_force.setZero();
     add_forces(shape, position, forces);
     return forces;
   }
@@ -33,43 +32,18 @@ struct ElementUnderTest
   {
     RingTangent tangent(shape.teeth());
     tangent.setZero();
-    add_tangent(shape, position, forces(shape, position), tangent);
+    add_tangent(shape, forces(shape, position), tangent);
     return tangent;
   }
 };
 
-inline ElementUnderTest tensionOf(const RingModel& model)
+template <class Element>
+ElementUnderTest elementOf(const RingModel& model)
 {
-  return { [&model](auto& shape, auto&, auto& forces) { model.tension.addForces(shape, forces); },
-           [&model](auto& shape, auto&, auto&, auto& tangent) { model.tension.addTangent(shape, tangent); } };
-}
-
-inline ElementUnderTest bendingOf(const RingModel& model)
-{
-  return { [&model](auto& shape, auto&, auto& forces) { model.bending.addForces(shape, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent)
-           { model.bending.addTangent(shape, forces, tangent); } };
-}
-
-inline ElementUnderTest contactOf(const RingModel& model)
-{
-  return { [&model](auto& shape, auto& position, auto& forces) { model.contact.addForces(shape, position, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent)
-           { model.contact.addTangent(shape, forces, tangent); } };
-}
-
-inline ElementUnderTest cupOf(const RingModel& model)
-{
-  return { [&model](auto& shape, auto&, auto& forces) { model.cup.addForces(shape, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent)
-           { model.cup.addTangent(shape, forces, tangent); } };
-}
-
-inline ElementUnderTest meshOf(const RingModel& model)
-{
-  return { [&model](auto& shape, auto& position, auto& forces) { model.mesh.addForces(shape, position, forces); },
-           [&model](auto& shape, auto&, auto& forces, auto& tangent)
-           { model.mesh.addTangent(shape, forces, tangent); } };
+  return { [&model](auto& shape, auto& position, RingForces& forces)
+           { model.of<Element>().addForces(shape, position, forces.of<Element>(), forces); },
+           [&model](auto& shape, const RingForces& forces, auto& tangent)
+           { model.of<Element>().addTangent(shape, forces.of<Element>(), tangent); } };
 }
 
 /// The ring's coordinates in one row: 2 N of the tooth points [m], wave generator angle, output angle [rad].

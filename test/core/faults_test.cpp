@@ -10,6 +10,7 @@
 #include "element_under_test.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "model/faults/fault_edits.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "random_ring.hpp"
 #include "solver/output_balance.hpp"
@@ -53,7 +54,7 @@ class EveryKind : public testing::TestWithParam<FaultKind>
 std::vector<FaultKind> allKinds()
 {
   std::vector<FaultKind> kinds;
-  for (const FaultDescription& description : faultDescriptions())
+  for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     kinds.push_back(description.kind);
   }
@@ -93,8 +94,8 @@ TEST_P(EveryKind, ClearedLeavesTheSoundJointToTheLastBit)
 {
   const Parameters parameters = shippedParameters();
   const JointModel sound(parameters);
-  JointModel model(parameters);
-  JointFaults faults(parameters, model);
+  JointFaults faults(parameters);
+  const JointModel& model = faults.model();
   FaultList list;
   list.set({ GetParam(), 0.7, loadedPlace(GetParam()), 0.0 }, 0);
   faults.apply(list);
@@ -119,14 +120,14 @@ TEST_P(EveryKind, RingOfAFaultyGearIsTheGradientOfItsEnergy)
 {
   const Parameters parameters =
       shippedParameters({ "contact.smoothing=20.0e-6", "mesh.smoothing=20.0e-6", "fault_scale.spall_length=5.0e-3" });
-  JointModel model(parameters);
-  JointFaults faults(parameters, model);
+  JointFaults faults(parameters);
+  const JointModel& model = faults.model();
   FaultList list;
   list.set({ GetParam(), 0.7, loadedPlace(GetParam()), 0.0 }, 0);
   faults.apply(list);
   const ElementUnderTest whole{ [&](auto& shape, auto& position, auto& forces)
                                 { model.ring.forces(shape, position, forces); },
-                                [&](auto& shape, auto&, auto& forces, auto& tangent)
+                                [&](auto& shape, auto& forces, auto& tangent)
                                 { model.ring.tangent(shape, forces, tangent); } };
   RandomRing ring(11);
   RingShape shape(model.ring.rest.teeth());
@@ -170,14 +171,8 @@ class StandingGear
 {
 public:
   explicit StandingGear(const Parameters& parameters)
-    : model_(parameters), faults_(parameters, model_), ring_(model_.ring, parameters.solver)
+    : faults_(parameters, allOf(parameters.faults)), ring_(faults_.model().ring, parameters.solver)
   {
-    FaultList list;
-    for (const Fault& fault : parameters.faults)
-    {
-      list.set(fault, 0);
-    }
-    faults_.apply(list);
     EXPECT_TRUE(ring_.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
   }
 
@@ -189,7 +184,16 @@ public:
   }
 
 private:
-  JointModel model_;
+  static FaultList allOf(const std::vector<Fault>& faults)
+  {
+    FaultList list;
+    for (const Fault& fault : faults)
+    {
+      list.set(fault, 0);
+    }
+    return list;
+  }
+
   JointFaults faults_;
   RingEquilibrium ring_;
 };
@@ -208,7 +212,7 @@ double lostMotion(const Parameters& parameters)
 
 double unloadedWaveGenerator(const Parameters& parameters)
 {
-  return -StandingGear(parameters).at(0.0, 0.0).forces().contact_force.sum();
+  return -StandingGear(parameters).at(0.0, 0.0).forces().of<WaveGeneratorContact>().force.sum();
 }
 
 /// What tooth 0 does not carry on the way of the wave generator past it.
@@ -218,7 +222,7 @@ double idleTooth(const Parameters& parameters)
   double carried = 0.0;
   for (int k = -30; k <= 30; ++k)
   {
-    carried += std::abs(gear.at(0.02 * k, 40.0).forces().flank_force[0]);
+    carried += std::abs(gear.at(0.02 * k, 40.0).forces().of<ToothMesh>().flank_force[0]);
   }
   return -carried;
 }
@@ -238,9 +242,9 @@ double unequalLobes(const Parameters& parameters)
 {
   const RingForces forces = StandingGear(parameters).at(0.0, 40.0).forces();
   double difference = 0.0;
-  for (int i = 0; i < forces.flank_force.size(); ++i)
+  for (int i = 0; i < forces.of<ToothMesh>().flank_force.size(); ++i)
   {
-    difference += (i < 50 || i >= 150 ? 1.0 : -1.0) * std::abs(forces.flank_force[i]);
+    difference += (i < 50 || i >= 150 ? 1.0 : -1.0) * std::abs(forces.of<ToothMesh>().flank_force[i]);
   }
   return std::abs(difference);
 }
@@ -403,6 +407,20 @@ TEST(FaultList, HasRoomForSoMany)
   EXPECT_EQ(list.begin()->fault.place, WHOLE_MEMBER);
 }
 
+TEST(FaultDescriptions, GiveTheOrdersOfTheGearInQuestion)
+{
+  const Parameters parameters = shippedParameters();
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, parameters), "order 12.68");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_BALL, parameters), "orders 9.65 and 1.10");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_CAGE, parameters), "order 1.10: twice 1 less the cage's 0.45");
+  EXPECT_EQ(shownFirst(FaultKind::RATCHETING, parameters), "running torque, orders 2 and 1.98");
+  // 15 balls, 7 mm on 50 mm: the cage turns at 0.43.
+  const Parameters other =
+      shippedParameters({ "bearing.balls=15", "bearing.ball_diameter=7.0e-3", "bearing.pitch_diameter=50.0e-3" });
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, other), "order 8.55");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_OUTER_RACE, other), "order 6.45 and its sidebands at 2");
+}
+
 TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
 {
   GearParameters gear = shippedParameters().gear;
@@ -412,15 +430,15 @@ TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
   // A thin rim hangs by what is left.
   Parameters parameters = shippedParameters();
   parameters.gear.rim_thickness = gear.rim_thickness;
-  JointModel model(parameters);
-  JointFaults faults(parameters, model);
+  JointFaults faults(parameters);
+  const JointModel& model = faults.model();
   FaultList list;
   list.set({ FaultKind::TOOTH_ROOT_CRACK, 1.0, 40, 0.0 }, 0);
   faults.apply(list);
   const double left = 1.0 - parameters.fault_scale.rim_crack_depth;
-  EXPECT_DOUBLE_EQ(model.ring.tension.stiffness()[40], left * parameters.ring.tension_stiffness);
-  EXPECT_DOUBLE_EQ(model.ring.bending.stiffness()[40], left * left * left * parameters.ring.bending_stiffness);
-  EXPECT_EQ(model.ring.mesh.stiffness()[40], parameters.mesh.stiffness);
+  EXPECT_DOUBLE_EQ(model.ring.of<RimTension>().stiffness()[40], left * parameters.ring.tension_stiffness);
+  EXPECT_DOUBLE_EQ(model.ring.of<RimBending>().stiffness()[40], left * left * left * parameters.ring.bending_stiffness);
+  EXPECT_EQ(model.ring.of<ToothMesh>().stiffness()[40], parameters.mesh.stiffness);
 }
 
 /// How often the sag over one tooth, or anywhere, has a maximum in `turns` of the wave generator.

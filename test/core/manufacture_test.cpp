@@ -176,10 +176,11 @@ TEST_F(FaultyGear, ContactsAreTheGradientsOfTheirEnergies)
   {
     SCOPED_TRACE("shape " + std::to_string(k));
     ring.draw(model_, shape_, position_);
-    const RingForces forces = meshOf(model_).forces(shape_, position_);
-    meshed += static_cast<int>(std::count(forces.meshed.begin(), forces.meshed.end(), 1));
-    expectGradientAndTangent(meshOf(model_), shape_, position_);
-    expectGradientAndTangent(contactOf(model_), shape_, position_);
+    const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
+    meshed +=
+        static_cast<int>(std::count(forces.of<ToothMesh>().meshed.begin(), forces.of<ToothMesh>().meshed.end(), 1));
+    expectGradientAndTangent(elementOf<ToothMesh>(model_), shape_, position_);
+    expectGradientAndTangent(elementOf<WaveGeneratorContact>(model_), shape_, position_);
   }
   EXPECT_GT(meshed, 100);
 }
@@ -206,8 +207,9 @@ TEST_F(FaultyGear, EccentricMemberIsTheCentredOneMoved)
   {
     ring.draw(perfect, shape_, position_);
     for (const auto& [faulty, centred, angle] :
-         { std::make_tuple(meshOf(spline), meshOf(perfect), position_.output_angle),
-           std::make_tuple(contactOf(generator), contactOf(perfect), position_.wave_generator_angle) })
+         { std::make_tuple(elementOf<ToothMesh>(spline), elementOf<ToothMesh>(perfect), position_.output_angle),
+           std::make_tuple(elementOf<WaveGeneratorContact>(generator), elementOf<WaveGeneratorContact>(perfect),
+                           position_.wave_generator_angle) })
     {
       const RingForces forces = faulty.forces(shape_, position_);
       const RingForces expected = centred.forces(movedBack(angle), position_);
@@ -224,9 +226,10 @@ TEST_F(FaultyGear, EllipticityOfTheWaveGeneratorAddsToItsAmplitude)
   const RingModel faulty(shippedParameters({ "manufacture.wave_generator_ellipticity=-5.0e-6" }));
   RandomRing ring(32);
   ring.draw(perfect, shape_, position_);
-  const RingForces forces = contactOf(faulty).forces(shape_, position_);
+  const RingForces forces = elementOf<WaveGeneratorContact>(faulty).forces(shape_, position_);
   position_.wave_amplitude -= 5e-6;
-  EXPECT_NEAR(forces.energy, contactOf(perfect).forces(shape_, position_).energy, 1e-12 * forces.energy);
+  EXPECT_NEAR(forces.energy, elementOf<WaveGeneratorContact>(perfect).forces(shape_, position_).energy,
+              1e-12 * forces.energy);
 }
 
 /// Output angle at which the flexspline carries `load`, for each wave generator angle [rad].

@@ -10,8 +10,8 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "test/support/temporary_folder.hpp"
 #include "params/field_table.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace hjt
 {

@@ -25,7 +25,7 @@ public:
     shape = model.restShape(position);  // every tooth out of contact and paired with its nearest space
     pressOnWaveGenerator(model.rest, position, uniform(-2e-3, 2e-3), shape);
     shake(std::pow(10.0, uniform(-6.0, -4.0)), random_, shape);
-    model.mesh.pairNearest(position, shape);
+    model.of<ToothMesh>().pairNearest(position, shape);
   }
 
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }

@@ -350,11 +350,9 @@ constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
 JointModel brokenModel()
 {
   const Parameters parameters = surfaceParameters();
-  JointModel model(parameters);
   FaultList faults;
   faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
-  JointFaults(parameters, model).apply(faults);
-  return model;
+  return JointFaults(parameters, faults).model();
 }
 
 /// What a broken tooth changes, at the same angles: to a hundredth of its largest effect, root mean square.

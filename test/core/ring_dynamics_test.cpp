@@ -114,7 +114,7 @@ struct Bench
   explicit Bench(const Parameters& parameters, const RingDrive& drive = {}, bool meshed = true)
     : parameters(parameters), model(parameters), drive(drive)
   {
-    model.ring.meshed = meshed;
+    model.ring.setMeshed(meshed);
     ring = std::make_unique<DynamicRing>(model, parameters.ring, drive);
   }
 
@@ -347,7 +347,7 @@ struct SoftRing : Bench
             held(), false)
     , start(ring->coordinates())
   {
-    model.ring.contact.stiffness().setZero();
+    model.ring.edit<WaveGeneratorContact>().stiffness().setZero();
     start.q.head(2 * ring->teeth()) = model.ring.rest.points();
     for (int i = 0; i < ring->teeth(); ++i)
     {

@@ -6,9 +6,10 @@
 
 #include <Eigen/Core>
 
-#include "elements/ring_forces.hpp"
+#include "elements/ring_tangent.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
+#include "model/ring_forces.hpp"
 
 namespace hjt
 {
@@ -60,9 +61,9 @@ inline Eigen::MatrixXd denseTangent(const RingTangent& tangent)
 
 inline bool allFinite(const RingForces& forces)
 {
-  return forces.teeth.allFinite() && forces.contact_force.allFinite() && forces.flank_force.allFinite() &&
-         std::isfinite(forces.wave_generator_torque) && std::isfinite(forces.output_torque) &&
-         std::isfinite(forces.energy);
+  return forces.teeth.allFinite() && forces.of<WaveGeneratorContact>().force.allFinite() &&
+         forces.of<ToothMesh>().flank_force.allFinite() && std::isfinite(forces.wave_generator_torque) &&
+         std::isfinite(forces.output_torque) && std::isfinite(forces.energy);
 }
 
 /// x, y of tooth i turned by `angle`, for every tooth.

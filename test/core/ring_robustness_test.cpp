@@ -94,7 +94,7 @@ SolveStatus insertAlone(const Assignments& assignments, double tolerance = 5e-7)
   Parameters parameters = shippedParameters(assignments);
   parameters.solver.force_tolerance = tolerance;
   RingModel model(parameters);
-  model.meshed = false;
+  model.setMeshed(false);
   RingEquilibrium ring(model, parameters.solver);
   const SolveStatus status = ring.insert({ 0.1, 0.0, parameters.gear.wave_amplitude });
   expectFinite(ring);
@@ -182,8 +182,8 @@ struct Snapshot
     EXPECT_TRUE(shape.directions == ring.shape().directions);
     EXPECT_TRUE(shape.space == ring.shape().space);
     EXPECT_TRUE(forces.teeth == ring.forces().teeth);
-    EXPECT_TRUE(forces.contact_force == ring.forces().contact_force);
-    EXPECT_TRUE(forces.flank_force == ring.forces().flank_force);
+    EXPECT_TRUE(forces.of<WaveGeneratorContact>().force == ring.forces().of<WaveGeneratorContact>().force);
+    EXPECT_TRUE(forces.of<ToothMesh>().flank_force == ring.forces().of<ToothMesh>().flank_force);
     EXPECT_EQ(forces.wave_generator_torque, ring.forces().wave_generator_torque);
     EXPECT_EQ(forces.output_torque, ring.forces().output_torque);
     EXPECT_EQ(forces.energy, ring.forces().energy);
@@ -270,7 +270,7 @@ TEST(FaultyTooth, OfNotANumberIsSaidAndDoesNotSpread)
   for (const int tooth : { 0, 1, 2, 3, 57, 198, 199 })
   {
     RingModel model(parameters);
-    model.contact.stiffness()[tooth] = std::numeric_limits<double>::quiet_NaN();
+    model.edit<WaveGeneratorContact>().stiffness()[tooth] = std::numeric_limits<double>::quiet_NaN();
     RingEquilibrium ring(model, parameters.solver);
     EXPECT_FALSE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok()) << tooth;
     EXPECT_TRUE(ring.shape().points.allFinite()) << tooth;
@@ -282,16 +282,16 @@ TEST(FaultyTooth, LeavesARingThatStillTurns)
   const Parameters parameters = shippedParameters();
   const double w = parameters.gear.wave_amplitude;
   RingModel model(parameters);
-  model.mesh.stiffness()[4] = 0.0;       // broken off
-  model.bending.stiffness()[40] *= 0.2;  // cracked rim
-  model.tension.stiffness()[40] *= 0.2;
-  model.mesh.clearance()[90] = 5e-6;  // worn
+  model.edit<ToothMesh>().stiffness()[4] = 0.0;     // broken off
+  model.edit<RimBending>().stiffness()[40] *= 0.2;  // cracked rim
+  model.edit<RimTension>().stiffness()[40] *= 0.2;
+  model.edit<ToothMesh>().clearance()[90] = 5e-6;  // worn
   RingEquilibrium ring(model, parameters.solver);
   ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
   for (int k = 1; k <= 300; ++k)
   {
     ASSERT_TRUE(ring.moveTo({ 0.03 * k, 0.03 * k / 101.0 - 1.5e-3, w }).ok()) << k;
-    ASSERT_EQ(ring.forces().flank_force[4], 0.0);
+    ASSERT_EQ(ring.forces().of<ToothMesh>().flank_force[4], 0.0);
     expectEquilibrium(ring, parameters.solver.force_tolerance);
   }
 }

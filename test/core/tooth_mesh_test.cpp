@@ -127,7 +127,7 @@ TEST_P(Mesh, IsTheGradientOfItsEnergy)
       entering += at.touches() && at.depth < parameters_.mesh.engagement_depth ? 1 : 0;
       ramp += at.touches() && std::abs(at.xi) - at.clearance < parameters_.mesh.smoothing ? 1 : 0;
     }
-    expectGradientAndTangent(meshOf(model_), shape_, position_);
+    expectGradientAndTangent(elementOf<ToothMesh>(model_), shape_, position_);
   }
   // The shapes have been everywhere the law has a branch.
   EXPECT_GT(open, 100);
@@ -143,14 +143,15 @@ TEST_P(Mesh, HasTheEnergyAndTheForcesOfItsLaw)
   for (int k = 0; k < 50; ++k)
   {
     ring.draw(model_, shape_, position_);
-    const RingForces forces = meshOf(model_).forces(shape_, position_);
+    const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
     double energy = 0.0;
     for (int i = 0; i < shape_.teeth(); ++i)
     {
       const ToothByDefinition at = tooth(i);
       energy += at.energy;
       // Offsets agree to some 1e-17 m, times the stiffness 5e7 N/m; the smoothstep's slope adds 1e-4 of the force a um.
-      ASSERT_NEAR(forces.flank_force[i], at.normal_force, 1e-8 + 1e-11 * std::abs(at.normal_force)) << i;
+      ASSERT_NEAR(forces.of<ToothMesh>().flank_force[i], at.normal_force, 1e-8 + 1e-11 * std::abs(at.normal_force))
+          << i;
     }
     EXPECT_NEAR(forces.energy, energy, 1e-11 * energy);
   }
@@ -163,7 +164,7 @@ TEST_P(Mesh, SaysWhereAToothStands)
   for (int i = 0; i < shape_.teeth(); ++i)
   {
     const ToothByDefinition at = tooth(i);
-    const ToothPlace place = model_.mesh.place(shape_, position_, i);
+    const ToothPlace place = model_.of<ToothMesh>().place(shape_, position_, i);
     ASSERT_NEAR(place.across, at.xi, 1e-15) << i;
     ASSERT_NEAR(place.depth, at.depth, 1e-15) << i;
     ASSERT_NEAR(place.gap, at.clearance - std::abs(at.xi), 1e-15) << i;
@@ -179,13 +180,13 @@ TEST_P(Mesh, EveryToothHasItsOwnStiffnessAndClearance)
   drawSmooth(ring);
   for (int i = 0; i < shape_.teeth(); ++i)
   {
-    model_.mesh.stiffness()[i] *= ring.uniform(0.0, 1.0);
+    model_.edit<ToothMesh>().stiffness()[i] *= ring.uniform(0.0, 1.0);
   }
-  model_.mesh.stiffness()[3] = 0.0;  // broken off
-  expectGradientAndTangent(meshOf(model_), shape_, position_);
+  model_.edit<ToothMesh>().stiffness()[3] = 0.0;  // broken off
+  expectGradientAndTangent(elementOf<ToothMesh>(model_), shape_, position_);
   // Enough clearance takes any tooth out of contact.
-  model_.mesh.clearance().setConstant(1e-3);
-  const RingForces forces = meshOf(model_).forces(shape_, position_);
+  model_.edit<ToothMesh>().clearance().setConstant(1e-3);
+  const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
   EXPECT_EQ(forces.energy, 0.0);
   EXPECT_EQ(allForces(forces).lpNorm<Eigen::Infinity>(), 0.0);
 }
@@ -207,7 +208,7 @@ TEST_P(Mesh, PairsTeethOutOfContactWithTheNearestSpaceAndNoOthers)
       touched.push_back(tooth(i).touches() ? 1 : 0);
     }
     const std::vector<int> before = shape_.space;
-    model_.mesh.pairNearest(position_, shape_);
+    model_.of<ToothMesh>().pairNearest(position_, shape_);
     for (int i = 0; i < shape_.teeth(); ++i)
     {
       if (touched[i] != 0)
@@ -256,18 +257,18 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
   for (int k = 0; k < 10; ++k)
   {
     ring.draw(model_, shape_, position_);
-    const RingForces forces = meshOf(model_).forces(shape_, position_);
-    for (const FlankContact& contact : forces.flanks)
+    const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
+    for (const FlankContact& contact : forces.of<ToothMesh>().flanks)
     {
       const int i = contact.tooth;
       const Eigen::Vector2d speed = (placeAfter(TIME, i) - placeAfter(-TIME, i)) / (2.0 * TIME);
-      const bool on_leading = forces.flank_force[i] > 0.0;
+      const bool on_leading = forces.of<ToothMesh>().flank_force[i] > 0.0;
       (on_leading ? leading : trailing) += 1;
       // The leading flank's normal leans inwards: along it zeta grows as xi falls by tan(beta).
       const double beta = std::atan(tooth(i).slope);
       const double along = std::cos(beta) * speed.y() + (on_leading ? -1.0 : 1.0) * std::sin(beta) * speed.x();
       // Rounding of the place, 4e-18 m, over 2e-8 s; speeds are of order 1 m/s.
-      EXPECT_NEAR(model_.mesh.slidingSpeed(shape_, contact, speeds, output_speed), along, 1e-7);
+      EXPECT_NEAR(model_.of<ToothMesh>().slidingSpeed(shape_, contact, speeds, output_speed), along, 1e-7);
     }
   }
   EXPECT_GT(leading, 5);

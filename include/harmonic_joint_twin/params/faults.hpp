@@ -29,9 +29,10 @@ enum class FaultKind : std::uint8_t
   BEARING_INNER_RACE,
   BEARING_OUTER_RACE,
   BEARING_BALL,
-  BEARING_CAGE
+  BEARING_CAGE,
+  COUNT  ///< no kind: how many there are
 };
-constexpr std::size_t FAULT_KINDS = 16;
+constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);
 
 /// Where no place is meant: the whole member.
 constexpr int WHOLE_MEMBER = -1;
@@ -72,11 +73,80 @@ struct FaultDescription
   FaultPlace place;
   bool whole;            ///< WHOLE_MEMBER is allowed
   const char* severity;  ///< what severity 1 is
-  const char* shows;     ///< where it shows first
+  const char* shows;     ///< where it shows first; orders by a name in braces, see shownFirst
 };
 
-const std::array<FaultDescription, FAULT_KINDS>& faultDescriptions() noexcept;
-const FaultDescription& describe(FaultKind kind) noexcept;
+/// All kinds, in the order of FaultKind.
+inline constexpr std::array FAULT_DESCRIPTIONS{
+  FaultDescription{ FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
+                    "rim and outer race worn by fault_scale.interface_wear_depth, rougher by its friction factor",
+                    "stiffness and lost motion about zero torque" },
+  FaultDescription{ FaultKind::REAR_SECTION_CRACK, "rear_section_crack", FaultPlace::MEMBER, true,
+                    "crack behind the teeth over fault_scale.cup_crack_fraction of the circumference",
+                    "torsion loop, torsional stiffness" },
+  FaultDescription{ FaultKind::LUBRICANT_DEGRADATION, "lubricant_degradation", FaultPlace::MEMBER, true,
+                    "viscosity and boundary friction times the factors of fault_scale", "running torque" },
+  FaultDescription{ FaultKind::TOOTH_WEAR, "tooth_wear", FaultPlace::TOOTH, true,
+                    "fault_scale.tooth_wear_depth off both flanks, along their normal", "lost motion" },
+  FaultDescription{
+      FaultKind::TOOTH_ROOT_CRACK, "tooth_root_crack", FaultPlace::TOOTH, false,
+      "crack through the tooth (broken off), or fault_scale.rim_crack_depth into the rim, by the backup ratio",
+      "orders 2, 4, 6 ... of the kinematic error" },
+  FaultDescription{ FaultKind::FLANGE_CRACK, "flange_crack", FaultPlace::MEMBER, true,
+                    "crack at the cup's flange over fault_scale.cup_crack_fraction of the circumference",
+                    "torsional stiffness, torsion loop" },
+  FaultDescription{ FaultKind::TOOTH_TIP_CRACK, "tooth_tip_crack", FaultPlace::TOOTH, false,
+                    "crack along the tooth's middle as long as the tooth is high: two leaves",
+                    "orders 2, 4, 6 ... of the kinematic error" },
+  FaultDescription{
+      FaultKind::PITTING, "pitting", FaultPlace::TOOTH, true,
+      "fault_scale.pitted_fraction of the flank's width lost, its friction times fault_scale.pitted_friction_factor",
+      "one tooth: orders 2, 4, 6 ... of the kinematic error" },
+  FaultDescription{ FaultKind::WAVE_GENERATOR_WEAR, "wave_generator_wear", FaultPlace::LOBE, true,
+                    "major semi-axis less by fault_scale.wave_generator_wear_depth",
+                    "lost motion, stiffness, lower running torque" },
+  FaultDescription{
+      FaultKind::FLEXSPLINE_CRACK, "flexspline_crack", FaultPlace::SEGMENT, false,
+      "rim cracked by fault_scale.rim_crack_depth here, fading out over fault_scale.rim_crack_segments either side",
+      "orders 2, 4, 6 ... of the kinematic error" },
+  FaultDescription{
+      FaultKind::BUCKLING, "buckling", FaultPlace::MEMBER, true,
+      "cup softer by fault_scale.buckling_stiffness_loss, rim bent to waves of fault_scale.buckling_out_of_round",
+      "torsional stiffness, torsion loop" },
+  FaultDescription{ FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
+                    "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by its tip loss",
+                    "running torque, orders 2 and {spline}" },
+  FaultDescription{ FaultKind::BEARING_INNER_RACE, "bearing_inner_race", FaultPlace::INNER_RACE, false,
+                    "spall of fault_scale.spall_depth and spall_length on the inner race", "order {inner}" },
+  FaultDescription{ FaultKind::BEARING_OUTER_RACE, "bearing_outer_race", FaultPlace::OUTER_RACE, false,
+                    "spall of fault_scale.spall_depth and spall_length on the outer race",
+                    "order {outer} and its sidebands at 2" },
+  FaultDescription{ FaultKind::BEARING_BALL, "bearing_ball", FaultPlace::BALL, false,
+                    "spall of fault_scale.spall_depth and spall_length on a ball", "orders {ball} and {lobe}" },
+  FaultDescription{ FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
+                    "the ball of a broken pocket lets the outer race down by fault_scale.cage_sag",
+                    "order {lobe}: twice 1 less the cage's {cage}" }
+};
+
+/// Whether the rows of a table with one for each kind of fault stand in the order of FaultKind.
+template <class Table>
+constexpr bool hasRowsInOrder(const Table& table) noexcept
+{
+  bool in_order = table.size() == FAULT_KINDS;
+  for (std::size_t i = 0; i < table.size(); ++i)
+  {
+    in_order = in_order && static_cast<std::size_t>(table[i].kind) == i;
+  }
+  return in_order;
+}
+static_assert(hasRowsInOrder(FAULT_DESCRIPTIONS), "one row for each FaultKind, in its order");
+
+constexpr const FaultDescription& describe(FaultKind kind) noexcept
+{
+  return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
+}
+/// Where it shows first in this drive, with the orders of its own bearing and teeth.
+std::string shownFirst(FaultKind kind, const Parameters& parameters);
 std::optional<FaultKind> faultNamed(const std::string& name);
 std::string faultNames();  ///< all, for an error text
 

@@ -22,19 +22,19 @@ int faults(const CommonOptions& options)
     { "place", [](const FaultDescription& kind) { return placeName(kind.place); } },
     { "first_place", [](const FaultDescription& kind) { return firstPlace(kind.kind); } },
     { "last_place", [&](const FaultDescription& kind) { return lastPlace(kind.kind, parameters); } },
-    { "shows", [](const FaultDescription& kind) { return kind.shows; } }
+    { "shows", [&](const FaultDescription& kind) { return shownFirst(kind.kind, parameters); } }
   };
   if (options.json)
   {
-    std::cout << Table(columns, faultDescriptions()).rows().dump() << '\n';
+    std::cout << Table(columns, FAULT_DESCRIPTIONS).rows().dump() << '\n';
     return EXIT_DONE;
   }
-  for (const FaultDescription& kind : faultDescriptions())
+  for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
   {
     std::cout << kind.name << '\n';
     printWrapped("severity 1: " + std::string(kind.severity), 2);
     printWrapped("place:      " + placeText(kind.kind, parameters), 2);
-    printWrapped("shows in:   " + std::string(kind.shows), 2);
+    printWrapped("shows in:   " + shownFirst(kind.kind, parameters), 2);
   }
   return EXIT_DONE;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "elements/ring_forces.hpp"
+#include "elements/ring_tangent.hpp"
 
 #include "gear/vector_clones.hpp"
 
