@@ -247,7 +247,7 @@ TEST_F(LoopFixture, OutlivesAClockThatJumpsToTheEndOfTimeAndBack)
 
 TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
 {
-  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(twin_->parameters()));
+  SlotRing<harmonic_joint_twin::ContactForces> ring(4, makeContactForces(shippedParameters()));
   start(false);
   setClock(100 * SECOND);
   loop_ = nullptr;
