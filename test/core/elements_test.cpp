@@ -295,7 +295,7 @@ struct Row
   const char* name;
   ElementUnderTest (*of)(const RingModel& model);
   bool grounded{ false };  // held by the housing: a rigid turn of the whole machine changes it
-  std::vector<std::string> parameters;
+  std::vector<std::string> parameters{};
 };
 const std::vector<Row> ELEMENTS{
   { "tension", elementOf<RimTension> },

@@ -9,8 +9,8 @@ The lines before the first hunk of the patch hold
   Run:     the command, found in the built package's folders of programs
   Edits:   how many edits the example may take
   Apart:   files that are not counted, such as those of a parameter that comes with the example (optional)
-New files together count as one edit, every changed file as one. All examples share BUILD_DIR/extending, so that only the
-first one pays for what they have in common.
+New files together count as one edit, every changed file as one. All examples share BUILD_DIR/extending, so that only
+the first one pays for what they have in common.
 """
 import filecmp
 import os
@@ -22,8 +22,6 @@ import subprocess
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COPIED = ("CMakeLists.txt", "package.xml", "LICENSE", "README.md", "bench", "config", "docs", "include", "launch", "msg",
-          "plans", "scripts", "src", "test")
 PROGRAMS = ("lib/harmonic_joint_twin", "bin", ".")
 
 
@@ -57,9 +55,11 @@ def edited(patch, apart):
 
 
 def files_of(folder):
+    """All but what is hidden and what has been built."""
     names = set()
-    for name in COPIED:
-        path = folder / name
+    for path in folder.iterdir():
+        if path.name.startswith(".") or (path / "CMakeCache.txt").exists():
+            continue
         found = path.rglob("*") if path.is_dir() else [path]
         names |= {file.relative_to(folder) for file in found if file.is_file() and "__pycache__" not in file.parts}
     return names
@@ -89,7 +89,7 @@ def main():
     if len(edits) > int(fields["Edits"]):
         fail("more edits than the example may take")
 
-    folder = pathlib.Path(sys.argv[2]) / "extending"
+    folder = pathlib.Path(sys.argv[2]).resolve() / "extending"
     copy, build = folder / "source", folder / "build"
     synchronise(copy)
     run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path.resolve()], cwd=copy)

@@ -15,6 +15,7 @@ import catkin_lint
 import clang_tidy
 import config_files
 import doc_tables
+import examples
 import launch_docs
 import layering
 import links
@@ -91,6 +92,21 @@ class Layering(Tree):
 
     def test_nothing_to_check(self):
         self.assert_fault(layering.check, "no sources")
+
+
+class Examples(Tree):
+    PATCH = "Run: nothing\n\n--- a/src/one.cpp\n+++ b/src/one.cpp\n@@ -1 +1,2 @@\n int one;\n+int two;\n"
+
+    def test_a_patch_that_applies(self):
+        self.write("src/one.cpp", "int one;\n")
+        self.write("test/extending/one.patch", self.PATCH)
+        self.assert_clean(examples.check)
+        self.assertEqual(project.text(self.root, "src/one.cpp"), "int one;\n")
+
+    def test_a_patch_that_does_not(self):
+        self.write("src/one.cpp", "int uno;\n")
+        self.write("test/extending/one.patch", self.PATCH)
+        self.assert_fault(examples.check, "one.patch:1", "does not apply")
 
 
 class TypeNames(Tree):
@@ -183,7 +199,8 @@ class DocTables(Tree):
         return doc_tables.check_parameters(root, self.TABLE)
 
     def page(self, rows):
-        self.write(doc_tables.PARAMETERS, "\n".join(["# A", doc_tables.PARAMETERS_BEGIN, *rows, doc_tables.PARAMETERS_END]))
+        self.write(doc_tables.PARAMETERS,
+                   "\n".join(["# A", doc_tables.PARAMETERS_BEGIN, *rows, doc_tables.PARAMETERS_END]))
 
     def test_same_table(self):
         self.page(self.TABLE)
@@ -214,9 +231,11 @@ class Links(Tree):
     def test_targets_that_exist(self):
         self.write("docs/b.md", "# Two words, `code`\n\n## Same\n\n## Same\n")
         self.write("docs/images/a.png", "")
-        self.write("README.md", "[b](docs/b.md), [head](docs/b.md#two-words-code), [again](docs/b.md#same-1), [own](#own)\n"
-                                "[![a](docs/images/a.png)](docs/b.md) [web](https://example.org/x) <img src='docs/images/a.png'>\n"
-                                "# Own\n\n```\n[none](none.md)\n```\nand `[none](none.md)`\n")
+        self.write("README.md",
+                   "[b](docs/b.md), [head](docs/b.md#two-words-code), [again](docs/b.md#same-1), [own](#own)\n"
+                   "[![a](docs/images/a.png)](docs/b.md) [web](https://example.org/x) <img "
+                   "src='docs/images/a.png'>\n"
+                   "# Own\n\n```\n[none](none.md)\n```\nand `[none](none.md)`\n")
         self.assert_clean(links.check)
 
     def test_targets_that_do_not(self):

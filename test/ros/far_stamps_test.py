@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Stamps far from the clock and a clock that jumps far, in both modes of the node: it stays, refuses and counts them."""
+"""Stamps far from the clock and a clock that jumps far, in both modes of the node: it stays, refuses and counts
+them."""
 import math
 import signal
 import sys
@@ -29,7 +30,8 @@ def raw_time(seconds, nanoseconds):
     return stamp
 
 
-FAR = [rospy.Time(1, 0), rospy.Time(2**31 - 1, 0), rospy.Time(2**31, 0), rospy.Time(LAST, 999_999_999), raw_time(LAST, LAST)]
+FAR = [rospy.Time(1, 0), rospy.Time(2**31 - 1, 0), rospy.Time(2**31, 0), rospy.Time(LAST, 999_999_999),
+       raw_time(LAST, LAST)]
 
 
 class FarStamps(unittest.TestCase):
@@ -57,13 +59,14 @@ class FarStamps(unittest.TestCase):
         time.sleep(0.02)
 
     def jump(self, has_seen):
-        """The clock goes to each of the far times, a few ticks there, and comes back; each time it waits until the node has
-        seen that."""
+        """The clock goes to each of the far times, a few ticks there, and comes back; each time it waits until the node
+        has seen that."""
         for far in FAR:
             for _ in range(3):
                 self.clock.publish(far)
                 time.sleep(0.02)
-            wait_until(lambda: self.check_alive(f"/clock at {far.secs} s") or has_seen(far.to_sec()), "the clock far away")
+            wait_until(lambda: self.check_alive(f"/clock at {far.secs} s") or has_seen(far.to_sec()),
+                       "the clock far away")
             self.tick(START)
             wait_until(lambda: self.check_alive(f"/clock back from {far.secs} s") or has_seen(START), "the clock back")
 

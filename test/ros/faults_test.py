@@ -20,7 +20,7 @@ NODE = "/twin_under_test"
 JOINT = "elbow_joint"
 START = 100.0     # first time of the clock [s]
 STEP = 0.1        # of the clock; then it waits for the twin [s]
-HOLD_BACK = 0.02  # input.hold_back [s]
+INPUT_DELAY = 0.02  # input.delay [s]
 TIMEOUT = 1.0     # input.command_timeout [s]
 MESSAGE_TIME = 0.2  # for a message to arrive before the clock goes on [s]
 
@@ -68,7 +68,7 @@ class FaultsOfANode(unittest.TestCase):
             self.now += STEP
             self.clock.publish(rospy.Time.from_sec(self.now))
             wait_until(lambda: self.health.messages() and
-                       self.health.messages()[-1].header.stamp.to_sec() > self.now - HOLD_BACK - 0.011, "the twin")
+                       self.health.messages()[-1].header.stamp.to_sec() > self.now - INPUT_DELAY - 0.011, "the twin")
 
     def run_until(self, condition, what, longest=20.0):
         end = self.now + longest
@@ -136,7 +136,8 @@ class FaultsOfANode(unittest.TestCase):
         self.run_clock(2.0 * STEP)
         self.assertEqual(self.active(), [("pitting", 0.3, 7)])
         self.assertEqual(self.health.messages()[-1].motor_torque, self.torque)
-        for said in ("kind = 'rust' is unknown, allowed: interface_wear", "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
+        for said in ("kind = 'rust' is unknown, allowed: interface_wear",
+                     "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
                      "place = 200 [-] of pitting is out of range, allowed: tooth 0 ... 199"):
             self.assertTrue(said in self.node.output(), said)
         self.send("pitting", 0.6, 7)
@@ -163,7 +164,8 @@ class FaultsOfANode(unittest.TestCase):
         self.assertAlmostEqual(indicators.turns, 5.0, delta=0.1)
         self.assertTrue(indicators.temperature_valid)
         self.assertAlmostEqual(indicators.temperature, 25.0, delta=1e-9)
-        values = {name: value for name, value, valid in zip(indicators.names, indicators.values, indicators.valid) if valid}
+        values = {name: value for name, value,
+                  valid in zip(indicators.names, indicators.values, indicators.valid) if valid}
         self.assertTrue(0.0 < values["running_torque"] < self.torque, values)
         self.assertIn("kinematic_error", values)
         self.assertEqual((self.last().level, self.last().cause), (Assessment.OK, "none"))
