@@ -220,7 +220,7 @@ TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
   start(false);
   setClock(100'000 * SECOND);
   waitForCycles(2);
-  for (const Stamp stamp : { Stamp{ 1 }, 100'000 * SECOND + FAR_STAMP + SECOND, LAST_ROS_STAMP })
+  for (const Stamp stamp : { Stamp{ 1 }, 100'000 * SECOND + FAR_STAMP + 60 * SECOND, LAST_ROS_STAMP })
   {
     inbox_.push({ stamp, InputKind::MOTOR_TORQUE, 0.5 });
   }
