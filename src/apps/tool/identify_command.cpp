@@ -187,10 +187,14 @@ void print(const IdentifyReport& report, bool json)
 /// What the user must know to judge the result; false: nothing was identified.
 bool warn(const IdentifyReport& report, bool load_recorded)
 {
-  const auto identified = [](const auto& value) { return value.refusal.empty(); };
+  // An interval that holds zero says nothing.
   const Identification& found = report.found;
-  const bool any = std::any_of(found.values.begin(), found.values.end(), identified) ||
-                   std::any_of(found.lines.begin(), found.lines.end(), identified);
+  const bool any =
+      std::any_of(found.values.begin(), found.values.end(),
+                  [](const IdentifiedValue& value)
+                  { return value.refusal.empty() && value.half_width < std::abs(value.value); }) ||
+      std::any_of(found.lines.begin(), found.lines.end(),
+                  [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
   if (!load_recorded)
   {
     std::cerr
