@@ -23,7 +23,7 @@ const char* hjt::${FUNCTION}()
 }
 ")
   # Only a file that is another makes the library link again.
-  if(EXISTS ${OUTPUT})
+  if(EXISTS "${OUTPUT}")
     file(READ ${OUTPUT} FOUND)
   endif()
   if(NOT "${FOUND}" STREQUAL "${CODE}")

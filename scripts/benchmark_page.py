@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run time against error: runs `work_precision` over its problems and writes docs/benchmark.md. Started by scripts/benchmark."""
+"""Run time against error: runs `work_precision` over its problems and writes docs/benchmark.md. Started by
+scripts/benchmark."""
 import argparse
 import concurrent.futures
 import json
@@ -21,7 +22,8 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyp
 
 PROBLEMS = ["insertion", "drive", "drive_smooth", "drive_stiff10", "drive_stiff100", "operating"]
 LEVELS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
-PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "libpetsc-real-dev", "r-cran-desolve", "libeigen3-dev", "g++"]
+PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "libpetsc-real-dev", "r-cran-desolve",
+            "libeigen3-dev", "g++"]
 OPTIONAL = {"PETSc": "libpetsc-real-dev", "RADAU5": "r-cran-desolve"}  # peers that are left out where not installed
 OURS = "ours, "
 FAIR = "our linear solver"
@@ -45,38 +47,40 @@ STYLES = {
 }
 INTRODUCTION = """# Run time against error
 
-Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states: every
-tooth's mass, wave generator, circular spline), many solvers; at the end the operating model. **Error**: root mean square over the
-samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the
-processor, of one thread, median of the runs; the solvers take turns, so disturbances of the machine affect all alike. Down and to the
-left is better.
+Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
+every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model. **Error**: root mean
+square over the samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth
+forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns, so disturbances of the
+machine affect all alike. Down and to the left is better.
 
-Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank one, which
-would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and factors densely, using the fact that half
-of the states are the derivatives of the others. *Our linear solver*: the same integrators with the twin's own cyclic solver
-plugged in. All peers call the twin's own forces, vectorised as they are. Their tolerances are absolute, in units of 5 um, 0.1 m/s,
-1 mrad and 10 rad/s; ours is the error of a tooth's position by one step. Teeth and spaces are paired after every step of every solver.
-Ours are `joint_twin dynamics --tolerance`: TR-BDF2, ESDIRK4 and DOP853 with adaptive steps. The thesis' method, implicit Euler at
-10 us, is drawn but is neither ours nor a peer.
+Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank
+one, which would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and
+factors densely, using the fact that half of the states are the derivatives of the others. *Our linear solver*: the same
+integrators with the twin's own cyclic solver plugged in. All peers call the twin's own forces, vectorised as they are.
+Their tolerances are absolute, in units of 5 um, 0.1 m/s, 1 mrad and 10 rad/s; ours is the error of a tooth's position
+by one step. Teeth and spaces are paired after every step of every solver. Ours are `joint_twin dynamics --tolerance`:
+TR-BDF2, ESDIRK4 and DOP853 with adaptive steps. The thesis' method, implicit Euler at 10 us, is drawn but is neither
+ours nor a peer.
 
-Where the curves of the forces are vertical, the error is the vibration of single teeth excited by start and contact: steps
-that do not resolve it, at a fraction of a microsecond, gain nothing by being finer. A vertical curve is a limit of the problem,
-not of the solver."""
+Where the curves of the forces are vertical, the error is the vibration of single teeth excited by start and contact:
+steps that do not resolve it, at a fraction of a microsecond, gain nothing by being finer. A vertical curve is a limit
+of the problem, not of the solver."""
 OMISSIONS = """
 Not measured here:
 
-- odeint's rosenbrock4: uBLAS factors the 804 x 804 matrix densely; a prototype of this model took 5.5 s a step and did not pass the
-  first millisecond.
-- MuJoCo and Simbody: the ring can be described as 402 joints with a force callback; a prototype measured 13 (MuJoCo) and 26 to 59 times
-  (Simbody) the time of a right-hand side for their trees of joints, at steps no longer than those of RK4. MuJoCo's implicit
-  integrator does not see the callback's forces.
-- The cup's dry friction in the operating model: it sticks most of the time, in motion too, and a solver of smooth equations can only
-  approximate it by a steep slope. The leapfrog solves it exactly (`solver/dry_friction`). Where the motor
-  itself turns back, friction jumps: fixed steps meet that instant to within a step, and that may be why the leapfrog shows first
-  order only (not isolated); solvers that choose their steps find it.
-- IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the two angles,
-  and those exist in equilibrium only.
-- The stiffer drives for as long as the drive: their explicit references need steps shorter by the root of the stiffness."""
+- odeint's rosenbrock4: uBLAS factors the 804 x 804 matrix densely; a prototype of this model took 5.5 s a step and did
+  not pass the first millisecond.
+- MuJoCo and Simbody: the ring can be described as 402 joints with a force callback; a prototype measured 13 (MuJoCo)
+  and 26 to 59 times (Simbody) the time of a right-hand side for their trees of joints, at steps no longer than those of
+  RK4. MuJoCo's implicit integrator does not see the callback's forces.
+- The cup's dry friction in the operating model: it sticks most of the time, in motion too, and a solver of smooth
+  equations can only approximate it by a steep slope. The leapfrog solves it exactly (`solver/dry_friction`). Where the
+  motor itself turns back, friction jumps: fixed steps meet that instant to within a step, and that may be why the
+  leapfrog shows first order only (not isolated); solvers that choose their steps find it.
+- IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the
+  two angles, and those exist in equilibrium only.
+- The stiffer drives for as long as the drive: their explicit references need steps shorter by the root of the
+  stiffness."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -121,7 +125,8 @@ def table(header, rows):
 
 
 def envelope(rows, quantity, apart):
-    """Table of the quickest that keeps each error, down to what the references are `apart`; ratios of peers to ours by level."""
+    """Table of the quickest that keeps each error, down to what the references are `apart`; ratios of peers to ours by
+    level."""
     lines = []
     ratios = {}
     for level in LEVELS:
@@ -140,7 +145,8 @@ def envelope(rows, quantity, apart):
             if name == "peers":
                 ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
         lines.append(cells)
-    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "best peer with our linear solver", "peer / ours",
+    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "best peer with our linear solver",
+              "peer / ours",
               "that one / ours"]
     return table(header, lines), ratios
 
@@ -185,13 +191,15 @@ def failures(rows):
 
 
 def installed_version(package):
-    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True, check=False)
+    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True,
+                          check=False)
     return f"{package} {done.stdout}" if done.returncode == 0 else f"{package} not from a package"
 
 
 def processor():
     with open("/proc/cpuinfo", encoding="utf-8") as info:
-        return next((line.split(":", 1)[1].strip() for line in info if line.startswith("model name")), platform.machine())
+        return next((line.split(":", 1)[1].strip() for line in info if line.startswith("model name")),
+                    platform.machine())
 
 
 class Progress:
@@ -203,7 +211,8 @@ class Progress:
         self.lock = threading.Lock()
 
     def tell(self, problem, line):
-        # A third for the references, a third for the first run, in which hopeless ones are found out, a third for the others.
+        # A third for the references, a third for the first run, in which hopeless ones are found out, a third for the
+        # others.
         counted = re.search(r"(?:: |run )(\d+) of (\d+)", line)
         with self.lock:
             if counted:
@@ -249,7 +258,8 @@ def measure(problem, options, progress):
     built = os.path.getmtime(options.tool)
     file = os.path.join(options.work, problem + ".ref")
     reference = cached(os.path.join(options.work, problem + ".reference.jsonl"), options.reuse, built,
-                       lambda: ask(options.tool, problem, "--reference", file, "--make-reference", progress=progress))[0]
+                       lambda: ask(options.tool, problem, "--reference", file, "--make-reference",
+                                   progress=progress))[0]
     rows = cached(os.path.join(options.work, problem + ".jsonl"), options.reuse, float("inf"),
                   lambda: ask(options.tool, problem, "--reference", file, "--runs", str(options.runs),
                               "--limit", str(options.limit), progress=progress))
@@ -261,8 +271,10 @@ def section(problem, reference, rows, images):
     """Lines of the page, unfinished runs, and the ratios by quantity and level."""
     draw(rows, reference["title"], os.path.join(images, problem + ".png"))
     lines = ["## " + reference["title"], "",
-             f"Reference: {reference['methods'][0]}; {reference['methods'][1]} is {reference['apart']['force']:.1e} from it in "
-             f"the forces, {reference['apart']['position']:.1e} in the positions, {reference['apart']['angle']:.1e} in the angles: "
+             f"Reference: {reference['methods'][0]}; {reference['methods'][1]} is {reference['apart']['force']:.1e} "
+             f"from it in "
+             f"the forces, {reference['apart']['position']:.1e} in the positions, {reference['apart']['angle']:.1e} in "
+             f"the angles: "
              "errors below that mean nothing, and the tables end there.", "",
              f"![{reference['title']}](images/benchmark/{problem}.png)", ""]
     ratios = {}
@@ -279,7 +291,8 @@ def kinks(references):
     exact, smooth = (references.get(problem) for problem in ("drive", "drive_smooth"))
     if not exact or not smooth or exact["apart"]["force"] < 10.0 * smooth["apart"]["force"]:
         return []
-    return [f"The references of the exact law are {exact['apart']['force']:.1e} apart in the forces where those of the C1 ramp, by the same "
+    return [f"The references of the exact law are {exact['apart']['force']:.1e} apart in the forces where those of the "
+            f"C1 ramp, by the same "
             f"methods at steps alike, are {smooth['apart']['force']:.1e} apart: the kinks, "
             "thousands of teeth making and losing contact within steps, limit their agreement.", ""]
 
@@ -301,8 +314,10 @@ def verdict(sections):
                     below.append((title, quantity, level, ratio))
                 elif level < 1e-5 and behind:
                     slower.append((title, quantity, level, ratio))
+
     def named(cases):
-        return [f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}" for title, quantity, level, ratio in cases]
+        return [f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}" for title, quantity, level,
+                ratio in cases]
     lines = ["## All in one table", "", "Wanted: 10 and more at errors from 1e-2 to 1e-5, 1 and more down to 1e-9.", "",
              *table(header, body)]
     if below:
@@ -318,16 +333,20 @@ def parts(tool):
                            "--benchmark_format=json"], capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"parts_benchmark: exit code {done.returncode}")
-    times = {row["name"]: row["cpu_time"] for row in json.loads(done.stdout)["benchmarks"] if row["run_type"] == "iteration"}
+    times = {row["name"]: row["cpu_time"]
+             for row in json.loads(done.stdout)["benchmarks"] if row["run_type"] == "iteration"}
     cold = times.pop("insertFromCold")  # [ms]
     teeth = {int(name.split("/")[1]): time for name, time in times.items()}
     least, most = min(teeth), max(teeth)
     slope = math.log(teeth[most] / teeth[least]) / math.log(most / least)
     return ["## Insertion from cold, and cost against teeth", "",
-            f"Equilibrium of the wave generator inserted into the round ring: {cold:.2g} ms (wanted: 1 ms at most). A Newton "
-            f"iteration of the dynamic ring, that is forces, tangent, factors and solution, goes with the number of teeth to "
+            f"Equilibrium of the wave generator inserted into the round ring: {cold:.2g} ms (wanted: 1 ms at most). A "
+            f"Newton "
+            f"iteration of the dynamic ring, that is forces, tangent, factors and solution, goes with the number of "
+            f"teeth to "
             f"the power {slope:.2f} (wanted: 1.05 at most).", "",
-            *table(["teeth", "iteration [us]"], [[count, f"{1e-3 * time:.3g}"] for count, time in sorted(teeth.items())])]
+            *table(["teeth", "iteration [us]"],
+                   [[count, f"{1e-3 * time:.3g}"] for count, time in sorted(teeth.items())])]
 
 
 def main():
@@ -337,10 +356,13 @@ def main():
     parser.add_argument("--docs", required=True, help="folder of the page (default: docs)")
     parser.add_argument("--work", required=True, help="folder of references and results (default: build/benchmark)")
     parser.add_argument("--problems", default=",".join(PROBLEMS), help="which, by commas (default: all)")
-    parser.add_argument("--runs", type=int, default=10, help="timed runs, until one solver and setting has had 1.5 s (default: 10)")
+    parser.add_argument("--runs", type=int, default=10,
+                        help="timed runs, until one solver and setting has had 1.5 s (default: 10)")
     parser.add_argument("--quick", action="store_true", help="three runs")
-    parser.add_argument("--jobs", type=int, default=2, help="problems at a time; not more than there are quiet cores (default: 2)")
-    parser.add_argument("--limit", type=float, default=4.0, help="processor time after which a run is given up [s] (default: 4)")
+    parser.add_argument("--jobs", type=int, default=2,
+                        help="problems at a time; not more than there are quiet cores (default: 2)")
+    parser.add_argument("--limit", type=float, default=4.0,
+                        help="processor time after which a run is given up [s] (default: 4)")
     parser.add_argument("--reuse", action="store_true", help="take references and results at hand, however old")
     options = parser.parse_args()
     if options.quick:
@@ -366,9 +388,12 @@ def main():
     lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *parts(options.parts), "## Omissions", ""]
     if absent:
         lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
-    lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that (tighter "
-              "settings of a solver that gave up early or twice with it), or failed:", "", *lost, OMISSIONS.strip(), "", "---", "",
-              f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} runs of each, "
+    lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that "
+              f"(tighter "
+              "settings of a solver that gave up early or twice with it), or failed:", "", *lost, OMISSIONS.strip(), "",
+              "---", "",
+              f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} "
+              f"runs of each, "
               "fewer of those that take longer: the tables say how many."]
     page = os.path.join(options.docs, "benchmark.md")
     with open(page, "w", encoding="utf-8") as out:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what `joint_twin follow --out` wrote: measured and predicted, the current's band, what the joint gives and bears.
+"""Draws what `joint_twin follow --out` wrote: measured and predicted, the current's band, what the joint gives and
+bears.
 
   comparison_figure.py FOLLOW.csv --out figure.png
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a directory.
+"""Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a
+directory.
 
 Each figure is drawn twice, for wide and for narrow screens; both lie beside the page and inside it."""
 import argparse
@@ -102,7 +103,8 @@ def draw_friction(width, data):
         if not (np.sign(points["speed"]) == way).any():
             continue
         label = way == np.sign(points["speed"])[0]
-        axes.fill_between(way * curve["speed"], curve["at_typical_load"], curve["at_largest_load"], color=BLUE, alpha=0.18,
+        axes.fill_between(way * curve["speed"], curve["at_typical_load"], curve["at_largest_load"], color=BLUE,
+                          alpha=0.18,
                           lw=0, label="twin, typical to largest load" if label else None)
         axes.plot(way * curve["speed"], curve["at_typical_load"], color=BLUE, label=None)
     axes.plot(points["speed"], points["twin"], ls="", marker="o", ms=5, mfc="none", color=BLUE,
@@ -142,7 +144,8 @@ def draw_spectrum(width, data):
             axes.plot(spectrum["order"], spectrum[name], color=colour, lw=0.8, label=label)
     ripple = spectrum["order"] > LOWEST_ORDER
     top = 1.3 * max(spectrum["forward"][ripple].max(), spectrum["backward"][ripple].max())
-    for name, text in (("wave_generator_1", "1"), ("wave_generator_2", "2"), ("wave_generator_4", "4"), ("cage", "cage"),
+    for name, text in (("wave_generator_1", "1"), ("wave_generator_2", "2"), ("wave_generator_4", "4"),
+                       ("cage", "cage"),
                        ("ball", "ball"), ("ball_double", "ball ×2"), ("outer", "outer race"), ("inner", "inner race")):
         order = data["record"]["line_orders"][name]
         axes.axvline(order, color="0.75", lw=0.7, zorder=0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times the twin's whole cycle with `joint_cycle_benchmark`, every scene on the full ring and on the response surface, and
-writes the table and the figure of it into docs/performance.md."""
+"""Times the twin's whole cycle with `joint_cycle_benchmark`, every scene on the full ring and on the response surface,
+and writes the table and the figure of it into docs/performance.md."""
 import argparse
 import json
 import os
@@ -50,7 +50,8 @@ def rows(options):
 
 
 def table(measured):
-    lines = ["| gear | joints | scene, 10 kHz | solved by | median [µs] | p99.9 [µs] | times real time, one core | Newton iterations "
+    lines = ["| gear | joints | scene, 10 kHz | solved by | median [µs] | p99.9 [µs] | times real time, one core | "
+             "Newton iterations "
              "| allocations |", "|---|---|---|---|---|---|---|---|---|"]
     for row in measured:
         fast = row["scene"].startswith(SURFACE)
@@ -95,7 +96,8 @@ def main():
     draw(measured, options.docs / "images" / "cycle.png")
     page_section.write(options.docs / "performance.md", "cycle", [
         *table(measured), "", "![Time of one step in every scene, and the target](images/cycle.png)", "",
-        f"`scripts/performance`: {options.duration:g} s simulated a scene, twenty times that on the surface; load average before it "
+        f"`scripts/performance`: {options.duration:g} s simulated a scene, twenty times that on the surface; load "
+        f"average before it "
         f"{load:.1f}."])
     print(f"performance: wrote {options.docs / 'performance.md'}", file=sys.stderr)
 

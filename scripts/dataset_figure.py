@@ -37,7 +37,8 @@ def main():
     parser.add_argument("--group", required=True)
     parser.add_argument("--column", required=True)
     parser.add_argument("--label", required=True, help="column of the index that names the curves")
-    parser.add_argument("--select", action="append", default=[], metavar="COLUMN=VALUE", help="of the index; repeatable")
+    parser.add_argument("--select", action="append", default=[], metavar="COLUMN=VALUE",
+                        help="of the index; repeatable")
     parser.add_argument("--until", type=float, help="last instant drawn [s]")
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()

@@ -13,7 +13,8 @@ JOINT = "shoulder_pan_joint"  # as config/joints/base.yaml names it
 RATE = 125.0                  # of a UR5's controller [Hz]
 START_STAMP = 1.0             # stamps start here: zero would mean 'now' to ROS [s]
 
-# (time [s], torque [N.m]), straight lines between. Friction takes about 0.2 N.m of the motor, the load 1/101 of its own.
+# (time [s], torque [N.m]), straight lines between. Friction takes about 0.2 N.m of the motor, the load 1/101 of its
+# own.
 MOTOR_TORQUE = [(0.0, 0.0), (0.4, 0.0), (0.5, 0.42), (0.9, 0.42), (1.0, 0.26), (2.4, 0.26), (2.5, 0.68), (3.6, 0.68),
                 (3.7, 0.10), (3.9, -0.42), (4.5, -0.42), (4.6, -0.26), (6.6, -0.26), (6.7, 0.0), (8.0, 0.0)]
 LOAD_TORQUE = [(0.0, 0.0), (2.4, 0.0), (2.5, 40.0), (3.6, 40.0), (3.7, 0.0), (8.0, 0.0)]

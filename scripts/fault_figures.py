@@ -22,7 +22,8 @@ DUTIES = {
     "swing": ("30°/s, ±130 N·m once a turn of the joint", 12.6, f"{{constant: {math.radians(30.0):.6f}}}",
               f"{{sinus: {{mean: 0.0, amplitude: 130.0, frequency: {1.0 / 12.0:.9f}, phase: 0.0}}}}"),
     "steady": ("15°/s, 60 N·m", 2.5, f"{{constant: {math.radians(15.0):.6f}}}", "{constant: 60.0}"),
-    "speeds": ("no load", 22.0, f"{{trapezoid: {{peak: {math.radians(150.0):.6f}, slope: {math.radians(15.0):.6f}, hold: 1.0, pause: 1.0}}}}",
+    "speeds": ("no load", 22.0, f"{{trapezoid: {{peak: {math.radians(150.0):.6f}, slope: {math.radians(15.0):.6f}, "
+               f"hold: 1.0, pause: 1.0}}}}",
                "{constant: 0.0}"),
 }
 
@@ -31,9 +32,11 @@ def plan(duty, classes):
     _, duration, speed, load = DUTIES[duty]
     return "\n".join([
         f"name: {duty}", "seed: 1", f"duration: {duration}", "set:", "  solver.scene: auto", "repeats: 1", "duty:",
-        f"  - name: {duty}", f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {load}", "classes:", "  healthy: []",
+        f"  - name: {duty}", f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {load}", "classes:",
+        "  healthy: []",
         *classes, "record:", "  format: hdf5", "  start: 0.4", "  deflate: 0", "  groups:",
-        f"    signals: {{rate: {RATE}, type: float64, columns: [motor_angle, output_angle, motor_velocity, motor_torque, "
+        f"    signals: {{rate: {RATE}, type: float64, columns: [motor_angle, output_angle, motor_velocity, "
+        f"motor_torque, "
         "load_torque]}"]) + "\n"
 
 

@@ -53,7 +53,8 @@ def alarm(run):
 
 
 def sound_table(sound):
-    lines = ["| motion | window [s] | hours | windows | beyond the threshold | alarms | 95 % bound of alarms in 1000 h |",
+    lines = ["| motion | window [s] | hours | windows | beyond the threshold | alarms | 95 % bound of alarms in 1000 h "
+             "|",
              "|---|---|---|---|---|---|---|"]
     rows = [(f"{point.name}", [run for run in sound if run.point == point]) for point in POINTS]
     for name, own in [*rows, ("all", sound)]:
@@ -68,7 +69,8 @@ def sound_table(sound):
 
 
 def poisson_bound(count):
-    """What a Poisson variable's mean lies below with 95 %, having counted so many: chi square after Wilson and Hilferty."""
+    """What a Poisson variable's mean lies below with 95 %, having counted so many: chi square after Wilson and
+    Hilferty."""
     degrees = 2 * (count + 1)
     return 0.5 * degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
 
@@ -114,7 +116,8 @@ def share(flags):
 def fault_table(kinds, faulty, limit):
     severities = JUDGED.severities
     lines = ["| kind | " + " | ".join(f"alarms at {severity:g}" for severity in severities)
-             + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or of its set |",
+             + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or "
+             "of its set |",
              "|---|" + "---|" * (len(severities) + 4)]
     totals = []
     for kind in kinds:
@@ -122,7 +125,8 @@ def fault_table(kinds, faulty, limit):
         told = [run for run in own if alarm(run)]
         totals += told
         cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
-        check_up, (best, where) = smallest(kind["kind"], faulty, limit, [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
+        check_up, (best, where) = smallest(kind["kind"], faulty, limit,
+                                           [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
                      + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
                      f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
@@ -178,9 +182,11 @@ def loop_table(sound, faulty):
         return [f"{unit_of(name)[0] * statistics.mean(own):.2f}" if own else "-" for name, own in zip(names, values)]
 
     lines = ["| kind | severity | K1 [kN·m/rad] | lost motion [″] | loop [mJ] |", "|---|---|---|---|---|",
-             "| sound | 0 | " + " | ".join(means([run for run in sound if run.point == CHECK_UP and run.condition is WARM]))
+             "| sound | 0 | "
+             + " | ".join(means([run for run in sound if run.point == CHECK_UP and run.condition is WARM]))
              + " |"]
-    for kind in ["interface_wear", "tooth_wear", "wave_generator_wear", "rear_section_crack", "flange_crack", "buckling"]:
+    for kind in ["interface_wear", "tooth_wear", "wave_generator_wear", "rear_section_crack", "flange_crack",
+                 "buckling"]:
         for severity in JUDGED.severities:
             own = [run for run in faulty if (run.kind, run.severity, run.point, run.condition)
                    == (kind, severity, CHECK_UP, WARM)]
@@ -216,7 +222,8 @@ def draw_seen(kinds, faulty, path):
                 axis.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=8,
                           color="white" if abs(math.log10(max(value, 0.1))) > 0.6 else "black")
         axis.set_title(f"severity {severity:g}")
-        axis.set_xticks(range(len(POINTS)), [point.name.split(":")[0] for point in POINTS], rotation=40, ha="right", fontsize=8)
+        axis.set_xticks(range(len(POINTS)), [point.name.split(":")[0] for point in POINTS], rotation=40, ha="right",
+                        fontsize=8)
         axis.set_yticks(range(len(kinds)), [kind["kind"] for kind in kinds], fontsize=8)
     figure.colorbar(image, ax=axes, ticks=[-1, 0, 1], shrink=0.6).set_ticklabels(["0.1", "1: threshold", "10"])
     figure.savefig(path, dpi=90)
@@ -254,7 +261,8 @@ def draw_roc(sound, faulty, path):
         for severity in JUDGED.severities:
             scores = numpy.array([window.largest for run in faulty if run.severity == severity and run.point in points
                                   for window in run.windows])
-            axis.step(share_sound, [(scores > threshold).mean() for threshold in thresholds], label=f"severity {severity:g}")
+            axis.step(share_sound, [(scores > threshold).mean() for threshold in thresholds],
+                      label=f"severity {severity:g}")
         axis.set_xscale("symlog", linthresh=1e-3)
         axis.set_xlim(0, 1)
         axis.set_ylim(0, 1)
@@ -290,8 +298,10 @@ def main():
     draw_roc(sound, faulty, images / "roc.png")
     page_section.write(options.docs / "health.md", "health", [
         f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs; " + ", ".join(
-            f"`{condition.name}`: {condition.temperatures[0]:g} to {condition.temperatures[1]:g} °C, noise of the encoders × {condition.noise:g}"
-            for condition in sorted({run.condition for run in faulty}, key=lambda condition: condition.noise)) + ".", "",
+            f"`{condition.name}`: {condition.temperatures[0]:g} to {condition.temperatures[1]:g} °C, noise of the "
+            f"encoders × {condition.noise:g}"
+            for condition in sorted({run.condition for run in faulty}, key=lambda condition: condition.noise)) + ".",
+        "",
         "### Sound drives", "", *sound_table(sound), "",
         "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
         "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",

@@ -13,7 +13,8 @@ import sys
 RATIO = 101.0
 WINDOW_TURNS = 101.0      # of the motor: one of the joint
 START = 0.5               # of a run, before it is steady [s]
-COMMISSIONING = (20, 40.0)  # sound runs that make the reference at each point; of each two windows, or as many as fit [s]
+# sound runs that make the reference at each point; of each two windows, or as many as fit [s]
+COMMISSIONING = (20, 40.0)
 WINDOWS = 2               # of a faulty run: as many as an alarm takes
 SOUND_WINDOWS = 20        # of a sound run
 SET_IN = 1.5              # windows after which a fault sets in on the way
@@ -106,7 +107,8 @@ class Bench:
                  f"  indicators.window_time: {point.window[1]:.6f}",
                  f"  publish.indicators_rate: {1.0 if window_time(point) > 5.0 else 10.0}",
                  "  publish.joint_states_rate: 0.001",
-                 "  publish.encoders_rate: 0.001", "  publish.contact_forces_rate: 0.001", "  publish.health_rate: 0.001",
+                 "  publish.encoders_rate: 0.001", "  publish.contact_forces_rate: 0.001",
+                 "  publish.health_rate: 0.001",
                  f"repeats: {repeats}", "duty:", f"  - name: {point.tag}", f"    speed: {point.speed}",
                  "    bandwidth: 8.0", f"    load: {point.load}", "classes:", *classes, "record:", "  format: bag"]
         plan = self.work / f"{name}.yaml"
@@ -133,8 +135,9 @@ class Bench:
             classes = []
             for kind in self.kinds:
                 if takes_long(kind) == (group == "slow"):
-                    classes += [f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {severities}}}, "
-                                                      f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
+                    classes += [f"  {kind['kind']}:",
+                                f"    - {{kind: {kind['kind']}, severity: {{grid: {severities}}}, "
+                                f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
             bags += self.sweep(f"{trial.name}_{group}_{condition.name}_{point.tag}", condition, point, WINDOWS, 1,
                                trial.seed, classes)
         return bags
@@ -163,11 +166,11 @@ class Bench:
             verdict, own = window["assessment"], windows[window["recording"]]
             own.append(Window(len(own) + 1, window["indicators"], window["scores"], window["features"],
                               verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
-        return [Run(point, condition, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0), windows[str(bag)])
+        return [Run(point, condition, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0),
+                    windows[str(bag)])
                 for bag, row in bags]
 
     def _indicators(self, bags, options):
         done = subprocess.run([self.tool, "indicators", "--windows", "--json", *options, *bags], check=True,
                               capture_output=True, text=True)
         return json.loads(done.stdout)
-

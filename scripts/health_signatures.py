@@ -34,17 +34,22 @@ def fit(runs):
 
 
 def by_kinematics(names):
-    """What stands at a line of its own, whatever else it moves; a tooth of the circular spline is not among the faults."""
-    lines = {"bearing_inner_race": "inner", "bearing_outer_race": "outer", "bearing_ball": "ball", "bearing_cage": "cage",
+    """What stands at a line of its own, whatever else it moves; a tooth of the circular spline is not among the
+    faults."""
+    lines = {"bearing_inner_race": "inner", "bearing_outer_race": "outer", "bearing_ball": "ball",
+             "bearing_cage": "cage",
              "circular_spline_tooth": "circular_spline"}
     # A line also widens the kinematic error's peak to peak.
-    return {(cause, "kinematics"): unit(numpy.array([{line: 1.0, "kinematic_error": 0.5}.get(name, 0.0) for name in names]))
+    return {(cause,
+             "kinematics"): unit(numpy.array([{line: 1.0, "kinematic_error": 0.5}.get(name, 0.0) for name in names]))
             for cause, line in lines.items()}
 
 
 def cause_name(cause):
     """As the source has it."""
-    return "Cause::CIRCULAR_SPLINE_TOOTH" if cause == "circular_spline_tooth" else f"causeOf(FaultKind::{cause.upper()})"
+    if cause == "circular_spline_tooth":
+        return "Cause::CIRCULAR_SPLINE_TOOTH"
+    return f"causeOf(FaultKind::{cause.upper()})"
 
 
 def write(bench, source, page):
@@ -56,7 +61,8 @@ def write(bench, source, page):
     signatures = fit(runs) | by_kinematics(names)
     order = [kind["kind"] for kind in bench.kinds] + ["circular_spline_tooth"]
     rows = sorted(signatures.items(), key=lambda item: (order.index(item[0][0]), item[0][1]))
-    lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`: cause, direction by Feature.",
+    lines = ["// SPDX-License-Identifier: BSD-3-Clause",
+             "// Written by `scripts/evaluate_health --fit`: cause, direction by Feature.",
              "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
              "// clang-format off", "inline const std::vector<Signature> FITTED_SIGNATURES{"]
     lines += [f"{{ {cause_name(cause)}, {{ {', '.join(f'{value:.3f}' for value in direction)} }} }},  // {motion}"
@@ -65,6 +71,7 @@ def write(bench, source, page):
     shown = ["<details>", f"<summary>{len(rows)} signatures</summary>", "",
              "| cause | motion | " + " | ".join(name.replace("_", " ") for name in names) + " |",
              "|---|---|" + "---|" * len(names)]
-    shown += [f"| {cause} | {motion} | " + " | ".join(f"{value:.1f}" if abs(value) >= TABLE_LEAST else "" for value in direction)
+    shown += [f"| {cause} | {motion} | "
+              + " | ".join(f"{value:.1f}" if abs(value) >= TABLE_LEAST else "" for value in direction)
               + " |" for (cause, motion), direction in rows]
     page_section.write(page, "signatures", [*shown, "", "</details>"])

@@ -37,7 +37,8 @@ def read(path):
 
 def age(options, name):
     path = options.work / f"{name}.csv"
-    result = json.loads(run(options, "age", options.duties / f"{name}.csv", "--grease-changes", "--every", "200", "--csv",
+    result = json.loads(run(options, "age", options.duties / f"{name}.csv", "--grease-changes", "--every", "200",
+                            "--csv",
                             path, "--force", "--check", "--json"))
     return result, read(path)
 
@@ -45,7 +46,8 @@ def age(options, name):
 def trials(options, overlay):
     path = options.work / "trials.csv"
     result = json.loads(run(options, "trials", options.duties / "rated.csv", "--grease-changes", "--lives",
-                            str(options.lives), "--every", "500", "--seed", "1", "--csv", path, "--force", "--json", *overlay))
+                            str(options.lives), "--every", "500", "--seed", "1", "--csv", path, "--force", "--json",
+                            *overlay))
     return result, read(path)
 
 
@@ -72,7 +74,8 @@ def draw_ageing(ages, path):
 
 def draw_forecasts(rows, title, axis):
     """Some lives of different length: forecast against truth."""
-    lengths = {life: (rows["hours"] + rows["remaining"])[rows["life"] == life].max() for life in numpy.unique(rows["life"])}
+    lengths = {life: (rows["hours"] + rows["remaining"])[rows["life"] == life].max()
+               for life in numpy.unique(rows["life"])}
     ordered = sorted(lengths, key=lengths.get)
     chosen = [ordered[int(share * (len(ordered) - 1))] for share in (0.25, 0.5, 0.75)]
     for life, colour in zip(chosen, ["C0", "C1", "C2"]):
@@ -124,23 +127,27 @@ def held(rows, chosen):
 
 
 def age_table(ages):
-    lines = ["| duty | turns an hour | first limit | after [h] | flank wear [µm] | interface wear [µm] | rim stress range [MPa] "
+    lines = ["| duty | turns an hour | first limit | after [h] | flank wear [µm] | interface wear [µm] | rim stress "
+             "range [MPa] "
              "| error of the map [-] |", "|---|---|---|---|---|---|---|---|"]
     for name, (result, _) in ages.items():
         stress = max(phase["rim_stress_range"] for phase in result["phases"])
-        lines.append(f"| {DUTIES[name]} | {result['turns'] / result['hours']:.3g} | {result['end']} | {result['hours']:.3g} "
+        lines.append(f"| {DUTIES[name]} | {result['turns'] / result['hours']:.3g} | {result['end']} | "
+                     f"{result['hours']:.3g} "
                      f"| {1e6 * result['flank_wear']:.1f} | {1e6 * result['interface_wear']:.1f} | {1e-6 * stress:.0f} "
                      f"| {result['map_error']:.1g} |")
     return lines
 
 
 def trial_table(results):
-    lines = ["| drives | lives | ended by " + ", ".join(ENDS) + " | forecasts | 80 % interval held the truth | from half of each "
+    lines = ["| drives | lives | ended by " + ", ".join(ENDS)
+             + " | forecasts | 80 % interval held the truth | from half of each "
              "life on | of those, lives ended by flank wear | by the bearing |", "|---|---|---|---|---|---|---|---|"]
     for name, (result, rows) in results.items():
         ends = ", ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
         later = rows["hours"] >= rows["remaining"]
-        lines.append(f"| {name} | {result['lives']} | {ends} | {result['forecasts']} | {100 * result['coverage_80']:.0f} % "
+        lines.append(f"| {name} | {result['lives']} | {ends} | {result['forecasts']} | "
+                     f"{100 * result['coverage_80']:.0f} % "
                      f"| {100 * result['coverage_80_from_half_life']:.0f} % | {held(rows, later & (rows['end'] == 0))} "
                      f"| {held(rows, later & (rows['end'] == 3))} |")
     return lines
@@ -170,7 +177,8 @@ def main():
         *age_table(ages), "",
         "![Wear, grease and bearing over the turns of the motor, two duties](images/life_ageing.png)", "",
         *trial_table(results), "",
-        "![Forecasts of three lives each, calibration, and accuracy against the share of life gone](images/life_forecast.png)"])
+        "![Forecasts of three lives each, calibration, and accuracy against the share of life "
+        "gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measured part of a page that is written by hand otherwise: between `<!-- NAME:begin -->` and `<!-- NAME:end -->`."""
+"""The measured part of a page that is written by hand otherwise: between `<!-- NAME:begin -->` and `<!-- NAME:end
+-->`."""
 
 
 def write(path, name, lines):

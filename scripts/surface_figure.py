@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws docs/images/response_surface.png: one profile on the full ring and on the response surface.
 
-The profile is open loop: speeding up, a load of 60 N.m, slowing down, brake, start. Torsion is the motor's angle over the ratio less the
-output's.
+The profile is open loop: speeding up, a load of 60 N.m, slowing down, brake, start. Torsion is the motor's angle over
+the ratio less the output's.
 """
 import argparse
 import csv
@@ -16,7 +16,7 @@ import tempfile
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import matplotlib.pyplot as plt  # noqa: E402
 
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 ARC_SECOND = math.pi / 180 / 3600

@@ -19,7 +19,8 @@ def main():
     settings = parser.parse_args()
     recordings = [ur5.RECORDING, two_encoders.LOADED]
     if not any(os.path.isfile(os.path.join(settings.telemetry, name)) for name in recordings):
-        print(f"skipped: neither {' nor '.join(recordings)} in {settings.telemetry}; name their folder as argument or in "
+        print(f"skipped: neither {' nor '.join(recordings)} in {settings.telemetry}; name their folder as argument or "
+              f"in "
               "$HJT_TELEMETRY_DIR")
         return 0
     images = os.path.join(settings.docs, "images", "real_robot")

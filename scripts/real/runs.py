@@ -51,7 +51,8 @@ def spectrum(angle, values, orders):
 
 
 def regress(columns, values):
-    """Least squares: coefficients, half widths of their 95 % intervals (widened by the residual's correlation), residual."""
+    """Least squares: coefficients, half widths of their 95 % intervals (widened by the residual's correlation),
+    residual."""
     coefficients = np.linalg.lstsq(columns, values, rcond=None)[0]
     residual = values - columns @ coefficients
     correlation = 1.0

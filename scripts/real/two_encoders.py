@@ -11,8 +11,10 @@ RATIO = 101
 COUNTS = 2 ** 24  # a turn, of both encoders
 STEADY = 0.6      # [rad/s] the sweep's constant speed is above it
 STRIPE = 10.0     # [deg] of the sweep, in turn to identify on and to judge on
-# Per turn of the output: from the circular spline two and four times, from the flexspline likewise, from the motor's encoder.
-LINES = {200: "circular spline, 2", 400: "circular spline, 4", 202: "flexspline, 2", 404: "flexspline, 4", 101: "once a motor turn"}
+# Per turn of the output: from the circular spline two and four times, from the flexspline likewise, from the motor's
+# encoder.
+LINES = {200: "circular spline, 2", 400: "circular spline, 4", 202: "flexspline, 2", 404: "flexspline, 4",
+         101: "once a motor turn"}
 PITCH = 1.0e-5    # [m] of the twin's trial, which the amplitudes are proportional to
 TREND = 24        # degree of the polynomial that takes in what is slower than ten waves a turn
 TURN = ("--load", 5, "--angle-range", repr(2.0 * np.pi * RATIO), "--steps", 90 * RATIO, "--json")
@@ -43,7 +45,8 @@ class Torsion:
         angle = data["joint_angles_3"][steady]
         torque = data["joint_torque_current_3"][steady]
         torsion = (2.0 * np.pi / COUNTS * (data["encoder_motorinc_3"] / RATIO - data["encoder_loadinc_3"]))[steady]
-        losses = runner.run("losses", "--positions", 4, "--speeds", f"{RATIO * np.median(speed[steady]):.4g}", "--loads",
+        losses = runner.run("losses", "--positions", 4, "--speeds", f"{RATIO * np.median(speed[steady]):.4g}",
+                            "--loads",
                             f"{np.median(np.abs(torque)):.4g}", "--json")["rows"][0]
         self.friction = RATIO * losses["gear_loss"]
         self.loads = np.linspace(-160.0, 160.0, 65)
@@ -85,7 +88,8 @@ class Torsion:
                  f"{1e-3 * value / self.scale:.1f} ± {1e-3 * value * self.width / self.scale ** 2:.1f}"]
                 for load, value in self.stiffness.items()]
         return [f"""
-**Torsion.** Motor angle over 101 less output angle, less the same without load, against the motor's torque at the joint less
+**Torsion.** Motor angle over 101 less output angle, less the same without load, against the motor's torque at the joint
+less
 {self.friction:.1f} N·m, the twin's friction at this speed. The blue curve is the catalogue's gear; of the
 recording it takes the origin, which the zeros of the encoders leave open. The red one has its compliance times
 {self.scale:.3f} ± {self.width:.3f}, identified on every second {STRIPE:g}° of the sweep and tested on those between.
@@ -96,9 +100,9 @@ recording it takes the origin, which the zeros of the encoders leave open. The r
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
 *Weakness:* fitted to the halves of the sweep separately, the factor is {self.halves[0]:.2f} at
 negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval, which
-is therefore too narrow; identified on one half and tested on the other, it is worse there than the catalogue. The rest is slow
-waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion. The catalogue's curve
-lies between the two.
+is therefore too narrow; identified on one half and tested on the other, it is worse there than the catalogue. The rest
+is slow waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion.
+The catalogue's curve lies between the two.
 """]
 
 
@@ -154,26 +158,29 @@ class TransmissionError:
         return [f"""
 **Transmission error without load.** The lines of the published error, for each direction, and of the twin's kinematic
 error at 5 N·m. Two numbers are fitted: a total cumulative pitch deviation of the circular spline of
-{1e6 * self.pitch['circular_spline']:.1f} µm to the line at 200, one of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm to
-the one at 202, which the scatter of the points nearly hides. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this
-size. The lines at 400 and 404 result from the same errors. As in the UR5's current, the circular spline's line is the larger one.
+{1e6 * self.pitch['circular_spline']:.1f} µm to the line at 200, one of the flexspline of
+{1e6 * self.pitch['flexspline']:.1f} µm to the one at 202, which the scatter of the points nearly hides. ISO 1328 allows
+17 µm in grade 5 and 12 µm in grade 4 at this size. The lines at 400 and 404 result from the same errors. As in the
+UR5's current, the circular spline's line is the larger one.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 """, *table(["lines a turn [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
-The twin has no line once a motor turn (101): two lobes share the load, and the lead of one cancels the lag of the other. An
-eccentric motor encoder makes such a line; 11 µrad at the output are 1.1 mrad at the motor. Once and twice a turn of the output the
-recording has 0.6 and 0.35 mrad, more than the total allowed for such a gear (1 minute of arc): an eccentric output
-encoder. Neither belongs to the drive, and neither was fitted.
+The twin has no line once a motor turn (101): two lobes share the load, and the lead of one cancels the lag of the
+other. An eccentric motor encoder makes such a line; 11 µrad at the output are 1.1 mrad at the motor. Once and twice a
+turn of the output the recording has 0.6 and 0.35 mrad, more than the total allowed for such a gear (1 minute of arc):
+an eccentric output encoder. Neither belongs to the drive, and neither was fitted.
 
 *Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
-the torque is computed from current; the error without load was read off a published figure, whose points scatter by 0.03 mrad.
+the torque is computed from current; the error without load was read off a published figure, whose points scatter by
+0.03 mrad.
 """]
 
 
 def section(runner, telemetry, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
-Elbow of a NEURA LARA 8 (A. Lucious, 2024), not a UR: the only public record of this ratio with an encoder at motor and output.
+Elbow of a NEURA LARA 8 (A. Lucious, 2024), not a UR: the only public record of this ratio with an encoder at motor and
+output.
 """]
     paths = [os.path.join(telemetry, name) for name in (LOADED, UNLOADED)]
     missing = [path for path in paths if not os.path.isfile(path)]

@@ -63,7 +63,8 @@ def error_table(results, data):
             return f"{error['all']:.3f} ({error['moving']:.3f}, {error['resting']:.3f})"
 
         rows.append([joint, f"{judged['identified']['signal']:.3f}", f"{controller:.3f}", cell("gain_coulomb_viscous"),
-                     cell("configured"), cell("without_ripple"), cell("identified"), f"{repeat[0]:.3f}, {repeat[1]:.3f}"])
+                     cell("configured"), cell("without_ripple"), cell("identified"),
+                     f"{repeat[0]:.3f}, {repeat[1]:.3f}"])
     return table(["joint", "the current", "controller's target_current", "gain, Coulomb, viscous fitted",
                   "twin as shipped", "identified, without ripple", "identified",
                   "repeat against repeat: moving, resting"], rows)
@@ -73,9 +74,11 @@ def left_out_table(results):
     rows = []
     for joint in JOINTS:
         errors = results[joint][0]["left_out"]
-        rows.append([joint] + [f"{errors[name]['all']:.3f} ({errors[name]['moving']:.3f}, {errors[name]['resting']:.3f})"
-                               for name in ("gain_coulomb_viscous", "configured", "without_ripple", "identified")])
-    return table(["joint", "gain, Coulomb, viscous fitted", "twin as shipped", "identified, without ripple", "identified"],
+        rows.append([joint]
+                    + [f"{errors[name]['all']:.3f} ({errors[name]['moving']:.3f}, {errors[name]['resting']:.3f})"
+                       for name in ("gain_coulomb_viscous", "configured", "without_ripple", "identified")])
+    return table(["joint", "gain, Coulomb, viscous fitted", "twin as shipped", "identified, without ripple",
+                  "identified"],
                  rows)
 
 
@@ -108,8 +111,9 @@ def value_table(results):
     rows = [[values[0]["name"], *map(cell, values)] for values in zip(*(one["values"] for one in found))]
     rows += [[f"ripple, {lines[0]['order']:g} a joint turn", *(cell(line, "amplitude") for line in lines)]
              for lines in zip(*(one["lines"] for one in found))]
-    rows.append(["resonance of what the joint carries", *(f"{one['ripple_resonance']:.1f} Hz, damping {one['ripple_damping']:.2f}"
-                                                          for one in found)])
+    rows.append(["resonance of what the joint carries",
+                 *(f"{one['ripple_resonance']:.1f} Hz, damping {one['ripple_damping']:.2f}"
+                   for one in found)])
     return table(["quantity", *JOINTS], rows)
 
 
@@ -142,7 +146,8 @@ def draw_residual(path, results):
             axes.plot(time, error[part], color=colour, lw=0.8,
                       label=f"repeat {repeat + 1}" + (", identified on" if repeat == 0 else ""))
             if repeat == 1:
-                axes.fill_between(time, -1.0, 1.0, where=np.abs(rows["velocity_measured"][part]) > MOVING, color="0.9", lw=0,
+                axes.fill_between(time, -1.0, 1.0, where=np.abs(rows["velocity_measured"][part]) > MOVING, color="0.9",
+                                  lw=0,
                                   zorder=0)
         axes.set_ylim(-1.0, 1.0)
         axes.set_title(f"{joint}: measured less predicted current, mean over 0.1 s [A]; grey: the joint moves")
@@ -190,7 +195,8 @@ class Ripple:
             asked = {line["order"]: line["amplitude"] for line in found["lines"]}
             self.pitch[joint] = [PITCH * asked[order] / (self.stiffness[joint] * trial[order]) for order in (200, 202)]
             if not any(self.pitch[joint]):
-                self.pitch[joint] = list(np.mean([self.pitch[other] for other in JOINTS if any(self.pitch.get(other, []))], axis=0))
+                self.pitch[joint] = list(np.mean([self.pitch[other]
+                                                  for other in JOINTS if any(self.pitch.get(other, []))], axis=0))
             self.runs[joint] = self.turn(runner, joint, load, float(np.median(np.abs(rows["velocity_measured"][fast]))))
 
     @staticmethod
@@ -213,7 +219,8 @@ class Ripple:
                           *configuration, "--json")["rows"][0]["gear_loss"]
         steady = loss + load / RATIO
         with open(runner.path(f"{joint}_profile.csv"), "w", encoding="utf-8") as file:
-            file.write(f"time,motor_torque\n0.0,{steady + HEAVY_ROTOR * RATIO * speed / START:.5f}\n{START},{steady:.5f}\n")
+            file.write(f"time,motor_torque\n0.0,{steady + HEAVY_ROTOR * RATIO * speed / START:.5f}\n"
+                       f"{START},{steady:.5f}\n")
         runner.run("simulate", "--profile", f"{joint}_profile.csv", "--load", f"{load:.4g}", "--duration", 4.0,
                    *configuration, "--set", f"motor.rotor_inertia={HEAVY_ROTOR}", "--set", "motor.torque_limit=10.0",
                    "--set", "output.gravity_torque=0.0", *pitch_settings(*self.pitch[joint]), "--out",
@@ -239,7 +246,8 @@ class Ripple:
             found, _, rows = results[joint]
             gain = next(value["value"] for value in found["values"] if value["key"] == "telemetry.torque_per_current")
             for sign, colour, name in ((1.0, BLUE, "turning positive"), (-1.0, RED, "negative")):
-                axes.plot(ORDERS, mean_spectrum(rows, sign, rows["position_measured"], rows["current_residual"]), color=colour,
+                axes.plot(ORDERS, mean_spectrum(rows, sign, rows["position_measured"], rows["current_residual"]),
+                          color=colour,
                           lw=0.8, label=f"recorded, {name}")
             axes.plot(ORDERS, self.runs[joint] / gain, color="k", lw=1.2, label="twin with errors of manufacture")
             axes.set_title(f"{joint}: ripple of the current [A]")
@@ -248,7 +256,8 @@ class Ripple:
         shoulder, elbow = results["shoulder"][2], results["elbow"][2]
         axes = all_axes[3]
         for sign, colour in ((1.0, BLUE), (-1.0, RED)):
-            axes.plot(ORDERS, mean_spectrum(elbow, sign, elbow["position_measured"], shoulder["current_residual"]), color=colour, lw=0.8)
+            axes.plot(ORDERS, mean_spectrum(elbow, sign, elbow["position_measured"], shoulder["current_residual"]),
+                      color=colour, lw=0.8)
         axes.set_title("the shoulder's ripple [A] by order of the elbow's angle: the line at 200 is the elbow's")
         axes.set_xlabel("order per turn of the elbow")
         save(drawing, path)
@@ -273,10 +282,11 @@ def section(runner, telemetry, images):
     errors = error_table(results, data)
     print("\n".join(errors))
     return heading + ["""
-CB series, moving for 82 s (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014; 125 Hz). The recording is not part
-of this project. The same motion comes three times: each joint is identified on the first (`joint_twin identify`), and tested on
-the other two. The twin is **motion-driven**: measured angle and the controller's rigid-body torque in, motor current out. The
-controller's position error and target current are no inputs: they describe the controller, not the drive.
+CB series, moving for 82 s (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014; 125 Hz). The recording is
+not part of this project. The same motion comes three times: each joint is identified on the first (`joint_twin
+identify`), and tested on the other two. The twin is **motion-driven**: measured angle and the controller's rigid-body
+torque in, motor current out. The controller's position error and target current are no inputs: they describe the
+controller, not the drive.
 
 ### Error of the predicted current [A rms]
 
@@ -292,58 +302,62 @@ The error without ripple, in the later repeats, 0.8 s after each join left out [
 """, *share_table(results), """
 ![Error over the motion](images/real_robot/residual.png)
 
-*Moving*, the mean over 0.1 s is right within a few percent of the current's range: the effects of friction, load and inertia
-are understood. The increase of the shoulder's friction with its load comes from the catalogue, not from this recording:
-the identification finds no further friction of the flanks. The rest is ripple.
+*Moving*, the mean over 0.1 s is right within a few percent of the current's range: the effects of friction, load and
+inertia are understood. The increase of the shoulder's friction with its load comes from the catalogue, not from this
+recording: the identification finds no further friction of the flanks. The rest is ripple.
 
-*Resting*, stiction holds the joint and the current is the controller's choice within a band: an encoder count of 9.4 µrad is
-a quarter of the presliding angle and so some 0.3 A. The shoulder stands from 20 s on at 0 A in the first repeat and at −0.6 A
-in the others, with the same load and angle: more than its friction explains, so that something else loads it. The elbow creeps
-from 8 to 15 s, and holds 0.4 A more than its friction in motion.
+*Resting*, stiction holds the joint and the current is the controller's choice within a band: an encoder count of 9.4
+µrad is a quarter of the presliding angle and so some 0.3 A. The shoulder stands from 20 s on at 0 A in the first repeat
+and at −0.6 A in the others, with the same load and angle: more than its friction explains, so that something else loads
+it. The elbow creeps from 8 to 15 s, and holds 0.4 A more than its friction in motion.
 
 *Missed target:* the aim was half the error of the gain, Coulomb and viscous fit. No joint reaches it over all rows;
 the base reaches two thirds, the elbow equals the fit. Three rows of four are at rest. Their prediction needs a model of
-the controller, whose friction feed-forward (a step with the sign of the target speed) and integrator are visible in the rows. The
-shoulder was at 0.31 A in an earlier version, by an offset of the current of −0.2 A; that offset fitted the later repeats by chance: on the first
-it increases the error at rest, and this identification drops it.
+the controller, whose friction feed-forward (a step with the sign of the target speed) and integrator are visible in the
+rows. The shoulder was at 0.31 A in an earlier version, by an offset of the current of −0.2 A; that offset fitted the
+later repeats by chance: on the first it increases the error at rest, and this identification drops it.
 
 ![Current of the three joints, measured and predicted](images/real_robot/current.png)
 
 ### Identified parameters
 
 With 95 % intervals, widened by the residual's correlation. Parameters that this motion does not identify keep
-their configured value, with the reason in the table. The overlay serves the motion-driven twin, the torque-driven twin and the node
-alike: preload, viscosity and inertia are
-those of the parts. Presliding and ripple are the motion-driven twin's alone; the torque-driven twin has stiction instead, and gets
-ripple from errors of manufacture.
+their configured value, with the reason in the table. The overlay serves the motion-driven twin, the torque-driven twin
+and the node alike: preload, viscosity and inertia are
+those of the parts. Presliding and ripple are the motion-driven twin's alone; the torque-driven twin has stiction
+instead, and gets ripple from errors of manufacture.
 """, *value_table(results), f"""
-The base has no weight that would identify its gain, so it keeps the configured one. The load's resonance on the joint's stiffness would be
+The base has no weight that would identify its gain, so it keeps the configured one. The load's resonance on the joint's
+stiffness would be
 {expected} at the configured inertias, with rigid links and bearings.
 
 ### Ripple
 
-The lines are torques: the drive's kinematic error times its stiffness. Which manufacturing errors cause them? A pitch deviation of
-the circular spline makes the line at 200, one of the flexspline that at 202; both are proportional to the deviation, and the
-table has the total cumulative deviation that explains base and shoulder. ISO 1328 allows 17 µm in grade 5 and 24 µm in grade 6 at
-this size. The elbow's line at 200 is visible in the figure, but its motion does not separate torque from resonance, so it is
-not identified; the elbow gets the mean of the other two. Amplitudes in N·m at the joint.
+The lines are torques: the drive's kinematic error times its stiffness. Which manufacturing errors cause them? A pitch
+deviation of the circular spline makes the line at 200, one of the flexspline that at 202; both are proportional to the
+deviation, and the table has the total cumulative deviation that explains base and shoulder. ISO 1328 allows 17 µm in
+grade 5 and 24 µm in grade 6 at this size. The elbow's line at 200 is visible in the figure, but its motion does not
+separate torque from resonance, so it is not identified; the elbow gets the mean of the other two. Amplitudes in N·m at
+the joint.
 """, *ripple.table(results), """
-The figure has the current's ripple as recorded and the torque's at the joint, over the gain, of the whole twin turning with these
-errors at the median of the recorded speed, against the median of the load and with the configured inertia; a heavy rotor keeps
-its speed. Only the deviation is fitted; order of the lines, the line at 400 and the resonance are the twin's.
+The figure has the current's ripple as recorded and the torque's at the joint, over the gain, of the whole twin turning
+with these errors at the median of the recorded speed, against the median of the load and with the configured inertia; a
+heavy rotor keeps its speed. Only the deviation is fitted; order of the lines, the line at 400 and the resonance are the
+twin's.
 
 ![Ripple by order, recorded and the twin's](images/real_robot/spectrum.png)
 
-*Not explained by the model:* at the same speed and angles the base's line is twice as high turning negative, with the arm
-stretched out, as turning positive, with the arm upright. One resonance a joint cannot be both; it would take the arm's inertia in
-each pose, which a recording of one joint does not hold, and the controller's speed loop, which answers the ripple of the speed. The
-elbow's line at 200 is too small and that at 400 too large: in the twin its resonance is at """ + f"{resonance['elbow']:.0f}" + """ Hz, links and bearings being
-rigid. The shoulder's largest line is not its own: by order of the elbow's angle it stands at 200. The twin knows one joint, so
-that part of the shoulder's error stays.
+*Not explained by the model:* at the same speed and angles the base's line is twice as high turning negative, with the
+arm stretched out, as turning positive, with the arm upright. One resonance a joint cannot be both; it would take the
+arm's inertia in each pose, which a recording of one joint does not hold, and the controller's speed loop, which answers
+the ripple of the speed. The elbow's line at 200 is too small and that at 400 too large: in the twin its resonance is at
+""" + f"{resonance['elbow']:.0f}" + """ Hz, links and bearings being
+rigid. The shoulder's largest line is not its own: by order of the elbow's angle it stands at 200. The twin knows one
+joint, so that part of the shoulder's error stays.
 
 ### Limits of this recording
 
 No encoder on the other side of the gear, so no torsion; no temperature; no payload; a rigid-body torque that is the
-controller's, whose errors of mass look like load. Time is a count of 8 ms, put together from three recordings: at the joins the rows
-contain a jolt of the controller, which counts.
+controller's, whose errors of mass look like load. Time is a count of 8 ms, put together from three recordings: at the
+joins the rows contain a jolt of the controller, which counts.
 """]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The cells of the stress matrix: one-factor lines through the shipped parameters, maps of two factors, random cells."""
+"""The cells of the stress matrix: one-factor lines through the shipped parameters, maps of two factors, random
+cells."""
 import itertools
 import random
 from dataclasses import dataclass, field
@@ -137,7 +138,8 @@ def odd():
     yield Cell("edge", ("denormal stiffness of the mesh",), {"mesh.stiffness": tiny})
     yield Cell("edge", ("denormal damping and friction",),
                {key: tiny for key in FACTORS["damping"]} | {"motor.coulomb_torque": tiny, "cup.friction_torque": tiny,
-                                                            "mesh.friction_static": tiny, "mesh.friction_kinetic": tiny})
+                                                            "mesh.friction_static": tiny,
+                                                            "mesh.friction_kinetic": tiny})
     yield Cell("edge", ("no friction at all",),
                {key: 0.0 for key in FACTORS["damping"]} | {"motor.coulomb_torque": 0.0, "cup.friction_torque": 0.0,
                                                            "mesh.friction_static": 0.0, "mesh.friction_kinetic": 0.0,

@@ -132,7 +132,8 @@ def _judge(runner, cell):
     if state != "ok":
         judged.verdict = DEGRADED
         judged.reason = ", ".join(f"{count} steps {what}" for count, what in [
-            (document["solver_failures"], "failed"), (judged.cuts, "cut"), (document["jumps"], "with teeth jumping"), (judged.coarse, "too long")] if count)
+            (document["solver_failures"], "failed"), (judged.cuts, "cut"), (document["jumps"], "with teeth jumping"),
+            (judged.coarse, "too long")] if count)
     else:
         judged.verdict = ACCURATE if judged.error <= ACCURACY else SILENT
     return judged

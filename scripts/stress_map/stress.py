@@ -19,27 +19,30 @@ COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
 
 HEAD = """# Stability
 
-Behaviour of the twin far from its usual range: one factor at a time, two at a time, all at once at random. Every cell below is a
-run of `joint_twin trial`, compared with converged runs of the same cell. One command repeats them all:
+Behaviour of the twin far from its usual range: one factor at a time, two at a time, all at once at random. Every cell
+below is a run of `joint_twin trial`, compared with converged runs of the same cell. One command repeats them all:
 
     scripts/stress
 
 It exits 0 only if every cell is one of
 
 - **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
-- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may be good or not;
+- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may
+  be good or not;
 - **refused with a reason**: the twin does not start, and a message states the reason.
 
 Never a NaN, never a hang (more than {timeout:.0f} s a run), never silently wrong; one such cell makes the exit code 1.
 """
 
-MEANING = """The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the output's angle and the
-motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the cup's first slope ends) and the travel (at least the
-{angle:.2f} mrad that belong to it). One per cent is the twin's stated accuracy: the parameters themselves are known no better,
-and the catalogue allows ten times that scatter between gears. The **converged run** is the same cell at a step that resolves a period of the joint's fastest
-natural mode 600 times, at most a tenth of the cell's; the **doubt** is its difference from a run with twice the step. A new input acts from half a
-step before its instant (the leapfrog kicks there), so the profile of the converged run is advanced by the difference of half steps: that
-half step is sampling, not error. The **drift** is the largest energy residual over the work of motor and load.
+MEANING = """The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the
+output's angle and the motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the cup's first
+slope ends) and the travel (at least the
+{angle:.2f} mrad that belong to it). One per cent is the twin's stated accuracy: the parameters themselves are known no
+better, and the catalogue allows ten times that scatter between gears. The **converged run** is the same cell at a step
+that resolves a period of the joint's fastest natural mode 600 times, at most a tenth of the cell's; the **doubt** is
+its difference from a run with twice the step. A new input acts from half a step before its instant (the leapfrog kicks
+there), so the profile of the converged run is advanced by the difference of half steps: that half step is sampling, not
+error. The **drift** is the largest energy residual over the work of motor and load.
 
 The solver's messages on a step:
 
@@ -51,7 +54,7 @@ The solver's messages on a step:
 | cut | the ring's equilibrium was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
 | failed | no equilibrium was found | the last good state is held |
 | refused | the natural mode advances more than 1.5 rad a step, or the insertion finds no equilibrium | the leapfrog is unstable from 2 rad on |
-"""
+"""  # noqa: E501
 
 
 def short(value):
@@ -158,7 +161,8 @@ def write_page(settings, judged):
     page.heading("Edges")
     table_of(page, groups["edge"])
     page.heading("Random cells")
-    page.text("Every factor at once, drawn in the logarithm from its whole range; the seed makes the cell again. More: `scripts/stress "
+    page.text("Every factor at once, drawn in the logarithm from its whole range; the seed makes the cell again. More: "
+              "`scripts/stress "
               "--seeds N`.")
     table_of(page, groups["random"])
     page.finish()
@@ -181,22 +185,28 @@ def boundary(judged):
     phase = max((j.phase for j in quiet), default=float("nan"))
     if not quiet:
         return "No cell is accurate."
-    return (f"With the shipped parameters the longest step that is accurate is {steps('step, load steps of 100 N.m')} under load steps and "
-            f"{steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four times what it can give. "
+    return (f"With the shipped parameters the longest step that is accurate is {steps('step, load steps of 100 N.m')} "
+            f"under load steps and "
+            f"{steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four times what it can "
+            f"give. "
             f"Over all {len(quiet)} cells in which the solver reported nothing the largest error is "
-            f"{percent(max(j.error for j in quiet))}, the largest energy drift {percent(max(j.drift for j in quiet))}, and a step took "
-            f"at most {phase:.2f} rad of the swing. Of the {len(flagged)} degraded cells {still} were within the accuracy all the same: the "
+            f"{percent(max(j.error for j in quiet))}, the largest energy drift {percent(max(j.drift for j in quiet))}, "
+            f"and a step took "
+            f"at most {phase:.2f} rad of the swing. Of the {len(flagged)} degraded cells {still} were within the "
+            f"accuracy all the same: the "
             f"solver warns early rather than late.")
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(
-        prog="stress", description="Runs the twin far from where it is meant to run, judges each run against converged ones and writes "
+        prog="stress", description="Runs the twin far from where it is meant to run, judges each run against converged "
+        "ones and writes "
         "stability.md with its maps. Exit code 1 if a cell is silently wrong, not finite, hung or crashed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--seeds", type=int, default=30, metavar="N", help="random cells, seeds 1 ... N [30]")
-    parser.add_argument("--only", metavar="TEXT", help="only cells whose name has this in it; needs --out to write a page")
+    parser.add_argument("--only", metavar="TEXT",
+                        help="only cells whose name has this in it; needs --out to write a page")
     parser.add_argument("--out", metavar="DIR", help="folder of page and figures (default: docs/ of the checkout)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cells at a time")
     return parser.parse_args(arguments)

@@ -56,7 +56,8 @@ assembly's angles judged.
     rows = page.tool("stiffness", "--torques", ",".join(map(str, TORQUES)))["rows"]
     for row in rows:
         torque = row["torque"]
-        page.check(f"catalogue.torsion.{torque:g}", f"torsion at {torque:g} N·m", "catalogue: 31/50/57e3 N·m/rad, 14/48 N·m",
+        page.check(f"catalogue.torsion.{torque:g}", f"torsion at {torque:g} N·m",
+                   "catalogue: 31/50/57e3 N·m/rad, 14/48 N·m",
                    Within(catalogue_angle(torque) / ARCMIN, relative=0.02), -row["output_angle"] / ARCMIN, "arcmin",
                    "asked of the twin; three straight lines stand for a curve")
     if page.fast:
@@ -84,8 +85,10 @@ assembly's angles judged.
         right.legend()
 
     most = max(-row["output_angle"] / catalogue_angle(row["torque"]) - 1.0 for row in bare if row["torque"] > 1.0)
-    page.figure("catalogue_torsion", f"Torsion of the locked gear. Without the fit, rim and teeth add up to {100.0 * most:.0f} % to "
-                "the catalogue's twist; with it, the rounding of the curve between the catalogue's straight lines is left.", draw)
+    page.figure("catalogue_torsion",
+                f"Torsion of the locked gear. Without the fit, rim and teeth add up to {100.0 * most:.0f} % to "
+                "the catalogue's twist; with it, the rounding of the curve between the catalogue's straight lines is "
+                "left.", draw)
 
 
 def hysteresis(page):
@@ -95,8 +98,8 @@ def hysteresis(page):
     flanks = page.tool(*sweep, "--set", "cup.friction_torque=0.0")
     page.text(f"""
 Wave generator locked, load cycled slowly over the rated torque. The width comes from dry friction: of the
-tooth flanks ({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and in parallel with the cup's spring (the rest). The latter is
-set by a real drive, see *Real drives*; the catalogue gives a limit.
+tooth flanks ({flanks["hysteresis"] / ARCMIN:.2g} arcmin) and in parallel with the cup's spring (the rest). The latter
+is set by a real drive, see *Real drives*; the catalogue gives a limit.
 """)
     page.check("catalogue.hysteresis", "hysteresis", "catalogue", AtMost(1.0), loop["hysteresis"] / ARCMIN, "arcmin",
                "the maker's promise for every drive")
@@ -146,9 +149,11 @@ pitch, at rest; back-driving: the load at the output whose own pull overcomes th
     insertion = page.tool("insert")
     contact, gear = (page.tool("parameters")[section] for section in ("contact", "gear"))
     slip = contact["slip_lever"] * 3.0 * gear["wave_amplitude"] / gear["flexspline_inner_radius"]
-    page.check("catalogue.interface_slip", "torque of the race slipping in the rim, no mesh load", "μ = 0.07 (thesis, Table 3.2) "
-               "× ΣF × lever × 3 w0/r0 × 2/π", Within(0.07 * insertion["wave_generator_force_sum"] * slip * 2.0 / math.pi,
-                                                      relative=0.30), running["interface"], "N·m",
+    page.check("catalogue.interface_slip", "torque of the race slipping in the rim, no mesh load",
+               "μ = 0.07 (thesis, Table 3.2) "
+               "× ΣF × lever × 3 w0/r0 × 2/π",
+               Within(0.07 * insertion["wave_generator_force_sum"] * slip * 2.0 / math.pi,
+                      relative=0.30), running["interface"], "N·m",
                "the closed form leaves out that teeth at the lobes press the rim on, where it tilts fastest")
 
 
@@ -162,8 +167,8 @@ and the flanks' friction.
     page.check("catalogue.efficiency", f"efficiency at {EFFICIENCY_TORQUE:g} N·m", "catalogue: 77 ± 3 %; thesis 75 %",
                Within(EFFICIENCY, absolute=0.022), rated["gear_efficiency"], "",
                "the worst error of the best public twin; the catalogue's own is ± 3 points")
-    # What slides on the flanks, from the shape alone: at an angle a from the lobe a tooth moves in and out of its space by
-    # 2 w0 sin 2a per motor turn.
+    # What slides on the flanks, from the shape alone: at an angle a from the lobe a tooth moves in and out of its space
+    # by 2 w0 sin 2a per motor turn.
     gear, mesh = (page.tool("parameters")[section] for section in ("gear", "mesh"))
     page.tool("stiffness", "--torques", EFFICIENCY_TORQUE, "--csv", "teeth.csv")
     teeth = np.genfromtxt(page.scratch("teeth.csv"), delimiter=",", names=True)
@@ -171,7 +176,8 @@ and the flanks' friction.
     slip = 2.0 * gear["wave_amplitude"] * np.abs(np.sin(2.0 * angles)) / math.cos(mesh["flank_angle"])
     page.check("catalogue.flank_slip", f"torque of the flanks' friction at {EFFICIENCY_TORQUE:g} N·m",
                "μ = 0.06 × Σ flank force × 2 w0 sin 2α / cos β",
-               Within(1e3 * 0.06 * float(np.sum(np.abs(teeth["mesh_force"]) * slip)), relative=0.15), 1e3 * rated["mesh"], "mN·m",
+               Within(1e3 * 0.06 * float(np.sum(np.abs(teeth["mesh_force"]) * slip)), relative=0.15),
+               1e3 * rated["mesh"], "mN·m",
                "the closed form leaves out that teeth tilt and the rim gives way")
     part = losses(page, [RPM_2000], [share * RATED_TORQUE for share in PART_LOADS])
     for (share, factor), row in zip(PART_LOADS.items(), part):
@@ -198,7 +204,8 @@ load and than the {number(1000.0 * NO_LOAD)} mN·m of none.
         left.plot(loads, [100.0 * row["gear_efficiency"] for row in rows], color=BLUE, label="twin, 2000 rpm")
         left.plot(loads, [100.0 * row["gear_efficiency"] for row in slow], color=GREEN, label="twin, 500 rpm")
         left.errorbar([EFFICIENCY_TORQUE], [77.0], yerr=3.0, fmt="o", color=ORANGE, label="catalogue, 2000 rpm")
-        left.plot([share * RATED_TORQUE for share in PART_LOADS], [77.0 * factor for factor in PART_LOADS.values()], "s",
+        left.plot([share * RATED_TORQUE for share in PART_LOADS], [77.0 * factor for factor in PART_LOADS.values()],
+                  "s",
                   color=RED, label="catalogue, part load")
         left.legend()
         right.set_title("Friction at the motor, 2000 rpm [mN·m]")
@@ -228,12 +235,15 @@ remains.
 """)
     bearing = page.tool("parameters")["bearing"]
     degrees = (0.0, 20.0, 40.0, 80.0)
-    running = {degree: losses(page, [0.0, RPM_2000], [0.0], "--set", f"input.temperature={degree:.1f}") for degree in degrees}
-    floor = 160.0 * bearing["lubricant_factor"] * (1e3 * bearing["pitch_diameter"]) ** 3 * 1e-10  # below 2000 mm^2/s rpm
+    running = {degree: losses(page, [0.0, RPM_2000], [0.0], "--set", f"input.temperature={degree:.1f}")
+               for degree in degrees}
+    # below 2000 mm^2/s rpm
+    floor = 160.0 * bearing["lubricant_factor"] * (1e3 * bearing["pitch_diameter"]) ** 3 * 1e-10
     speed_part = {degree: rows[1]["bearing"] - rows[0]["bearing"] + floor for degree, rows in running.items()}
     for degree in (0.0, 40.0, 80.0):
         expected = (walther(bearing, degree) / walther(bearing, 20.0)) ** (2.0 / 3.0)
-        page.check(f"catalogue.temperature.{degree:g}", f"speed part of the friction at {degree:g} °C over that at 20 °C",
+        page.check(f"catalogue.temperature.{degree:g}",
+                   f"speed part of the friction at {degree:g} °C over that at 20 °C",
                    "law of the viscosity", Within(expected, relative=1e-3), speed_part[degree] / speed_part[20.0], "",
                    "the same law evaluated on the page")
     page.check("catalogue.oil", "viscosity at 40 °C over that at 100 °C", "mineral oils of viscosity index 95 to 105",
@@ -254,7 +264,8 @@ remains.
         axes.plot([20.0], [195.0], "o", color="black", label="catalogue, 2000 rpm")
         axes.legend(ncol=2)
 
-    page.figure("catalogue_temperature", "No-load running torque over the grease's range of temperature.", draw, (6.4, 3.0))
+    page.figure("catalogue_temperature", "No-load running torque over the grease's range of temperature.", draw,
+                (6.4, 3.0))
 
 
 def dials(page):
@@ -265,11 +276,13 @@ Two fitted parameters for five figures of friction, one for the torsion loop, an
 as the catalogue's curve.
 """)
     page.table(["dial", "value", "set by", "order of size without it"],
-               [["`bearing.viscosity`", f"{number(1e6 * bearing['viscosity'])} mm²/s at 25 °C", "no-load running torque",
+               [["`bearing.viscosity`", f"{number(1e6 * bearing['viscosity'])} mm²/s at 25 °C",
+                 "no-load running torque",
                  "base oil of the grease alone: 80 mm²/s (thesis, Table 3.2)"],
                 ["`bearing.race_preload`", f"{number(bearing['race_preload'])} N", "starting torque",
                  "500 to 600 N from the section of the race with a fit of zero"],
-                ["`cup.friction_torque`", f"{number(cup['friction_torque'])} N·m", "direction gap of a real 101:1 drive",
+                ["`cup.friction_torque`", f"{number(cup['friction_torque'])} N·m",
+                 "direction gap of a real 101:1 drive",
                  "at most 4.5 N·m by the catalogue's 1 arcmin"],
                 ["`cup.torsion_stiffness`", ", ".join(f"{number(value / 1e3)}" for value in cup["torsion_stiffness"]) +
                  " ·10³ N·m/rad", "torsion at 14, 48 and 150 N·m", "31, 50, 57 ·10³: the whole gear's"]])

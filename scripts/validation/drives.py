@@ -33,7 +33,8 @@ def build(page):
 
 def joint_loss(page, speeds, loads, *arguments):
     """Friction at the joint [N.m], of gear and motor, for pairs of joint speed and load."""
-    rows = page.tool("losses", "--positions", 4, "--speeds", ",".join(f"{RATIO * speed:.6g}" for speed in speeds), "--loads",
+    rows = page.tool("losses", "--positions", 4, "--speeds", ",".join(f"{RATIO * speed:.6g}" for speed in speeds),
+                     "--loads",
                      ",".join(f"{load:.6g}" for load in loads), *arguments)["rows"]
     return np.array([RATIO * (row["gear_loss"] + row["motor"]) for row in rows]).reshape(len(loads), len(speeds))
 
@@ -51,8 +52,10 @@ gear's: seals, output bearing and motor are in it.
         overlays = ("--config", f"joints/{joint}.yaml", "--config", f"joints/ur5e_{joint}.yaml")
         losses[joint] = joint_loss(page, UR5E_SPEEDS, [0.0], *overlays)[0]
         for speed, (low, high), loss in zip(UR5E_SPEEDS, UR5E_LOSS[joint], losses[joint]):
-            page.check(f"drives.ur5e.{joint}.{speed:g}", f"{joint}, loss at {speed:g} rad/s", "factory test, two robots",
-                       Between(round(0.98 * low, 2), round(1.02 * high, 2)), loss, "N·m", "two robots and 2 %, which two degrees of grease temperature make")
+            page.check(f"drives.ur5e.{joint}.{speed:g}", f"{joint}, loss at {speed:g} rad/s",
+                       "factory test, two robots",
+                       Between(round(0.98 * low, 2), round(1.02 * high, 2)), loss, "N·m",
+                       "two robots and 2 %, which two degrees of grease temperature make")
     if page.fast:
         return
     sweep = np.geomspace(0.01, 3.3, 25)
@@ -67,7 +70,8 @@ gear's: seals, output bearing and motor are in it.
                 axes.plot([speed, speed], band, "_-", color=COLOURS[joint], lw=4, alpha=0.5, ms=8)
         axes.legend()
 
-    page.figure("drives_ur5e", "Loss of UR5e joints without load; bars: the two robots of the factory test.", draw, (6.4, 3.0))
+    page.figure("drives_ur5e", "Loss of UR5e joints without load; bars: the two robots of the factory test.", draw,
+                (6.4, 3.0))
 
 
 def recording(page, *parts):
@@ -80,7 +84,8 @@ def recording(page, *parts):
 
 
 def friction_map(data, joint):
-    """Speed, size of the load, friction and its scatter in each speed bin: current less the controller's rigid-body torque."""
+    """Speed, size of the load, friction and its scatter in each speed bin: current less the controller's rigid-body
+    torque."""
     speed, current = data[f"actual_qd_{joint}"], data[f"actual_current_{joint}"]
     load = data[f"target_moment_{joint}"]
     friction = (GAIN * current - load) * np.sign(speed)
@@ -110,8 +115,10 @@ the controller's rigid-body model, in bins of speed. Again one viscosity for thr
         speeds, loads = maps[name][:, 0], maps[name][:, 1]
         twins[name] = np.diag(joint_loss(page, speeds, loads, "--config", f"joints/{name}.yaml"))
         error = np.sqrt(np.mean((twins[name] - maps[name][:, 2]) ** 2))
-        page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error, "N·m",
-                   f"a seventh of the friction at the slowest; within a bin the recording scatters by {maps[name][:, 3].mean():.1f} N·m")
+        page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error,
+                   "N·m",
+                   f"a seventh of the friction at the slowest; within a bin the recording scatters by "
+                   f"{maps[name][:, 3].mean():.1f} N·m")
     page.text("""
 *Limits of this recording:* the rigid-body torque is the controller's, so errors of its masses and of the
 payload look like friction (the shoulder has the largest weight and the largest residual); no temperature; no encoder
@@ -127,7 +134,8 @@ at the motor, so no torsion and no kinematic error apart from ripples of the cur
             axes.set_xlabel("joint speed [rad/s]")
             axes.legend(loc="lower right")
 
-    page.figure("drives_ur5", "Friction of a UR5's size 3 joints by speed; bars: scatter within a bin, which holds acceleration "
+    page.figure("drives_ur5",
+                "Friction of a UR5's size 3 joints by speed; bars: scatter within a bin, which holds acceleration "
                 "and ripple.", draw)
 
 
@@ -173,7 +181,8 @@ of the encoders leaves open, is taken out. Only the part at constant speed is us
     slope, twin_slope = (1.0 / np.polyfit(torque, values, 1)[0] for values in (torsion, predicted))
     page.check("drives.torsion_slope", "mean slope of torque over torsion", f"recording: {number(slope)} N·m/rad",
                Within(slope / 1e3, relative=0.20), twin_slope / 1e3, "10³ N·m/rad",
-               "size 25 is inferred; links and bearings between the encoders only soften; motor torque contains friction")
+               "size 25 is inferred; links and bearings between the encoders only soften; motor torque contains "
+               "friction")
     page.check("drives.torsion_residual", "rms of recording less twin", "recording", AtMost(0.35),
                1e3 * residual.std(), "mrad", "a straight line fitted to this very recording leaves "
                f"{1e3 * np.std(torsion - np.polyval(np.polyfit(torque, torsion, 1), torque)):.2f} mrad")

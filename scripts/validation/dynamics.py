@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The quasi-static claim: every tooth a mass, in the insertion of the thesis' chapter 6 and at full speed, against the ring
-in equilibrium."""
+"""The quasi-static claim: every tooth a mass, in the insertion of the thesis' chapter 6 and at full speed, against the
+ring in equilibrium."""
 import math
 
 from bounds import AtLeast, AtMost, Between, Within
@@ -85,8 +85,10 @@ times the kinetic energy at the same speed of growth, and the same dashpots need
 solver damped the vibration.
 """)
     cost_table(page, settled, reference)
-    page.figure("insertion_transient", "Largest force of the wave generator on a tooth. Left: band between lowest and highest "
-                "value within each 0.25 ms. Right: the same motion over half a millisecond; the structured method follows "
+    page.figure("insertion_transient",
+                "Largest force of the wave generator on a tooth. Left: band between lowest and highest "
+                "value within each 0.25 ms. Right: the same motion over half a millisecond; the structured method "
+                "follows "
                 "the reference, implicit Euler shows the static force.",
                 lambda fig: draw_transient(fig, reference, structured, euler, settled), size=(8.0, 3.4))
 
@@ -95,7 +97,8 @@ def numerical_damping(page):
     """Where the energy of the vibration goes in the run of the thesis."""
     euler = transient(page, "implicit_euler", 1e-5, NORMAL)
     share = euler["energy_lost"] / (euler["energy_lost"] + euler["energy_dissipated"])
-    page.check("dynamics.numerical_damping", "share of the damping that is implicit Euler's own, 10 µs", "energy ledger",
+    page.check("dynamics.numerical_damping", "share of the damping that is implicit Euler's own, 10 µs",
+               "energy ledger",
                Between(0.99, 1.0), share, "", "nearly all; the rest is Table 6.1's dashpots")
     fine = transient(page, "esdirk4", 5e-6, NORMAL)
     page.check("dynamics.energy", "energy residual over energy supplied, ESDIRK 4 at 5 µs",
@@ -130,9 +133,11 @@ def series_error(run, reference):
 
 def cost_table(page, settled, reference):
     runs = [transient(page, method, step) for method, step in
-            (("implicit_euler", 1e-5), ("implicit_euler", 1e-6), ("tr_bdf2", 1e-5), ("tr_bdf2", 2.5e-6), ("esdirk4", 1e-5),
+            (("implicit_euler", 1e-5), ("implicit_euler", 1e-6), ("tr_bdf2", 1e-5), ("tr_bdf2", 2.5e-6),
+             ("esdirk4", 1e-5),
              ("esdirk4", 5e-6), ("esdirk4", 2.5e-6), ("rk4", 1e-6), ("rk4", 5e-7))]
-    rows = [[LABELS[run["method"]], f"{1e6 * run['step']:g}", f"{run['force_max_lowest']:.1f} … {run['force_max_highest']:.1f}",
+    rows = [[LABELS[run["method"]], f"{1e6 * run['step']:g}",
+             f"{run['force_max_lowest']:.1f} … {run['force_max_highest']:.1f}",
              f"{series_error(run, reference):.2g}", f"{position_error(run, reference):.1e}",
              f"{run['force_evaluations']}", f"{run['solve_time']:.2f}"] for run in runs]
     page.table(["method", "step [µs]", "largest F_WG from 30 ms [N]", "its error, rms [N]", "position error / w0",
@@ -186,7 +191,8 @@ QUANTITIES = (("position", "tooth points"), ("torsion", "output angle (torsion)"
 
 
 def turning(page, speed, load, *more, mass=REAL_MASS, settle=0.02, duration=0.01, step=4e-6, method="esdirk4"):
-    return page.tool("dynamics", "--speed", speed, "--load", load, "--settle", settle, "--duration", duration, "--step", step,
+    return page.tool("dynamics", "--speed", speed, "--load", load, "--settle", settle, "--duration", duration, "--step",
+                     step,
                      "--method", method, "--set", f"ring.mass={mass}", *more)
 
 
@@ -200,7 +206,8 @@ squares over teeth and time, relative to that of the quantity itself (tooth poin
 the travelling equilibrium; the first 20 ms are not compared.
 """)
     if page.fast:
-        check_errors(page, "fast", "at 60 rad/s, 20 N·m", turning(page, HALF_SPEED, 20.0, settle=2e-3, duration=4e-3, step=1e-5))
+        check_errors(page, "fast", "at 60 rad/s, 20 N·m",
+                     turning(page, HALF_SPEED, 20.0, settle=2e-3, duration=4e-3, step=1e-5))
         return
     cases = [(speed, load) for speed in (HALF_SPEED, FULL_SPEED) for load in (20.0, 100.0)]
     runs = {case: turning(page, *case) for case in cases}
@@ -208,12 +215,15 @@ the travelling equilibrium; the first 20 ms are not compared.
         check_errors(page, f"{speed:.0f}rad_{load:.0f}Nm", f"at {speed:.0f} rad/s, {load:.0f} N·m", run)
     ours = runs[FULL_SPEED, 20.0]
     explicit = turning(page, FULL_SPEED, 20.0, method="rk4", step=2e-7)
-    page.check("dynamics.explicit_agrees", "error of the flank force at 317 rad/s, 20 N·m: by ESDIRK 4 at 4 µs over by Runge-Kutta "
+    page.check("dynamics.explicit_agrees",
+               "error of the flank force at 317 rad/s, 20 N·m: by ESDIRK 4 at 4 µs over by Runge-Kutta "
                "4 at 0.2 µs", "the same equations", Within(1.0, absolute=0.1),
                ours["mesh_force"]["error_rms"] / explicit["mesh_force"]["error_rms"], "",
                "ringing compared by its size, over 10 ms")
-    page.check("dynamics.fewer_evaluations", "force evaluations of the second over those of the first", "-", AtLeast(5.0),
-               explicit["force_evaluations"] / ours["force_evaluations"], "", "a gain beyond doubt, not a matter of tuning")
+    page.check("dynamics.fewer_evaluations", "force evaluations of the second over those of the first", "-",
+               AtLeast(5.0),
+               explicit["force_evaluations"] / ours["force_evaluations"], "",
+               "a gain beyond doubt, not a matter of tuning")
     heavy = {case: turning(page, *case, mass=THESIS_MASS) for case in cases}
     page.table(["speed [rad/s]", "load [N·m]", "masses"] + [label for _, label in QUANTITIES],
                [[f"{speed:.0f}", f"{load:.0f}", masses] + [f"{percent(run, key)} ({percent(run, key, 'max')})"
@@ -225,7 +235,8 @@ quantity. Most of the torsion's error is no error of the ring: the kinematic err
 of 0.5 kg·m² does not follow. With the fifty-fold masses of the thesis the claim fails for the forces: the inertia
 force of a tooth, 4 ω² w0 m, is then 1.3 N at full speed, of some 8 N of contact.
 """)
-    page.figure("dynamic_tooth_forces", "Forces on every tooth at 317 rad/s and 20 N·m, real masses, at one instant: dynamic ring "
+    page.figure("dynamic_tooth_forces",
+                "Forces on every tooth at 317 rad/s and 20 N·m, real masses, at one instant: dynamic ring "
                 "and ring in equilibrium at the same angles, and their difference.",
                 lambda fig: draw_teeth(fig, ours["teeth"]), size=(8.0, 4.2))
     sweep(page)
@@ -254,12 +265,15 @@ def sweep(page):
                    100.0 * max(run[key]["relative_rms"] for run in every), "%", "well below it")
     page.check("dynamics.sweep_mean_torque", "mean wave generator torque over 5 ms, of the same speeds", CLAIM,
                AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it")
-    page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM, AtMost(0.5),
-               max(100.0 * run["mesh_force"]["relative_rms"] for run in every if run["speed"] <= HALF_SPEED), "%", "half of it")
+    page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM,
+               AtMost(0.5),
+               max(100.0 * run["mesh_force"]["relative_rms"] for run in every if run["speed"] <= HALF_SPEED), "%",
+               "half of it")
     worst = max(every, key=lambda run: run["mesh_force"]["relative_rms"])
     damped = turning(page, worst["speed"], worst["load"], *DAMPED, **window)
     above = "; ".join(f"with {load:.0f} N·m: " + (", ".join(
-        f"{run['speed']:.0f}" for run in group if run["mesh_force"]["relative_rms"] > 0.01) or "none") for load, group in runs.items())
+        f"{run['speed']:.0f}" for run in group if run["mesh_force"]["relative_rms"] > 0.01) or "none") for load,
+        group in runs.items())
     page.text(f"""
 **Where the claim fails.** Teeth come into mesh 200 times a turn of the motor and strike the ring as they do. Where
 that frequency or a multiple of it meets a mode of the ring, the forces ring on top of their quasi-static values. The
@@ -273,7 +287,8 @@ positions, torsion and mean torque keep to the claim at every speed. Dashpots of
 mode's energy is in teeth and cup, which have no dashpot here. So at such speeds a single tooth's force is known to
 some per cent and no better; the joint's outputs are not affected.
 """)
-    page.figure("quasi_static_error", "Error of the quasi-static ring over the speed of the motor, real masses, rms. Left: 20 N·m. "
+    page.figure("quasi_static_error",
+                "Error of the quasi-static ring over the speed of the motor, real masses, rms. Left: 20 N·m. "
                 "Right: flank force with both loads.", lambda fig: draw_sweep(fig, runs), size=(8.0, 3.4))
 
 

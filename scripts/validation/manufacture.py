@@ -10,7 +10,8 @@ from page import BLUE, GREEN, GREY, ORANGE, RED
 
 ARCSEC = math.pi / 180.0 / 3600.0  # [rad]
 JOINT_TURN = 101  # motor turns
-# The tooth pass, 200 a motor turn, folds to multiples of 10 orders; with fewer samples its sidebands would reach order 4.
+# The tooth pass, 200 a motor turn, folds to multiples of 10 orders; with fewer samples its sidebands would reach order
+# 4.
 STEPS_PER_MOTOR_TURN = 90
 # Lines a joint turn of what is met twice a turn of the motor against the housing, and against the output.
 FLEXSPLINE, CIRCULAR_SPLINE = 202, 200
@@ -31,18 +32,19 @@ total cumulative pitch deviation *Fp* (ISO 1328-1). `config/as_built.yaml` has f
 UR5 = """
 **A UR5's line at 200.1 ± 0.3.** The line in the current of the recorded joints sits at 200.1 ± 0.3 a joint turn.
 The flexspline's 202 is six times that uncertainty away, so the errors of those joints are fixed to the circular spline
-or to parts that turn with it: its pitch errors, its roundness, its bearing. The gear as built has the larger errors there for that
-reason. The log holds a motor current and no angle, so it gives the order of the line and not its amplitude in
-seconds of arc. Amplitudes come from other drives with both encoders, whose readings do not separate 200 from 202.
+or to parts that turn with it: its pitch errors, its roundness, its bearing. The gear as built has the larger errors
+there for that reason. The log holds a motor current and no angle, so it gives the order of the line and not its
+amplitude in seconds of arc. Amplitudes come from other drives with both encoders, whose readings do not separate 200
+from 202.
 """
 
 ECCENTRIC = """
 **Effect of an eccentricity.** Errors of the wave generator alone make no line below the tooth pass: one tooth pitch on,
 the gear is the same again, turned and renumbered. A circular spline off centre moves the teeth of one lobe ahead and
-those of the other back. Their mean does not move, and a line at 200 appears only with the square of the eccentricity, as
-long as both lobes carry. A second error that loads the lobes unequally changes that: the output follows the lobe that
-carries more, and *odd* orders appear. The twin holds the wave generator on the motor's axis. The Oldham coupling of a
-real one lets it centre itself, so an eccentricity here is the remainder after the coupling.
+those of the other back. Their mean does not move, and a line at 200 appears only with the square of the eccentricity,
+as long as both lobes carry. A second error that loads the lobes unequally changes that: the output follows the lobe
+that carries more, and *odd* orders appear. The twin holds the wave generator on the motor's axis. The Oldham coupling
+of a real one lets it centre itself, so an eccentricity here is the remainder after the coupling.
 """
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of the validation: sections that run the tool, judge what comes out, and say it in words, tables and figures."""
+"""The page of the validation: sections that run the tool, judge what comes out, and say it in words, tables and
+figures."""
 import json
 import os
 import subprocess

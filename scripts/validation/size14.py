@@ -19,13 +19,16 @@ grease). Efficiency, hysteresis and lost motion are not fitted.
 """)
     insertion = page.tool("insert", *SIZE_14)
     large = page.tool("insert")
-    page.check("size14.insertion", "force of the wave generator on the rim, over that of size 25", "similarity: the square of 14/25",
+    page.check("size14.insertion", "force of the wave generator on the rim, over that of size 25",
+               "similarity: the square of 14/25",
                Within((14.0 / 25.0) ** 2, relative=0.01),
-               insertion["wave_generator_force_sum"] / large["wave_generator_force_sum"], "", "values in the file are rounded")
+               insertion["wave_generator_force_sum"] / large["wave_generator_force_sum"], "",
+               "values in the file are rounded")
     rows = page.tool("stiffness", "--torques", ",".join(map(str, TORQUES)), *SIZE_14)["rows"]
     for row in rows:
         torque = row["torque"]
-        page.check(f"size14.torsion.{torque:g}", f"torsion at {torque:g} N·m", "catalogue: 4.7/6.1/7.1e3 N·m/rad, 2/6.9 N·m",
+        page.check(f"size14.torsion.{torque:g}", f"torsion at {torque:g} N·m",
+                   "catalogue: 4.7/6.1/7.1e3 N·m/rad, 2/6.9 N·m",
                    Within(catalogue_angle(torque, STIFFNESSES, BREAKPOINTS) / ARCMIN, relative=0.02),
                    -row["output_angle"] / ARCMIN, "arcmin", "as for size 25")
     loop = page.tool("hysteresis", "--amplitude", RATED_TORQUE, "--lost-motion-torque", 0.04 * RATED_TORQUE, *SIZE_14)
@@ -44,7 +47,8 @@ grease). Efficiency, hysteresis and lost motion are not fitted.
         left, right = figure.subplots(1, 2)
         torques = [0.5 * k for k in range(1, 57)]
         curve = page.tool("stiffness", "--torques", ",".join(map(str, torques)), *SIZE_14)["rows"]
-        left.plot(torques, [catalogue_angle(torque, STIFFNESSES, BREAKPOINTS) / ARCMIN for torque in torques], color=ORANGE,
+        left.plot(torques, [catalogue_angle(torque, STIFFNESSES, BREAKPOINTS) / ARCMIN for torque in torques],
+                  color=ORANGE,
                   lw=4, alpha=0.5, label="catalogue")
         left.plot(torques, [-row["output_angle"] / ARCMIN for row in curve], color=BLUE, label="twin")
         left.set_title("Torsion [arcmin]")

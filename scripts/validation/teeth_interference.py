@@ -25,7 +25,8 @@ def tilted_gap(teeth, tooth_height):
 def interference(page, path):
     page.heading("Interference of the straight flank")
     height = page.tool("parameters")["gear"]["tooth_height_flexspline"]
-    angles = [8, 9, 10, 11, 12, 12.5, 13, 13.25, 13.5, 13.6, 13.7, 13.8, 13.9, 14, 14.5, 15, 15.5, 16, 17, 18, 20, 22.5, 25]
+    angles = [8, 9, 10, 11, 12, 12.5, 13, 13.25, 13.5, 13.6, 13.7, 13.8, 13.9, 14, 14.5, 15, 15.5, 16, 17, 18, 20, 22.5,
+              25]
     forces = []
     gaps = []
     for angle in angles:
@@ -43,7 +44,8 @@ def interference(page, path):
         for axis in (left, right):
             axis.axvspan(16, 17, color=ORANGE, alpha=0.3, linewidth=0)
 
-    page.figure("teeth_interference", "Straight flanks against the flank angle, flank clearance zero. Band: the smallest angles free of "
+    page.figure("teeth_interference",
+                "Straight flanks against the flank angle, flank clearance zero. Band: the smallest angles free of "
                 "interference in the thesis, 16° and 17°.", draw)
     from_forces = crossing(angles, [1.0 - force for force in forces])
     from_gap = crossing(angles, gaps)
@@ -53,11 +55,15 @@ already overlap below {from_gap:.1f}°. By the closed form it is the chord of th
 16° and 17° are finite elements of whole gears, whose teeth also lean along their width (coning). The order is the
 same, and the shipped angle is free.
 """)
-    page.check("teeth.interference_angle", "flank angle at which the tips of straight flanks cease to interfere", "thesis 3.2.2 [51], 4 [83]",
-               Within(16.0, absolute=2.0), from_gap, "°", "the two sources differ by 1°; plane teeth against whole gears")
-    page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°", "thesis 4 [83]: free from 16°", AtMost(0.0),
+    page.check("teeth.interference_angle", "flank angle at which the tips of straight flanks cease to interfere",
+               "thesis 3.2.2 [51], 4 [83]",
+               Within(16.0, absolute=2.0), from_gap, "°",
+               "the two sources differ by 1°; plane teeth against whole gears")
+    page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°",
+               "thesis 4 [83]: free from 16°", AtMost(0.0),
                forces[angles.index(16)], "N", "no contact is no force")
-    page.check("teeth.interference_below", "the same at 12°", "interference below 16°", AtLeast(100.0), forces[angles.index(12)], "N",
+    page.check("teeth.interference_below", "the same at 12°", "interference below 16°", AtLeast(100.0),
+               forces[angles.index(12)], "N",
                "a force that would be felt: ten teeth's share of the preload")
 
 

@@ -24,7 +24,8 @@ def support(stiffness):
 
 
 def ball_stiffness(force):
-    """Secant stiffness of a ball between its races at a force [N], Palmgren: 4.4e-4 mm (F^2 / D)^(1/3), F in N, D in mm [N/m]."""
+    """Secant stiffness of a ball between its races at a force [N], Palmgren: 4.4e-4 mm (F^2 / D)^(1/3), F in N, D in mm
+    [N/m]."""
     return force / (4.4e-7 * (force ** 2 / (1e3 * BALL_DIAMETER)) ** (1.0 / 3.0))
 
 
@@ -48,7 +49,8 @@ def jump(page):
     parameters = page.tool("parameters")
     gear, mesh = parameters["gear"], parameters["mesh"]
     rigid = ratchet(page, limit=20000)
-    lobes = {stiffness: ratchet(page, "--lobe-stiffness", f"{stiffness:.3e}") for stiffness in (1e8, 3e7, 6.8e6, 1e6, 1e5)}
+    lobes = {stiffness: ratchet(page, "--lobe-stiffness", f"{stiffness:.3e}")
+             for stiffness in (1e8, 3e7, 6.8e6, 1e6, 1e5)}
     supports = [1e5, 2e5, 3e5, 5e5, 1e6, 2e6, 3e6, 5e6, 1e7, 2e7]
     curves = [ratchet(page, *support(stiffness), limit=20000) for stiffness in supports]
     jumps = [curve["peak"]["torque"] for curve in curves]
@@ -59,7 +61,8 @@ def jump(page):
     needed = support_for(page, CATALOGUE_JUMP)
 
     radius = gear["flexspline_inner_radius"] + gear["rim_thickness"] + 0.5 * gear["tooth_height_flexspline"]
-    depth = gear["flexspline_inner_radius"] + gear["wave_amplitude"] + gear["rim_thickness"] + gear["tooth_height_flexspline"] \
+    depth = gear["flexspline_inner_radius"] + gear["wave_amplitude"] + gear["rim_thickness"] \
+        + gear["tooth_height_flexspline"] \
         - gear["tip_radius_circular_spline"]
     radial = 0.5 * CATALOGUE_JUMP / radius * math.tan(mesh["flank_angle"])
     parts = amplitude_parts(at_catalogue, gear, mesh["flank_angle"])
@@ -107,29 +110,41 @@ teeth at less depth) and the margin in a guaranteed figure.
         left.plot([-1e3 * row["output_angle"] for row in start], [row["torque"] for row in start], color=GREY,
                   label="1e8 N/m, as shipped")
         left.axhline(CATALOGUE_JUMP, color=RED, linestyle="--", linewidth=0.8)
-        left.set(xlabel="output angle [mrad]", ylabel="torque [N·m]", title="Output driven, wave generator locked", ylim=(-300, 2900))
+        left.set(xlabel="output angle [mrad]", ylabel="torque [N·m]", title="Output driven, wave generator locked",
+                 ylim=(-300, 2900))
         left.legend()
         right.loglog(supports, jumps, "o-", color=BLUE, markersize=3, label="local support, per tooth")
-        right.loglog(list(lobes), [lobes[k]["peak"]["torque"] for k in lobes], "^", color=ORANGE, label="whole lobe: no jump up to here")
+        right.loglog(list(lobes), [lobes[k]["peak"]["torque"] for k in lobes], "^", color=ORANGE,
+                     label="whole lobe: no jump up to here")
         right.axhline(CATALOGUE_JUMP, color=RED, linestyle="--", linewidth=0.8, label="catalogue")
         right.axvline(hertz, color=GREEN, linestyle=":", label="balls, Hertz")
         right.axvline(1e8, color=GREY, linestyle=":", label="thesis")
         right.set(xlabel="stiffness [N/m]", ylabel="jump torque [N·m]", title="Jump against stiffness")
         right.legend(fontsize=7)
 
-    page.figure("teeth_jump", "Left: torque over driven output angle; single teeth leave before the whole jumps. Right: the torque of the jump "
+    page.figure("teeth_jump", "Left: torque over driven output angle; single teeth leave before the whole jumps. "
+                "Right: the torque of the jump "
                 "against the wave generator's stiffness.", draw, size=(8.0, 3.5))
+
+    def jump(name):
+        return ratchet(page, *support(hertz), *set_all("mesh.profile=" + name), limit=20000)["peak"]["torque"]
+
     page.table(["profile", "jump with the balls' stiffness [N·m]"],
-               [[label, f"{ratchet(page, *support(hertz), *set_all('mesh.profile=' + name), limit=20000)['peak']['torque']:.0f}"]
+               [[label, f"{jump(name):.0f}"]
                 for name, (label, _) in PROFILES.items()])
-    page.check("teeth.jump_as_shipped", "largest torque without a jump, as shipped (the search ends at 20 kN·m)", "catalogue, CSF-25-100",
+    page.check("teeth.jump_as_shipped", "largest torque without a jump, as shipped (the search ends at 20 kN·m)",
+               "catalogue, CSF-25-100",
                AtLeast(CATALOGUE_JUMP), rigid["peak"]["torque"], "N·m", "a guaranteed figure: the gear must hold it")
-    page.check("teeth.jump_lobe", "the same with lobes of 6.8e6 N/m, the simple estimate (up to 2 kN·m)", "catalogue, CSF-25-100",
+    page.check("teeth.jump_lobe", "the same with lobes of 6.8e6 N/m, the simple estimate (up to 2 kN·m)",
+               "catalogue, CSF-25-100",
                AtLeast(CATALOGUE_JUMP), lobes[6.8e6]["peak"]["torque"], "N·m", "as above")
-    page.check("teeth.jump_hertz", "jump torque with the balls' stiffness", "catalogue, CSF-25-100", AtLeast(CATALOGUE_JUMP),
+    page.check("teeth.jump_hertz", "jump torque with the balls' stiffness", "catalogue, CSF-25-100",
+               AtLeast(CATALOGUE_JUMP),
                hertz_jump, "N·m", "as above; how much more it holds is the finding, not a success")
-    page.check("teeth.jump_support", "stiffness per tooth at which the jump is at 500 N·m, over that of the balls", "Palmgren, 23 balls of 5.47 mm",
-               AtMost(1.0), needed / hertz, "", "the balls are one compliance of several in series, so the whole must be softer")
+    page.check("teeth.jump_support", "stiffness per tooth at which the jump is at 500 N·m, over that of the balls",
+               "Palmgren, 23 balls of 5.47 mm",
+               AtMost(1.0), needed / hertz, "",
+               "the balls are one compliance of several in series, so the whole must be softer")
 
 
 def amplitude_parts(row, gear, flank_angle):
@@ -143,7 +158,8 @@ def amplitude_parts(row, gear, flank_angle):
 
 
 def friction_relief(mesh):
-    """Radial force of a flank without friction over that with the largest friction, the tooth about to slide out [-]."""
+    """Radial force of a flank without friction over that with the largest friction, the tooth about to slide out
+    [-]."""
     return math.tan(mesh["flank_angle"]) / math.tan(mesh["flank_angle"] - math.atan(mesh["friction_static"]))
 
 

@@ -18,17 +18,18 @@ A flank enters the mesh as the half clearance c between tooth and space over the
 an ideal ring (inextensible, w0 cos 2ψ) the tooth's own path through its space is a cycloid; a flank touches where its
 clearance meets the path. All have the same clearance at full engagement. Free dimensions:
 
-- **trapezoid**: straight, {math.degrees(mesh["flank_angle"]):.0f}° (thesis, 3.2.2: smallest angle free of interference); the
-  shipped profile.
+- **trapezoid**: straight, {math.degrees(mesh["flank_angle"]):.0f}° (thesis, 3.2.2: smallest angle free of
+  interference); the shipped profile.
 - **involute**: both gears cut as rigid ones, the same angle at mid-height of the tooth. Nothing is left to choose.
-- **cycloid**: both flanks the path on half the scale, one turned by 180° (Ishikawa's similar curves): as close as flanks can
-  be.
+- **cycloid**: both flanks the path on half the scale, one turned by 180° (Ishikawa's similar curves): as close as
+  flanks can be.
 - **double arc**: a common tangent at mid-height ({math.degrees(mesh["tangent_angle"]):.0f}°,
-  {1e3 * mesh["tangent_length"]:.2f} mm), a convex arc above and a concave one below; their radius follows from the demand
-  that the tip has the slope of the path where it enters. The space is cut as the envelope of this tooth, as makers do. The
-  figure of the thesis (3.7) has no dimensions; a published set (Liu et al., Machines 13, 535, 2025) has a tangent of
-  {published_tangent():.1f}°, steeper than the chord of this gear's path, {chord(path):.1f}°: such arcs would never touch
-  here.
+  {1e3 * mesh["tangent_length"]:.2f} mm), a convex arc above and a concave one below; their radius follows from the
+  demand that the tip has the slope of the path where it enters. The space is cut as the envelope of this tooth, as
+  makers do. The figure of the thesis (3.7) has no dimensions; a published set (Liu et al., Machines 13, 535, 2025) has
+  a tangent of
+  {published_tangent():.1f}°, steeper than the chord of this gear's path, {chord(path):.1f}°: such arcs would never
+  touch here.
 """)
 
     def draw_shapes(figure):
@@ -39,7 +40,8 @@ clearance meets the path. All have the same clearance at full engagement. Free d
             axis.set(title=label, xlabel="across [mm]", xlim=(-0.32, 0.32), ylim=(-0.52, 0.06))
         axes[0].set_ylabel("from tooth tip [mm]")
 
-    page.figure("teeth_shapes", "Tooth of the flexspline (filled) in its space of the circular spline at full engagement, true to scale; "
+    page.figure("teeth_shapes", "Tooth of the flexspline (filled) in its space of the circular spline at full "
+                "engagement, true to scale; "
                 "thickness of the tooth from Table 3.4.", draw_shapes, size=(8.0, 2.6))
 
     def draw_clearance(figure):
@@ -51,10 +53,12 @@ clearance meets the path. All have the same clearance at full engagement. Free d
             right.plot(drop, [math.degrees(value) for value in data["flank_angle"]], color=colour, label=label)
         left.plot(drop, [1e6 * value for value in data["path"]], "k:", label="path of the tooth")
         left.set(xlabel="drop from full engagement [mm]", ylabel="half clearance [µm]", title="Clearance and path")
-        right.set(xlabel="drop from full engagement [mm]", ylabel="angle from tooth axis [°]", title="Flank angle in contact")
+        right.set(xlabel="drop from full engagement [mm]", ylabel="angle from tooth axis [°]",
+                  title="Flank angle in contact")
         left.legend()
 
-    page.figure("teeth_clearance", "Half clearance of the four profiles beside the path of a tooth on the ideal ring. Above the dots: a "
+    page.figure("teeth_clearance",
+                "Half clearance of the four profiles beside the path of a tooth on the ideal ring. Above the dots: a "
                 "gap; below: interference.", draw_clearance)
     return path
 
@@ -65,8 +69,8 @@ def chord(path):
 
 
 def published_tangent():
-    """Angle of the common tangent of Liu et al. (Machines 13, 535, section 3.5): arcs of radius r about (-c1, -e1) from the
-    tooth's axis and pitch line, and about (c2, e2) from the axis of the next space [deg]."""
+    """Angle of the common tangent of Liu et al. (Machines 13, 535, section 3.5): arcs of radius r about (-c1, -e1) from
+    the tooth's axis and pitch line, and about (c2, e2) from the axis of the next space [deg]."""
     module, r1, c1, e1, r2, c2, e2 = 0.5, 0.685, 0.332, 0.155, 0.785, 0.330, 0.134
     across = 0.5 * math.pi * module + c2 + c1
     return math.degrees(math.atan2(e1 + e2, across) + math.acos((r1 + r2) / math.hypot(across, e1 + e2)))
@@ -83,7 +87,8 @@ def draw_engaged(axis, shape, half_width, colour):
     # The space is known up to a constant: the gap at full engagement, here none.
     space = {round(1e6 * (tip_drop - above)): width for above, width in
              zip(shape["space"]["above_tip"], shape["space"]["half_width"])}
-    gap = min(space[depth] - value for depth, value in zip((round(1e6 * b) for b in below), thickness) if depth in space)
+    gap = min(space[depth] - value for depth,
+              value in zip((round(1e6 * b) for b in below), thickness) if depth in space)
     depths = sorted(space)
     space_x = [1e3 * (space[depth] - gap - thickness[middle] + half_width) for depth in depths]
     for side in (-1, 1):
@@ -109,11 +114,13 @@ def clearance_at_rest(page, rows, path):
         axis.legend(ncol=4, loc="upper center")
         axis.set_ylim(-3, 32)
 
-    page.figure("teeth_gap", "No load, the ring in equilibrium: gap of each engaged tooth to its nearer flank; below zero it is pressed.",
+    page.figure("teeth_gap", "No load, the ring in equilibrium: gap of each engaged tooth to its nearer flank; below "
+                "zero it is pressed.",
                 draw, size=(8.0, 2.8))
     gaps = {name: [gap for _, gap in engaged(name)] for name in PROFILES}
     page.table(["profile", "teeth pressed at no load", "smallest gap [µm]", "largest gap [µm]"],
-               [[PROFILES[name][0], rows[name][0]["teeth_loaded"], f"{min(gaps[name]):.2f}", f"{max(gaps[name]):.2f}"] for name in PROFILES])
+               [[PROFILES[name][0], rows[name][0]["teeth_loaded"], f"{min(gaps[name]):.2f}", f"{max(gaps[name]):.2f}"]
+                for name in PROFILES])
     mesh, gear = page.tool("parameters")["mesh"], page.tool("parameters")["gear"]
     steep = next(drop for drop, angle in zip(path["drop"], path["angle"]) if angle > mesh["tangent_angle"])
     steep_angle = 0.5 * math.degrees(math.acos(1.0 - steep / gear["wave_amplitude"]))
@@ -121,14 +128,16 @@ def clearance_at_rest(page, rows, path):
 Flanks made for rigid gears, straight or involute, hardly differ at this size and have a gap of up to
 {max(gaps["involute"]):.0f} µm on their way. The cycloid stays within {max(abs(gap) for gap in gaps["cycloid"]):.1f}
 µm all the way; the difference from conjugate motion is the ring's own elasticity. The double arc touches near full
-engagement; from about {steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows the path at a gap of a
-few micrometres, which its own concave root has cut at full engagement.
+engagement; from about {steep_angle:.0f}° on, where the path becomes steeper than the common tangent, its arc follows
+the path at a gap of a few micrometres, which its own concave root has cut at full engagement.
 """)
-    page.check("teeth.cycloid_conjugate", "cycloid: largest less smallest gap along the mesh at no load", "conjugate on the ideal ring",
+    page.check("teeth.cycloid_conjugate", "cycloid: largest less smallest gap along the mesh at no load",
+               "conjugate on the ideal ring",
                AtMost(3.0), max(gaps["cycloid"]) - min(gaps["cycloid"]), "µm",
                "difference of the elastic ring from the ideal one; a tenth of the straight flank's gap")
     for name in ("trapezoid", "involute", "double_arc"):
-        page.check(f"teeth.no_interference_{name}", f"{PROFILES[name][0]}: smallest gap at no load beyond 10° from the major axis",
+        page.check(f"teeth.no_interference_{name}",
+                   f"{PROFILES[name][0]}: smallest gap at no load beyond 10° from the major axis",
                    "no interference of a sound profile (thesis, 3.2.2)", AtLeast(0.0),
                    min(gap for angle, gap in engaged(name) if abs(angle) > 10.0), "µm",
                    "pressed only near the axis, by the preload of 1 µm")

@@ -13,7 +13,8 @@ def set_all(*assignments):
 
 
 def loaded(page, *assignments, loads=LOADS):
-    return page.tool("stiffness", "--torques", ",".join(str(load) for load in loads), "--teeth", *set_all(*assignments))["rows"]
+    return page.tool("stiffness", "--torques", ",".join(str(load) for load in loads), "--teeth",
+                     *set_all(*assignments))["rows"]
 
 
 def row_at(rows, torque):

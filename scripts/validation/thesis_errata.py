@@ -262,7 +262,8 @@ def chapter_7(page):
     return [
         [
             "7.2", "the cup's stiffness on each tooth's own angle",
-            f"{given['cup']['torsion_stiffness'][0] * wave:.0f} N·m on a tooth with no load; {TEETH_FS} K_T in all", "mean rotation"
+            f"{given['cup']['torsion_stiffness'][0] * wave:.0f} N·m on a tooth with no load; {TEETH_FS} K_T in all",
+            "mean rotation"
         ],
         [
             "7.18, 7.19", "F2 − G2 under the root",

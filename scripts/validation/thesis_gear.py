@@ -91,7 +91,8 @@ the sum of the three is a result too.
                    "a whole turn brings every tooth back: only rounding is left")
         page.check(f"thesis.torque_{name}_held", f"{torques}, {held} held, mean over the turn",
                    f"thesis eq. {equation}, lossless",
-                   Within(expected, relative=1e-6), torque_ratio, "", "virtual work; the solver leaves 5e-7 N on a tooth")
+                   Within(expected, relative=1e-6), torque_ratio, "",
+                   "virtual work; the solver leaves 5e-7 N on a tooth")
     page.check("thesis.torque_sum", "largest sum of the torques on wave generator, circular spline and flexspline",
                "third law", AtMost(1e-6), np.max(np.abs(-run["wave_generator_torque"] - load + run["housing_torque"])),
                "N·m", "5e-7 N left on a tooth, at 0.03 m")
@@ -148,7 +149,8 @@ def cracks(page):
     page.heading("Chapter 3: where a crack goes, and what fails (3.4)")
     page.text(f"""
 Backup ratio b_R = rim thickness / tooth height (eq. 3.20). According to tests cited in the thesis a crack at the tooth
-root runs into the tooth above 1, either way between 0.4 and 1, through the rim below 0.4; 1.3 is advised. This gear: b_R =
+root runs into the tooth above 1, either way between 0.4 and 1, through the rim below 0.4; 1.3 is advised. This gear:
+b_R =
 {number(ratio)}, so {crack_direction(ratio)}.
 """)
     page.check("thesis.backup_ratio", "backup ratio of the configured gear", "thesis eq. 3.21",

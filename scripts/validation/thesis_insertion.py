@@ -169,8 +169,8 @@ def force_figures(page, ring):
         [[number(w0), number(literature), f"{tooth:.1f}", f"{ball:.0f}"]
          for (w0, literature), tooth, ball in zip(LITERATURE, per_tooth, per_ball)])
     page.text(f"""
-Table 6.3 compares 506.8 N from the literature with the thesis' 538.8 N. The first is the force on a **ball**, the second
-on a **tooth**, and {TEETH_FS / MEASURED.balls:.1f} teeth share a ball: like for like the thesis' model gives
+Table 6.3 compares 506.8 N from the literature with the thesis' 538.8 N. The first is the force on a **ball**, the
+second on a **tooth**, and {TEETH_FS / MEASURED.balls:.1f} teeth share a ball: like for like the thesis' model gives
 {per_ball[0]:.0f} N on the most loaded ball, {per_ball[0] / LITERATURE[0][1]:.0f} times the literature. Only the
 growth with w0 can be compared: both are nearly proportional.
 """)

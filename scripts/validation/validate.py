@@ -25,13 +25,14 @@ SECTIONS = {
 
 HEAD = """# Validation
 
-Results of the twin compared with the thesis it grew from, exact invariants, the gear maker's catalogue and recordings of real
-drives. Every number and figure below comes from runs of `joint_twin`; one command recomputes them all:
+Results of the twin compared with the thesis it grew from, exact invariants, the gear maker's catalogue and recordings
+of real drives. Every number and figure below comes from runs of `joint_twin`; one command recomputes them all:
 
     scripts/validate
 
-It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate --set
-contact.stiffness=1.1e+8` shows the effect of a wrong parameter (the page is then written to the folder of `--out`, never over this one).
+It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate
+--set contact.stiffness=1.1e+8` shows the effect of a wrong parameter (the page is then written to the folder of
+`--out`, never over this one).
 """
 
 
@@ -121,7 +122,8 @@ def main(arguments):
                 name = running[done]
                 try:
                     pages[name], seconds = done.result()
-                except Exception as error:  # pylint: disable=broad-except  (whatever stops one section: the others count)
+                # pylint: disable=broad-except  (whatever stops one section: the others count)
+                except Exception as error:
                     failed = True
                     say(f"[{len(pages)}/{len(names)}] {name}: STOPPED: {error}")
                     continue

@@ -24,7 +24,6 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "joint_twin");
   hjt::shutDownOnSignals();
-  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
   // Outlives the try block: with the last handle ROS shuts down, and its console with it.
   ros::NodeHandle node("~");
   try

@@ -166,7 +166,6 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "replay_recorder");
   hjt::shutDownOnSignals();
-  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
   CLI::App app("Records the topics of a bag being played, and everything the twin puts out beside them");
   std::string played_bag;
   std::string output_bag;

@@ -3,18 +3,25 @@
 
 #include <utility>
 
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/node_handle.h>
+#include <ros/this_node.h>
+
+#include "ros_io/time.hpp"
+
 namespace hjt
 {
-void DiagnosticTasks::add(const std::string& name, std::function<DiagnosticVerdict()> judge,
-                          const std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)>& report)
+DiagnosticTasks::DiagnosticTasks(const std::string& hardware_id)
+  : hardware_id_(hardware_id)
+  , period_(ros::NodeHandle("~").param("diagnostic_period", 1.0))
+  , publisher_(ros::NodeHandle().advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1))
 {
-  Task& task = tasks_.emplace_back(Task{ std::move(judge), {} });
-  updater_.add(name,
-               [&task, report](diagnostic_updater::DiagnosticStatusWrapper& status)
-               {
-                 status.summary(task.verdict.level, task.verdict.text);
-                 report(status);
-               });
+}
+
+void DiagnosticTasks::add(const std::string& name, std::function<DiagnosticVerdict()> judge,
+                          std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)> report)
+{
+  tasks_.push_back({ ros::this_node::getName().substr(1) + ": " + name, std::move(judge), std::move(report), {} });
 }
 
 void DiagnosticTasks::look()
@@ -27,10 +34,26 @@ void DiagnosticTasks::look()
     task.verdict = std::move(verdict);
   }
   const ros::WallTime now = ros::WallTime::now();
-  if (changed || (now - last_report_).toSec() >= updater_.getPeriod())
+  if (changed || (now - last_report_).toSec() >= period_)
   {
     last_report_ = now;
-    updater_.force_update();
+    report();
   }
+}
+
+void DiagnosticTasks::report() const
+{
+  diagnostic_msgs::DiagnosticArray message;
+  message.header.stamp = toRosTime(fromRosTime(ros::Time::now()));
+  for (const Task& task : tasks_)
+  {
+    diagnostic_updater::DiagnosticStatusWrapper status;
+    status.name = task.name;
+    status.hardware_id = hardware_id_;
+    status.summary(task.verdict.level, task.verdict.text);
+    task.report(status);
+    message.status.push_back(status);
+  }
+  publisher_.publish(message);
 }
 }  // namespace hjt

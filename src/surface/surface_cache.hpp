@@ -1,47 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <future>
-#include <list>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "model/joint_model.hpp"
 #include "solver/response_surface.hpp"
+#include "surface/surface_pool.hpp"
 
 namespace hjt
 {
-/// Surfaces in memory for the twins of one process, one for each set of parameters. Safe to use from several threads:
-/// who asks for one that is being made waits for it, and who asks for another does not. Where `make` throws, its caller gets
-/// the exception and the next asker tries again.
-class SurfacePool
-{
-public:
-  using Surface = std::shared_ptr<const ResponseSurface>;
-
-  /// `kept`: so many of those asked for last, at least one, stay in memory, 50 MB each, also while no twin uses them.
-  explicit SurfacePool(std::size_t kept) : kept_(kept) {}
-
-  /// The surface under this key, made by `make` if it is not there; may be none.
-  Surface obtain(const std::string& key, const std::function<Surface()>& make);
-
-private:
-  using Entry = std::pair<std::string, std::shared_future<Surface>>;
-
-  std::list<Entry>::iterator find(const std::string& key);
-
-  std::size_t kept_;
-  std::mutex mutex_;
-  std::list<Entry> entries_;  // those asked for last in front
-};
-
 /// A surface's tables.
 struct SurfaceTables
 {

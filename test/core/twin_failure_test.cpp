@@ -127,11 +127,11 @@ TwinCounters countersAfter(Twin& twin, Stamp until)
 
 TEST(DoubtfulStep, IsSaidWhenItIsTooLongForTheSwing)
 {
-  // The shipped joint swings with 390 rad/s: 0.04 rad of phase in 1e-4 s, 0.4 in 1e-3 s.
+  // The shipped joint swings with 280 rad/s: 0.028 rad of phase in 1e-4 s, 0.28 in 1e-3 s.
   Twin fine(shippedParameters());
   EXPECT_EQ(countersAfter(fine, 20 * MILLISECOND).coarse_steps, 0U);
   EXPECT_EQ(fine.health().solver_state, SolverState::OK);
-  EXPECT_NEAR(fine.outputs().swing_phase, 0.03, 0.01);
+  EXPECT_NEAR(fine.outputs().swing_phase, 0.028, 0.001);
   Twin coarse(shippedParameters({ "solver.rate=1000" }));
   EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 20U);
   EXPECT_EQ(coarse.health().solver_state, SolverState::DEGRADED);

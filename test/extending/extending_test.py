@@ -9,8 +9,8 @@ The lines before the first hunk of the patch hold
   Run:     the command, found in the built package's folders of programs
   Edits:   how many edits the example may take
   Apart:   files that are not counted, such as those of a parameter that comes with the example (optional)
-New files together count as one edit, every changed file as one. All examples share BUILD_DIR/extending, so that only the
-first one pays for what they have in common.
+New files together count as one edit, every changed file as one. All examples share BUILD_DIR/extending, so that only
+the first one pays for what they have in common.
 """
 import filecmp
 import os

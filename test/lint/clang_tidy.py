@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names and likely faults by clang-tidy (.clang-tidy) in every source of src/, test/ and bench/ that the build compiles.
+"""Names and likely faults by clang-tidy (.clang-tidy) in every source of src/, test/ and bench/ that the build
+compiles.
 
 usage: clang_tidy.py BUILD_FOLDER
 
-A file without findings is remembered in ${XDG_CACHE_HOME:-~/.cache}/harmonic_joint_twin/clang_tidy and checked again only
-after a change of the file, of a header that it includes, of the compiler's options, of .clang-tidy or of the tool.
+A file without findings is remembered in ${XDG_CACHE_HOME:-~/.cache}/harmonic_joint_twin/clang_tidy and checked again
+only after a change of the file, of a header that it includes, of the compiler's options, of .clang-tidy or of the tool.
 """
 import concurrent.futures
 import functools
@@ -69,7 +70,8 @@ def commands(build, root):
 
 
 def key(entry, common, root):
-    """Of what a verdict depends on: the tool and its configuration, the options, all files read. None if it does not compile."""
+    """Of what a verdict depends on: the tool and its configuration, the options, all files read. None if it does not
+    compile."""
     arguments = [word for word in entry["arguments"] if word != "-c"]
     if "-o" in arguments:
         del arguments[arguments.index("-o"):][:2]

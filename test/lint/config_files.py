@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""config/: numbers are spelt so that rosparam takes them for numbers, each key says its unit in the comment above, and the
-launch file loads the stages of the default configuration.
+"""config/: numbers are spelt so that rosparam takes them for numbers, each key says its unit in the comment above, and
+the launch file loads the stages of the default configuration.
 
 To YAML 1.1, which rosparam reads, 1.0e-3 is a number and 1e-3, 1e3 and 1.0e4 are texts. A node
 reads those as well, but `rosparam get` would show them in quotes.
@@ -69,7 +69,8 @@ def check(root):
             for scalar in scalars(node):
                 plain = isinstance(scalar, yaml.ScalarNode) and scalar.style is None
                 if plain and scalar.tag == "tag:yaml.org,2002:str" and is_number(scalar.value):
-                    problems.append(f"{path}:{scalar.start_mark.line + 1}: {key}: {scalar.value} is a text to rosparam, "
+                    problems.append(f"{path}:{scalar.start_mark.line + 1}: {key}: {scalar.value} is a text to "
+                                    f"rosparam, "
                                     "which wants a dot and a signed exponent: 1.0e-3")
             if not UNIT.search(comment_above(content.splitlines(), line)):
                 problems.append(f"{path}:{line + 1}: {key}: no [unit] in the comment above it")

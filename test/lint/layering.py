@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data flows one way: a folder includes itself and the folders it may see, and ROS stays in ros_io and the applications.
+"""Data flows one way: a folder includes itself and the folders it may see, and ROS stays in ros_io and the
+applications.
 
 Debian keeps ROS' headers in /usr/include, where no include path can keep them from the core.
 """
@@ -38,7 +39,8 @@ SEES = {
 }
 WITH_ROS = {"ros_io", "apps", "apps/common", "apps/sweep", "apps/compare", "apps/tool", "test/ros"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
-LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/stat|time|unistd)\.h|(Eigen|boost|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
+LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/stat|time|unistd)\.h|"
+                       r"(Eigen|boost|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
 # Libraries that one folder alone may use.
 OWN_LIBRARIES = {
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),

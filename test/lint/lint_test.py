@@ -183,7 +183,8 @@ class DocTables(Tree):
         return doc_tables.check_parameters(root, self.TABLE)
 
     def page(self, rows):
-        self.write(doc_tables.PARAMETERS, "\n".join(["# A", doc_tables.PARAMETERS_BEGIN, *rows, doc_tables.PARAMETERS_END]))
+        self.write(doc_tables.PARAMETERS,
+                   "\n".join(["# A", doc_tables.PARAMETERS_BEGIN, *rows, doc_tables.PARAMETERS_END]))
 
     def test_same_table(self):
         self.page(self.TABLE)
@@ -214,9 +215,11 @@ class Links(Tree):
     def test_targets_that_exist(self):
         self.write("docs/b.md", "# Two words, `code`\n\n## Same\n\n## Same\n")
         self.write("docs/images/a.png", "")
-        self.write("README.md", "[b](docs/b.md), [head](docs/b.md#two-words-code), [again](docs/b.md#same-1), [own](#own)\n"
-                                "[![a](docs/images/a.png)](docs/b.md) [web](https://example.org/x) <img src='docs/images/a.png'>\n"
-                                "# Own\n\n```\n[none](none.md)\n```\nand `[none](none.md)`\n")
+        self.write("README.md",
+                   "[b](docs/b.md), [head](docs/b.md#two-words-code), [again](docs/b.md#same-1), [own](#own)\n"
+                   "[![a](docs/images/a.png)](docs/b.md) [web](https://example.org/x) <img "
+                   "src='docs/images/a.png'>\n"
+                   "# Own\n\n```\n[none](none.md)\n```\nand `[none](none.md)`\n")
         self.assert_clean(links.check)
 
     def test_targets_that_do_not(self):

@@ -11,8 +11,10 @@ def check(root):
     paths = project.files(root, suffixes=[".py"])
     if not paths:
         return ["no Python files found"]
-    result = subprocess.run([sys.executable, "-m", "flake8", "--config", os.path.join(project.ROOT, "setup.cfg"), *paths],
-                            cwd=root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+    result = subprocess.run([sys.executable, "-m", "flake8", "--config", os.path.join(project.ROOT, "setup.cfg"),
+                             *paths],
+                            cwd=root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+                            check=False)
     return result.stdout.splitlines()
 
 

@@ -10,7 +10,8 @@ CLOSE_ANONYMOUS = re.compile(r"\}\s*// (anonymous )?namespace$")
 
 
 def types(root, path):
-    """Pairs of line number and name of the types with external linkage that the file defines; they stand at column 0."""
+    """Pairs of line number and name of the types with external linkage that the file defines; they stand at column
+    0."""
     anonymous = False
     for number, line in project.lines(root, path):
         if OPEN_ANONYMOUS.match(line):

@@ -18,8 +18,8 @@ try
   {
   }
   hjt::ToothForces forces = twin.makeToothForces();
-  std::cout << "motor angle " << twin.outputs().motor_angle << " rad, teeth loaded "
-            << twin.health().lobes.teeth_loaded << ", tooth forces " << twin.toothForces(forces) << '\n';
+  std::cout << "motor angle " << twin.outputs().motor_angle << " rad, teeth loaded " << twin.health().lobes.teeth_loaded
+            << ", tooth forces " << twin.toothForces(forces) << '\n';
   return twin.outputs().converged && twin.outputs().motor_angle > 0.0 ? 0 : 1;
 }
 catch (const hjt::ParameterError& error)

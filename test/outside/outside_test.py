@@ -32,6 +32,7 @@ class OutsideUser(unittest.TestCase):
                            if key not in ("CMAKE_PREFIX_PATH", "CPATH", "LD_LIBRARY_PATH")}
             others = [path for path in os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
                       if path and not path.startswith(BUILD)]
+            environment["PATH"] = f"/usr/bin:/bin:{os.environ.get('PATH', '')}"  # Debian's Python, as in scripts/lib.sh
             environment["CMAKE_PREFIX_PATH"] = ":".join([prefix, *others])
             configured = run("cmake", "-S", HERE, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
                              "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", env=environment)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What other programs can do to the node and to the recorder: messages that are huge or forge log lines, a flood, signals, a
-second recorder."""
+"""What other programs can do to the node and to the recorder: messages that are huge or forge log lines, a flood,
+signals, a second recorder."""
 import io
 import os
 import re

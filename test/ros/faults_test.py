@@ -136,7 +136,8 @@ class FaultsOfANode(unittest.TestCase):
         self.run_clock(2.0 * STEP)
         self.assertEqual(self.active(), [("pitting", 0.3, 7)])
         self.assertEqual(self.health.messages()[-1].motor_torque, self.torque)
-        for said in ("kind = 'rust' is unknown, allowed: interface_wear", "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
+        for said in ("kind = 'rust' is unknown, allowed: interface_wear",
+                     "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
                      "place = 200 [-] of pitting is out of range, allowed: tooth 0 ... 199"):
             self.assertTrue(said in self.node.output(), said)
         self.send("pitting", 0.6, 7)
@@ -163,7 +164,8 @@ class FaultsOfANode(unittest.TestCase):
         self.assertAlmostEqual(indicators.turns, 5.0, delta=0.1)
         self.assertTrue(indicators.temperature_valid)
         self.assertAlmostEqual(indicators.temperature, 25.0, delta=1e-9)
-        values = {name: value for name, value, valid in zip(indicators.names, indicators.values, indicators.valid) if valid}
+        values = {name: value for name, value,
+                  valid in zip(indicators.names, indicators.values, indicators.valid) if valid}
         self.assertTrue(0.0 < values["running_torque"] < self.torque, values)
         self.assertIn("kinematic_error", values)
         self.assertEqual((self.last().level, self.last().cause), (Assessment.OK, "none"))

@@ -104,11 +104,13 @@ class Parameters(unittest.TestCase):
 
     def test_numbers_that_yaml_reads_as_texts_are_numbers(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-            file.write("mesh: {stiffness: 5e7}\nmotor: {rotor_inertia: 1e-04}\ncup: {torsion_breakpoints: [14, 4.8e1]}\n")
+            file.write("mesh: {stiffness: 5e7}\nmotor: {rotor_inertia: 1e-04}\ncup: {torsion_breakpoints: [14, "
+                       "4.8e1]}\n")
             file.flush()
             self.check_start(configuration_files("elbow", [file.name]))
         self.check_clean_exit(signal.SIGINT)
-        self.check_output("mesh.stiffness: 5.0e+7", "motor.rotor_inertia: 0.0001", "cup.torsion_breakpoints: [14.0, 48.0]")
+        self.check_output("mesh.stiffness: 5.0e+7", "motor.rotor_inertia: 0.0001",
+                          "cup.torsion_breakpoints: [14.0, 48.0]")
 
     def test_a_text_for_a_number_is_named(self):
         self.check_refusal({"motor/rotor_inertia": "1e-3 kg"}, "motor.rotor_inertia", "1e-3 kg", "[kg.m^2]")

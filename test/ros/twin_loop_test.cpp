@@ -15,6 +15,7 @@
 #include "ros_io/conversions.hpp"
 #include "ros_io/latency_histogram.hpp"
 #include "ros_io/slot_ring.hpp"
+#include "ros_io/time.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 

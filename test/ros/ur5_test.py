@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Twins beside a UR5 that publishes as its driver does, with what goes wrong on a network. The three joints are twins, led by
-a speed control, with the noise of real sensors; the elbow's grease has gone."""
+"""Twins beside a UR5 that publishes as its driver does, with what goes wrong on a network. The three joints are twins,
+led by a speed control, with the noise of real sensors; the elbow's grease has gone."""
 import csv
 import glob
 import math
@@ -22,7 +22,8 @@ from harmonic_joint_twin.msg import Assessment, Comparison, Indicators
 from ros_support import PACKAGE, WARN, Diagnostics, Listener, executable, listen_to_all, numbers_in, wait_until
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint"}
-TWINS = [("motion", joint) for joint in JOINTS] + [("observer", joint) for joint in JOINTS] + [("torque", "base"), ("loaded", "base")]
+TWINS = [("motion", joint) for joint in JOINTS] + [("observer", joint)
+                                                   for joint in JOINTS] + [("torque", "base"), ("loaded", "base")]
 MODES = {"loaded": "motion"}  # of the others, their names
 LOADS = {"loaded": "target_moment"}  # of the others, the model
 RATIO, GAIN = 101.0, 10.7  # [-], [N.m/A] at the joint
@@ -131,7 +132,8 @@ class UR5(unittest.TestCase):
         for twin in TWINS:
             messages = self.wait_for_rows(twin)
             self.assertEqual({message.header.frame_id for message in messages}, {JOINTS[twin[1]]})
-            self.assertTrue(all(math.isfinite(getattr(message, field)) for message in messages for field in FIELDS), twin)
+            self.assertTrue(all(math.isfinite(getattr(message, field)) for message in messages for field in FIELDS),
+                            twin)
             self.assertEqual(sum(message.after_gap for message in messages), 1, twin)
 
     def test_the_sick_joint_stands_out(self):
@@ -139,7 +141,8 @@ class UR5(unittest.TestCase):
             more = {}
             for joint in JOINTS:
                 moving = [m for m in self.wait_for_rows((mode, joint)) if abs(m.velocity_measured) > 0.6]
-                more[joint] = sum(math.copysign(1.0, m.velocity_measured) * m.current_residual for m in moving) / len(moving)
+                more[joint] = sum(math.copysign(1.0, m.velocity_measured) * m.current_residual
+                                  for m in moving) / len(moving)
             self.assertGreater(abs(more["elbow"]), 0.3, (mode, more))
             self.assertLess(max(abs(more["base"]), abs(more["shoulder"])), 0.15, (mode, more))
 
@@ -148,7 +151,8 @@ class UR5(unittest.TestCase):
             name, joint = twin
             mode, load = MODES.get(name, name), LOADS.get(name, "model")
             out = os.path.join(self.directory, f"{name}_{joint}.csv")
-            subprocess.run([executable("joint_twin"), "follow", self.bag_path, "--joint", joint, "--mode", mode, "--config",
+            subprocess.run([executable("joint_twin"), "follow", self.bag_path, "--joint", joint, "--mode", mode,
+                            "--config",
                             f"joints/{joint}.yaml", "--set", f"telemetry.load={load}", "--out", out],
                            check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with open(out) as file:

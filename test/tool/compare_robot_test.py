@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`joint_twin compare` on simulated robots with hidden faults: other errors of manufacture than the twin's, real sensors.
+"""`joint_twin compare` on simulated robots with hidden faults: other errors of manufacture than the twin's, real
+sensors.
 
 The robots are made by `joint_twin sweep`, whose drive control holds a speed as a robot's does."""
 import os
@@ -26,7 +27,8 @@ class HiddenFault(tool.ToolTest):
         return f"{name}/runs/run_000000000.bag"
 
     def compare(self, recording, report, *arguments):
-        return self.succeed_json("compare", recording, *TELEMETRY, "--report", report, "--set", "output.load_inertia=2.0",
+        return self.succeed_json("compare", recording, *TELEMETRY, "--report", report, "--set",
+                                 "output.load_inertia=2.0",
                                  *arguments)
 
     def causes(self, report, title):
@@ -45,7 +47,8 @@ class HiddenFault(tool.ToolTest):
         self.assertIn("lubricant_degradation", self.causes(beside, "Friction"))
         self.assertEqual(self.causes(beside, "Torsion"), [])
 
-        crack = self.compare(self.robot("crack", ("flange_crack", -1), duration=25.0), "r4", *WEIGHT, "--reference", "r0")
+        crack = self.compare(self.robot("crack", ("flange_crack", -1), duration=25.0), "r4", *WEIGHT, "--reference",
+                             "r0")
         self.assertIn("flange_crack", self.causes(crack, "Torsion"))
         self.assertEqual(self.causes(crack, "Friction"), [])
 

@@ -64,7 +64,8 @@ class Compare(tool.ToolTest):
         self.fail_with(1, ["comparison.json exists; --force"], "compare", "a.bag", *OPTIONS, "--report", "report")
         self.fail_with(1, ["joints found: elbow_joint, wrist_1_joint"], "compare", "a.bag", "--joint", "shoulder",
                        "--report", "r1")
-        self.fail_with(1, ["no messages on /arm", "/joint_states (sensor_msgs/JointState)"], "compare", "a.bag", *OPTIONS,
+        self.fail_with(1, ["no messages on /arm", "/joint_states (sensor_msgs/JointState)"], "compare", "a.bag",
+                       *OPTIONS,
                        "--topic", "/arm", "--report", "r2")
         self.fail_with(1, ["nowhere.bag"], "compare", "nowhere.bag", *OPTIONS, "--report", "r3")
         self.fail_with(2, ["--report is required"], "compare", "a.bag", *OPTIONS)

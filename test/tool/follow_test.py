@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`joint_twin follow`: the twin beside a recorded robot, in each mode. The robots are twins, led by a speed control, with the
-noise of real sensors; `joint_twin sweep` runs them."""
+"""`joint_twin follow`: the twin beside a recorded robot, in each mode. The robots are twins, led by a speed control,
+with the noise of real sensors; `joint_twin sweep` runs them."""
 import csv
 import glob
 import math

@@ -60,7 +60,8 @@ class Identify(tool.ToolTest):
         self.assertIn(str(gain["value"])[:8], str(loaded))
         told = ["--set", "telemetry.load=target_moment"]
         before = self.succeed_json("follow", "a.bag", *OPTIONS, *told)
-        after = self.succeed_json("follow", "a.bag", *OPTIONS, *told, "--config", self.path("found.yaml"), "--out", "a.csv")
+        after = self.succeed_json("follow", "a.bag", *OPTIONS, *told, "--config", self.path("found.yaml"), "--out",
+                                  "a.csv")
         self.assertLess(after["current_residual_rms"], 0.5 * before["current_residual_rms"])
         self.assertIn(after["unreadable"], range(10, 15))  # of 14 some may have been dropped
         with open(self.path("a.csv")) as file:
@@ -68,8 +69,10 @@ class Identify(tool.ToolTest):
 
         # The torque-driven twin has the identified friction too.
         speed = 0.6  # [rad/s]
+
         def friction(*options):
-            rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions", "4",
+            rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions",
+                                     "4",
                                      "--config", "joints/elbow.yaml", *options)["rows"]
             return robot.RATIO * rows[0]["gear_loss"]
         expected = robot.COULOMB + robot.VISCOUS * speed
@@ -78,7 +81,8 @@ class Identify(tool.ToolTest):
 
     def test_what_is_missing_is_named(self):
         write_telemetry(self.path("a.bag"), 2.0, faults=False)
-        self.fail_with(1, ["shoulder_pan_joint", "joints found: elbow_joint, wrist_1_joint"], "follow", "a.bag", "--joint",
+        self.fail_with(1, ["shoulder_pan_joint", "joints found: elbow_joint, wrist_1_joint"], "follow", "a.bag",
+                       "--joint",
                        "base")
         self.fail_with(1, ["no messages on /arm/joint_states", "/joint_states (sensor_msgs/JointState)"],
                        "follow", "a.bag", *OPTIONS, "--topic", "/arm/joint_states")

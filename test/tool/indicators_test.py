@@ -20,7 +20,8 @@ def recording(line_after=None, seconds=30.0, rate=500.0):
             error += 4.0 * math.cos(10.3207 * motor)
         # A little of what is not in any model, so that healthy windows differ.
         error += 0.5 * math.sin(row * row * 0.37)
-        lines.append(f"{time:.6f},{motor:.9f},{motor / 101.0 - ARCSEC * error:.12f},{2.0 + 0.01 * math.cos(row * 1.3):.5f}")
+        torque = 2.0 + 0.01 * math.cos(row * 1.3)
+        lines.append(f"{time:.6f},{motor:.9f},{motor / 101.0 - ARCSEC * error:.12f},{torque:.5f}")
     return "\n".join(lines) + "\n"
 
 
@@ -109,8 +110,9 @@ class Indicators(tool.ToolTest):
     def test_what_cannot_be_read_is_said(self):
         self.write("short.csv", recording(seconds=1.0))
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
-        self.write("bad.yaml", "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
-                               "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
+        self.write("bad.yaml",
+                   "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
+                   "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
         self.write("other.yaml", "load_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                                  "windows: 3, indicators: {}}\n")
         self.fail_with(1, ["other.yaml is no baseline: its load_step is 2.925 [N.m], expected 25.125"],

@@ -2,7 +2,8 @@
 """What must hold whatever the parameters, as the tool reports it; parameters away from the shipped ones, too."""
 import tool
 
-OTHER_GEAR = ["--set", "gear.wave_amplitude=0.33e-3", "--set", "contact.stiffness=1.3e+8", "--set", "mesh.flank_angle=0.33"]
+OTHER_GEAR = ["--set", "gear.wave_amplitude=0.33e-3", "--set", "contact.stiffness=1.3e+8", "--set",
+              "mesh.flank_angle=0.33"]
 
 
 class State(tool.ToolTest):
@@ -13,7 +14,8 @@ class State(tool.ToolTest):
         for overlay in [[], OTHER_GEAR]:
             for pitches in [1, -31]:
                 with self.subTest((overlay, pitches)):
-                    rows = self.states("--angle", "-0.7", "--loads", "0,30,-120", "--pitches", pitches, *overlay)["states"]
+                    rows = self.states("--angle", "-0.7", "--loads", "0,30,-120", "--pitches", pitches,
+                                       *overlay)["states"]
                     self.assertEqual([row["load"] for row in rows], [0.0, 30.0, -120.0])
                     for row in rows:
                         self.assertAlmostEqual(row["output_torque"], row["load"], delta=1e-8)
@@ -70,11 +72,13 @@ class SmallWave(tool.ToolTest):
     def test_error_falls_with_the_wave_down_to_a_tenth_of_a_micrometre(self):
         for overlay in [[], OTHER_GEAR]:
             with self.subTest(overlay):
-                rows = self.succeed_json("invariants", "small-wave", "--smallest", 1e-7, "--count", 31, "--hold", *overlay)["rows"]
+                rows = self.succeed_json("invariants", "small-wave", "--smallest", 1e-7, "--count", 31, "--hold",
+                                         *overlay)["rows"]
                 for row in rows:
                     self.assertEqual(row["teeth_in_contact"], 200)
                     for key, factor in {"radial": 0.636, "tangential": 0.125, "tilt": 0.875}.items():
-                        self.assertAlmostEqual(row["linear"][key] / (row["wave_amplitude"] / 30.65e-3) / factor, 1.0, delta=0.04)
+                        self.assertAlmostEqual(row["linear"][key] / (row["wave_amplitude"] / 30.65e-3) / factor, 1.0,
+                                               delta=0.04)
                 self.assertLess(max(rows[-1]["second_order"].values()), 2e-8)
 
     def test_rim_that_bends_as_given_lifts_off(self):
@@ -85,7 +89,8 @@ class SmallWave(tool.ToolTest):
 
 class Energy(tool.ToolTest):
     def test_residual_falls_with_the_square_of_the_step(self):
-        arguments = ["invariants", "energy", "--seed", 2, "--load", 15, "--duration", 0.3, "--set", "motor.torque_limit=0.5"]
+        arguments = ["invariants", "energy", "--seed", 2, "--load", 15, "--duration", 0.3, "--set",
+                     "motor.torque_limit=0.5"]
         rows = self.succeed_json(*arguments, "--rates", "10000,40000")["rows"]
         self.assertEqual([row["rate"] for row in rows], [10000.0, 40000.0])
         self.assertGreater(rows[0]["travel"], 1.0)
@@ -94,14 +99,16 @@ class Energy(tool.ToolTest):
         self.assertLess(rows[1]["relative_residual"], rows[0]["relative_residual"] / 4.0)
 
     def test_the_same_seed_gives_the_same_numbers(self):
-        run = [self.succeed_json("invariants", "energy", "--seed", seed, "--duration", 0.1)["rows"] for seed in [4, 4, 5]]
+        run = [self.succeed_json("invariants", "energy", "--seed", seed, "--duration", 0.1)["rows"]
+               for seed in [4, 4, 5]]
         self.assertEqual(run[0], run[1])
         self.assertNotEqual(run[0], run[2])
 
 
 class CommandLine(tool.ToolTest):
     def test_wrong_usage_ends_with_2(self):
-        for arguments in [[], ["dance"], ["state"], ["state", "--loads", "nan"], ["state", "--loads", "5", "--steps", "0"],
+        for arguments in [[], ["dance"], ["state"], ["state", "--loads", "nan"],
+                          ["state", "--loads", "5", "--steps", "0"],
                           ["small-wave", "--count", "3"], ["small-wave", "--smallest", "0", "--count", "3"],
                           ["energy", "--rates", "0"], ["energy", "--duration", "-1"], ["frame", "--samples", "0"]]:
             with self.subTest(arguments):

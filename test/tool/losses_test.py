@@ -18,7 +18,8 @@ class Losses(tool.ToolTest):
                                rows[3]["load_reduced"] / (rows[3]["load_reduced"] + rows[3]["gear_loss"]), delta=1e-12)
 
     def test_warm_grease_costs_less(self):
-        cold, warm = (self.succeed_json("losses", "--speeds", 200, "--loads", 0, "--set", f"input.temperature={degrees}")
+        cold, warm = (self.succeed_json("losses", "--speeds", 200, "--loads", 0, "--set",
+                                        f"input.temperature={degrees}")
                       for degrees in ("0.0", "60.0"))
         self.assertEqual((cold["temperature"], warm["temperature"]), (0.0, 60.0))
         self.assertGreater(cold["rows"][0]["bearing"], 2.0 * warm["rows"][0]["bearing"])

@@ -38,7 +38,8 @@ class Tables(tool.ToolTest):
 
     def test_bad_tables_are_named(self):
         key = "manufacture.flexspline_pitch_table"
-        self.fail_with(1, [key, "'teeth.csv' must be an absolute path, or none"], "stiffness", "--torques", "5", "--set",
+        self.fail_with(1, [key, "'teeth.csv' must be an absolute path, or none"], "stiffness", "--torques", "5",
+                       "--set",
                        f"{key}=teeth.csv")
         self.fail_with(1, [key, "cannot be read"], "stiffness", "--torques", "5", "--set",
                        f"{key}={self.path('teeth.csv')}")
@@ -56,7 +57,8 @@ class Lines(tool.ToolTest):
         """Amplitudes at so many lines a joint turn [rad]."""
         # 30 samples a motor turn: the tooth pass, 200, folds to multiples of 10 orders.
         steps = 30 * JOINT_TURN
-        rows = self.succeed_json("turn", "--load", 5, "--angle-range", repr(2.0 * math.pi * JOINT_TURN), "--steps", steps,
+        rows = self.succeed_json("turn", "--load", 5, "--angle-range", repr(2.0 * math.pi * JOINT_TURN), "--steps",
+                                 steps,
                                  *options)["rows"]
         error = [row["kinematic_error"] for row in rows[:-1]]
         self.assertEqual(error[7], rows[7]["output_angle"] - rows[7]["wave_generator_angle"] / JOINT_TURN)
@@ -72,7 +74,8 @@ class Lines(tool.ToolTest):
                 self.assertLess(at[1], 1e-3 * arcsec)
 
     def test_gear_as_built_starts_the_simulation(self):
-        done = self.succeed_json("simulate", "--torque", 1.0, "--duration", 0.1, "--config", "as_built.yaml", "--out", "run.csv")
+        done = self.succeed_json("simulate", "--torque", 1.0, "--duration", 0.1, "--config", "as_built.yaml", "--out",
+                                 "run.csv")
         self.assertEqual(done["solver_failures"], 0)
 
 

@@ -79,8 +79,10 @@ class Replay(tool.ToolTest):
         self.assertEqual(tool.read_bytes(self.path("out.bag")), tool.read_bytes(self.path("again.bag")))
 
     def test_shipped_files_of_a_recorded_load_do_not_degrade_the_solver(self):
-        # recorded_load.yaml leaves little inertia at the output; the step must resolve its swing on the stiffest slope too.
-        for joint, name in [("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"), ("elbow", "elbow_joint")]:
+        # recorded_load.yaml leaves little inertia at the output; the step must resolve its swing on the stiffest slope
+        # too.
+        for joint, name in [("base", "shoulder_pan_joint"), ("shoulder", "shoulder_lift_joint"),
+                            ("elbow", "elbow_joint")]:
             for load in (5.0, 140.0):
                 with self.subTest(joint=joint, load=load):
                     tool.write_recording(self.path("in.bag"), joint=name, load=load)
@@ -112,10 +114,12 @@ class Replay(tool.ToolTest):
     def test_a_bag_without_commands_is_replayed_on_request_alone(self):
         # One letter of a topic's name is damaged: what is left of the inputs is the load.
         tool.write_recording(self.path("in.bag"), duration=0.1)
-        content = tool.read_bytes(self.path("in.bag")).replace(b"topic=/joint_twin/command", b"topic=/joint_twin/commend")
+        content = tool.read_bytes(self.path("in.bag")).replace(b"topic=/joint_twin/command",
+                                                               b"topic=/joint_twin/commend")
         with open(self.path("bad.bag"), "wb") as file:
             file.write(content)
-        self.fail_with(1, ["bad.bag has no motor torque on an input topic", "/joint_twin/commend (sensor_msgs/JointState)",
+        self.fail_with(1, ["bad.bag has no motor torque on an input topic",
+                           "/joint_twin/commend (sensor_msgs/JointState)",
                            "--without-command"], "replay", "bad.bag", "--out", "out.bag")
         self.assertFalse(os.path.exists(self.path("out.bag")))
         self.replay("bad.bag", "out.bag", "--without-command", "--set", "joint.name=elbow_joint")

@@ -120,7 +120,8 @@ class Insertion(tool.ToolTest):
 
     def test_no_equilibrium_is_a_failure(self):
         self.fail_with(1, ["no equilibrium found for the insertion"], "insert", "--json", "--set",
-                       "solver.max_iterations=1", "--set", "solver.max_step_cuts=0", "--set", "contact.stiffness=1.0e+12")
+                       "solver.max_iterations=1", "--set", "solver.max_step_cuts=0", "--set",
+                       "contact.stiffness=1.0e+12")
 
 
 class Stiffness(tool.ToolTest):
@@ -176,7 +177,6 @@ class Stiffness(tool.ToolTest):
         forth = self.succeed_json("stiffness", "--torques", "14")["rows"][0]
         back = self.succeed_json("stiffness", "--torques", "-14")["rows"][0]
         self.assertAlmostEqual(back["output_angle"], -forth["output_angle"], delta=1e-9)
-
 
     def test_teeth_are_told_on_request(self):
         row = self.succeed_json("stiffness", "--torques", "48", "--teeth")["rows"][0]

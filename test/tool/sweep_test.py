@@ -159,7 +159,8 @@ record:
         self.sweep("a")
         row = self.index("a")[1]
         self.succeed("simulate", "--torque", 0.4, "--load", 3, "--duration", 0.06, "--out", "b.csv",
-                     "--set", "input.temperature=40.0", "--set", f"output.load_inertia={row['set.output.load_inertia']}")
+                     "--set", "input.temperature=40.0", "--set",
+                     f"output.load_inertia={row['set.output.load_inertia']}")
         simulated = numpy.genfromtxt(self.path("b.csv"), delimiter=",", names=True)
         with h5py.File(self.path("a/" + row["file"]), "r") as file:
             for name, column in file["all"].items():
@@ -192,7 +193,8 @@ record:
             time_axis = 0.01 + 0.001 * numpy.arange(1, 51)
             temperature = file["teeth/temperature"][:]
             friction = file["teeth/friction_torque"][:]
-        numpy.testing.assert_allclose(temperature, 20.0 + 20.0 * numpy.sin(2.0 * numpy.pi * 25.0 * time_axis), atol=1e-9)
+        numpy.testing.assert_allclose(temperature, 20.0 + 20.0 * numpy.sin(2.0 * numpy.pi * 25.0 * time_axis),
+                                      atol=1e-9)
         settled = time_axis > 0.03
         self.assertLess(numpy.corrcoef(temperature[settled], friction[settled])[0, 1], -0.8)
 
@@ -296,11 +298,14 @@ record:
 
     def test_bad_plans_are_refused_before_anything_runs(self):
         for old, new, parts in [
-                ("duration: 0.06", "duration: -1.0", ["plan.yaml:4: duration = -1.0 [s] is out of range, allowed: 0.001"]),
+                ("duration: 0.06", "duration: -1.0",
+                 ["plan.yaml:4: duration = -1.0 [s] is out of range, allowed: 0.001"]),
                 ("duration: 0.06", "duration: long", ["plan.yaml:4: duration = 'long' must be a number [s]"]),
                 ("[10.0, 40.0]", "[10.0, 400.0]",
-                 ["plan.yaml:7: input.temperature = 400.0 [degC] is out of range, allowed: -40 ... 150 [degC]", "run 3"]),
-                ("[0.5, 2.0]", "[0.5, -2.0]", ["plan.yaml:8: set.output.load_inertia.log_uniform", "[lowest, highest]"]),
+                 ["plan.yaml:7: input.temperature = 400.0 [degC] is out of range, allowed: -40 ... 150 [degC]",
+                  "run 3"]),
+                ("[0.5, 2.0]", "[0.5, -2.0]",
+                 ["plan.yaml:8: set.output.load_inertia.log_uniform", "[lowest, highest]"]),
                 ("input.temperature", "input.temperatur", ["unknown parameter input.temperatur", "did you mean"]),
                 ("repeats: 3", "repeats: 0", ["plan.yaml:9: repeats = 0 [-] is out of range, allowed: 1"]),
                 ("seed: 7", "sead: 7", ["plan.yaml:3: sead = 7 is unknown; allowed: name, seed"]),
@@ -310,11 +315,13 @@ record:
                 ("rate: 500.0", "rate: 333.0", ["rate = 333.0 [Hz] must divide solver.rate = 10000"]),
                 ("float32", "float16", ["type = 'float16' is unknown; allowed: float32, float64"]),
                 ("format: hdf5", "format: hdf6", ["record.format = 'hdf6' is unknown; allowed: hdf5, bag"]),
-                ("load: {constant: 5.0}", "temperature: {sinus: {mean: 100.0, amplitude: 60.0, frequency: 1.0, phase: 0.0}}",
+                ("load: {constant: 5.0}",
+                 "temperature: {sinus: {mean: 100.0, amplitude: 60.0, frequency: 1.0, phase: 0.0}}",
                  ["plan.yaml:14: duty.0.temperature reaches 40 ... 160 [degC], allowed: -40 ... 150 [degC]"]),
                 ("deflate: 0", "deflate: 0\n  indicators: some", ["record.indicators = 'some' must be true or false"]),
                 ("load: {constant: 5.0}", "load: {csv: {file: none.csv, column: load}}", ["none.csv cannot be read"]),
-                ("[0.5, 2.0]}", "[0.5, 2.0]}\n  gear.wave_amplitude: &loop {choice: [*loop]}", ["plan.yaml:9:", "makes the plan too large"]),
+                ("[0.5, 2.0]}", "[0.5, 2.0]}\n  gear.wave_amplitude: &loop {choice: [*loop]}",
+                 ["plan.yaml:9:", "makes the plan too large"]),
                 ("name: test", "name: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
                     f"l{level}: &{name} [{', '.join(['*' + before] * 10)}]\n"
                     for level, (before, name) in enumerate(zip("abcdefgh", "bcdefghi"))), ["makes the plan too large"]),
@@ -333,7 +340,8 @@ record:
 
     def test_two_sweeps_into_one_directory_do_not_spoil_it(self):
         for name, plan in [("hdf5", PLAN.replace("repeats: 3", "repeats: 8")),
-                           ("bag", PLAN[:PLAN.index("  format:")].replace("repeats: 3", "repeats: 8") + "  format: bag\n")]:
+                           ("bag", PLAN[:PLAN.index("  format:")].replace("repeats: 3", "repeats: 8")
+                            + "  format: bag\n")]:
             with self.subTest(name):
                 self.write("both.yaml", plan)
                 self.sweep("alone", plan="both.yaml")

@@ -30,11 +30,14 @@ class Trial(tool.ToolTest):
             self.assertAlmostEqual(now, earlier, delta=1e-9)
 
     def test_faults(self):
-        broken = self.trial(*[word for tooth in (0, 1, 2, 100, 101, 102) for word in ("--fault", f"tooth_root_crack:1:{tooth}")])["samples"]["output_angle"]
+        broken = self.trial(*[word for tooth in (0, 1, 2, 100, 101, 102)
+                              for word in ("--fault", f"tooth_root_crack:1:{tooth}")])["samples"]["output_angle"]
         whole = self.trial()["samples"]["output_angle"]
         self.assertGreater(abs(broken[-1] - whole[-1]), 1e-6)
-        for fault, said in [("flexspline_crack:1:200", ["place = 200", "0 ... 199"]), ("tooth_wear:1.5", ["severity = 1.5", "0 ... 1"]),
-                            ("tooth_were:1", ["unknown kind", "tooth_wear"]), ("tooth_wear", ["expected KIND:SEVERITY"])]:
+        for fault, said in [("flexspline_crack:1:200", ["place = 200", "0 ... 199"]),
+                            ("tooth_wear:1.5", ["severity = 1.5", "0 ... 1"]),
+                            ("tooth_were:1", ["unknown kind", "tooth_wear"]),
+                            ("tooth_wear", ["expected KIND:SEVERITY"])]:
             self.fail_with(1, said, "trial", "--profile", "profile.csv", "--duration", "0.02", "--fault", fault)
 
     def test_without_a_profile(self):

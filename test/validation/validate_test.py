@@ -17,7 +17,8 @@ def validate(*arguments):
     """Exit code, failing rows, and everything printed."""
     command = [sys.executable, os.path.join(CHECKOUT, "scripts", "validation", "validate.py"), "--tool", Validate.tool,
                "--docs", os.path.join(CHECKOUT, "docs"), "--telemetry", RECORDINGS, "--fast", *arguments]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+                          check=False)
     failing = {line.split()[1].rstrip(":") for line in done.stdout.splitlines() if line.startswith("FAILS")}
     return done.returncode, failing, done.stdout
 
@@ -77,7 +78,8 @@ class Validate(unittest.TestCase):
 
     def test_printed_commands_hold_no_temporary_path(self):
         with tempfile.TemporaryDirectory() as work:
-            page = validation_page.Page("any", validation_page.Settings(tool="/bin/true", out=work, work=work, telemetry=""))
+            page = validation_page.Page("any",
+                                        validation_page.Settings(tool="/bin/true", out=work, work=work, telemetry=""))
             page.run("manufacture", "--flexspline-csv", page.scratch("flexspline.csv"))
         self.assertEqual(page.commands, ["joint_twin manufacture --flexspline-csv $PWD/flexspline.csv"])
 

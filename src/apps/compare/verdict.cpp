@@ -105,18 +105,19 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
 }
 
 /// Why the recorded current cannot be that of the joint's motor in this motion; empty: it can.
-std::string whyNotItsCurrent(const RecordingComparison& comparison)
+std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parameters& parameters)
 {
   constexpr double LEAST = 0.02;  // of the predicted current, rms
   constexpr double MOST = 4.0;
+  const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = comparison.currentRms();
   const double predicted = comparison.predictedRms();
-  if (measured < LEAST * predicted)
+  if (predicted > noticeable && measured < LEAST * predicted)
   {
     return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
            rounded(predicted, 2) + " A: it is not the motor's current.";
   }
-  if (measured > MOST * predicted)
+  if (measured > noticeable && measured > MOST * predicted)
   {
     return "The recorded effort is " + rounded(measured / predicted, 1) +
            " times the current that this motion takes: it is expected in A, not in N.m; or "
@@ -314,7 +315,7 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),
                        judgeSignals(comparison) };
-  const std::string why_not = whyNotItsCurrent(comparison);
+  const std::string why_not = whyNotItsCurrent(comparison, parameters);
   for (Finding& finding : verdict.findings)
   {
     if (!why_not.empty())
