@@ -60,7 +60,7 @@ public:
     std::fill(integers_.begin(), integers_.end(), 0);
     int n = ring_.states();
     int half = n / 2;
-    integers_[1] = MOST_STEPS;
+    integers_[1] = MAX_STEPS;
     integers_[8] = half;
     int real_size = static_cast<int>(reals_.size());
     int integer_size = static_cast<int>(integers_.size());
@@ -90,7 +90,7 @@ public:
 
 private:
   static constexpr double FIRST_STEP = 1e-7;  // [s]
-  static constexpr int MOST_STEPS = 100000000;
+  static constexpr int MAX_STEPS = 100000000;
 
   static void rates(int* /*n*/, double* time, double* state, double* derivative, double*, int*)
   {

@@ -272,7 +272,7 @@ private:
 
   void make(int order)
   {
-    constexpr long MOST_STEPS = 100000000;
+    constexpr long MAX_STEPS = 100000000;
     switch (kind_)
     {
       case Kind::CVODE:
@@ -281,7 +281,7 @@ private:
         CVodeSVtolerances(memory_, 0.0, weights_);
         CVodeSetUserData(memory_, &own_);
         CVodeSetMaxOrd(memory_, order);
-        CVodeSetMaxNumSteps(memory_, MOST_STEPS);
+        CVodeSetMaxNumSteps(memory_, MAX_STEPS);
         CVodeSetLinearSolver(memory_, solver_, matrix_);
         CVodeSetLinSysFn(memory_, linearSystem);
         CVodeSetErrFile(memory_, nullptr);
@@ -292,7 +292,7 @@ private:
         IDASVtolerances(memory_, 0.0, weights_);
         IDASetUserData(memory_, &own_);
         IDASetMaxOrd(memory_, order);
-        IDASetMaxNumSteps(memory_, MOST_STEPS);
+        IDASetMaxNumSteps(memory_, MAX_STEPS);
         IDASetLinearSolver(memory_, solver_, matrix_);
         IDASetJacFn(memory_, residualJacobian);
         IDASetErrFile(memory_, nullptr);
@@ -302,7 +302,7 @@ private:
         ARKStepSVtolerances(memory_, 0.0, weights_);
         ARKStepSetUserData(memory_, &own_);
         ARKStepSetOrder(memory_, order);
-        ARKStepSetMaxNumSteps(memory_, MOST_STEPS);
+        ARKStepSetMaxNumSteps(memory_, MAX_STEPS);
         ARKStepSetLinearSolver(memory_, solver_, matrix_);
         ARKStepSetLinSysFn(memory_, linearSystemWithMass);
         ARKStepSetErrFile(memory_, nullptr);

@@ -112,7 +112,7 @@ def _judge(runner, cell):
     if document is None:
         return Judged(cell, REFUSED, said.replace("joint_twin: ", ""))
     judged = Judged(cell, "", iterations=document["iterations_mean"], iterations_max=document["iterations_max"],
-                    cuts=document["step_cuts"], coarse=document["coarse_steps"], phase=document["swing_phase_max"],
+                    cuts=document["step_cuts"], coarse=document["coarse_steps"], phase=document["phase_advance_max"],
                     turn=document["wave_generator_turn_max"])
     judged.drift = document["energy_residual_max"] / max(document["throughput"], 1e-3)
     if not document["finite"]:

@@ -3,9 +3,9 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "ros_io/companion_node.hpp"
 #include "ros_io/parameter_server.hpp"
 #include "ros_io/shutdown_signals.hpp"
+#include "ros_io/tracker_node.hpp"
 #include "ros_io/twin_node.hpp"
 
 namespace
@@ -36,7 +36,7 @@ int main(int argc, char** argv)
     }
     else
     {
-      run<hjt::CompanionNode>(node, parameters);
+      run<hjt::TrackerNode>(node, parameters);
     }
   }
   catch (const hjt::ParameterError& error)

@@ -166,14 +166,14 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "replay_recorder");
   hjt::shutDownOnSignals();
-  CLI::App app("Records the topics of a bag being played, and everything the twin puts out beside them");
+  CLI::App app("Records the topics of a bag being played together with everything the twin publishes");
   std::string played_bag;
   std::string output_bag;
   std::string twin_namespace = "/joint_twin";
   std::size_t buffer = 256;
   bool force = false;
   app.add_option("played", played_bag, "the bag being played")->required()->check(CLI::ExistingFile);
-  app.add_option("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag beside the one played");
+  app.add_option("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
   app.add_option("--joint-namespace", twin_namespace, "of the twin's topics")->capture_default_str();
   app.add_option("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
       ->check(CLI::Range(1UL, 1UL << 20))

@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// Fowler, Noll, Vo, 1a, 64 bits: tells texts apart, no protection against those made on purpose.
+/// Fowler, Noll, Vo, 1a, 64 bits: distinguishes texts, without protection against deliberate collisions.
 /// `hash`: of the text before, to go on from.
 constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 14695981039346656037ull)
 {

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-void BearingFriction::loosen(double loss, double least) noexcept
+void BearingFriction::reducePreload(double loss, double least) noexcept
 {
   preload_ = std::max(preload_ - loss, std::min(least, preload_));
 }

@@ -13,7 +13,7 @@ namespace hjt
 ///           lg lg(nu + 0.7) = lg lg(nu_0 + 0.7) - m lg(T / T_0), T in kelvin
 ///       n   in rpm, d_m in mm
 ///       F   sum of the contact forces between wave generator and flexspline [N]
-///       F_race  what the bearing's own outer race adds to the ball forces, bent to the ellipse as it is [N]
+///       F_race  ball forces of the bearing's own outer race, bent to the ellipse [N]
 class BearingFriction
 {
 public:
@@ -25,7 +25,7 @@ public:
   /// Grease of another viscosity, by this factor at any temperature [-].
   void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
   /// Reduces the preload of the race by `loss`, not below min(`least`, present preload) [N].
-  void loosen(double loss, double least) noexcept;
+  void reducePreload(double loss, double least) noexcept;
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept

@@ -11,7 +11,7 @@ namespace hjt
 RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
   : law_(parameters.ring.bending_law)
   , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.ring.bending_stiffness))
-  , preset_(Eigen::VectorXd::Zero(rest.teeth()))
+  , natural_angle_(Eigen::VectorXd::Zero(rest.teeth()))
   , rest_directions_(rest.segments())
   , rest_cos_(std::cos(rest.pitchAngle()))
   , rest_sin_(std::sin(rest.pitchAngle()))
@@ -24,7 +24,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
-  const double* __restrict__ preset = preset_.data();
+  const double* __restrict__ natural_angle = natural_angle_.data();
   double* reference = sum.segment.data();
   double* moment = scratch.moment.data();
   if (law_ == BendingLaw::ABSOLUTE)
@@ -54,7 +54,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
 #pragma omp simd reduction(+ : energy, large)
   for (int i = 0; i < n; ++i)
   {
-    const double angle = smallAngle(across(i) / along(i)) - preset[i];
+    const double angle = smallAngle(across(i) / along(i)) - natural_angle[i];
     large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
     moment[i] = stiffness[i] * angle;
     energy += 0.5 * stiffness[i] * angle * angle;
@@ -64,7 +64,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
     energy = 0.0;
     for (int i = 0; i < n; ++i)
     {
-      const double angle = smallAngle(across(i), along(i)) - preset[i];
+      const double angle = smallAngle(across(i), along(i)) - natural_angle[i];
       moment[i] = stiffness[i] * angle;
       energy += 0.5 * stiffness[i] * angle * angle;
     }

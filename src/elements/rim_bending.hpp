@@ -41,8 +41,8 @@ public:
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
-  Eigen::VectorXd& preset() noexcept { return preset_; }        ///< N, editable per tooth [rad]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }          ///< N, editable per tooth [N.m/rad]
+  Eigen::VectorXd& natural_angle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
 
 private:
   void addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept;
@@ -51,7 +51,7 @@ private:
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;
-  Eigen::VectorXd preset_;
+  Eigen::VectorXd natural_angle_;
   Eigen::VectorXd rest_directions_;
   double rest_cos_;  // of the angle between neighbouring segments at rest
   double rest_sin_;

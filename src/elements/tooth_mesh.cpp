@@ -14,14 +14,15 @@ namespace
 constexpr double OUTSIDE = -1.0;  // m: the depth in a flank of a tip that is not in the circular spline
 
 /// Where a tooth stands among the axes of its space: across and along (FlankContact's xi and zeta).
-struct Stand
+struct ToothPose
 {
   double xi;
   double zeta;
 };
 
 /// Of tooth i between its neighbours h and j, at mid-height; axis: of its space, a unit vector.
-inline Stand standOf(const double* point, double mid_height, int h, int i, int j, double axis_x, double axis_y) noexcept
+inline ToothPose poseOf(const double* point, double mid_height, int h, int i, int j, double axis_x,
+                        double axis_y) noexcept
 {
   const double dx = point[2 * j] - point[2 * h];
   const double dy = point[2 * j + 1] - point[2 * h + 1];
@@ -154,7 +155,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
     const Space& own = spaces[space[i]];
     const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
-    const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
+    const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const double zeta = stand.zeta - own.along;
     const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
     depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
@@ -295,7 +296,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     const Space& own = axes[space[i]];
     const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
-    const Stand stand = standOf(point, mid_height, h, i, j, rx, ry);
+    const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
     int rest = static_cast<int>(first + i * spaces_a_tooth);  // below three times the number of spaces
     rest -= rest >= spaces ? spaces : 0;

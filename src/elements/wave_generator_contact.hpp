@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "elements/bearing_sag.hpp"
 #include "elements/force_sum.hpp"
+#include "elements/race_deflection.hpp"
 #include "elements/ring_tangent.hpp"
 #include "gear/ellipse.hpp"
 #include "gear/ring_shape.hpp"
@@ -54,7 +54,7 @@ public:
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
   Eigen::VectorXd& gap() noexcept { return gap_; }              ///< N, editable per tooth, >= 0 [m]
-  BearingSag& bearing() noexcept { return bearing_; }           ///< editable
+  RaceDeflection& bearing() noexcept { return bearing_; }       ///< editable
 
   /// Shortens the major semi-axis at lobe 0 and at lobe 1 [m]. The minor axis stays.
   void wear(double lobe, double other_lobe) noexcept;
@@ -75,6 +75,6 @@ private:
   double centre_y_;
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd gap_;
-  BearingSag bearing_;
+  RaceDeflection bearing_;
 };
 }  // namespace hjt

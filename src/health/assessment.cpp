@@ -36,11 +36,11 @@ void Assessor::reset() noexcept
   better_ = 0;
 }
 
-const Assessment& Assessor::take(const SignalIndicators& indicators) noexcept
+const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
 {
   assessment_.stamp = indicators.stamp;
   assessment_.windows = indicators.windows;
-  switch (baseline_.take(indicators, deviations_))
+  switch (baseline_.update(indicators, deviations_))
   {
     case BaselineState::LEARNING:
       assessment_.state = AssessmentState::LEARNING;
@@ -129,7 +129,7 @@ void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& 
   assessment_.evidence_count = 0;
   for (const FeatureScore& feature : sorted)
   {
-    if (assessment_.evidence_count == Assessment::MOST_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
+    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
     {
       break;
     }

@@ -17,7 +17,7 @@ namespace
 constexpr double LOAD_STEP = 0.375;        // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr int LEAST_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
+constexpr int MIN_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {
@@ -88,10 +88,10 @@ Baseline::Baseline(const Parameters& parameters)
   {
     floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
   }
-  bins_.reserve(MOST_BINS);
+  bins_.reserve(MAX_BINS);
 }
 
-void Baseline::give(std::vector<ReferenceBin> bins)
+void Baseline::setReference(std::vector<ReferenceBin> bins)
 {
   bins_ = std::move(bins);
   given_ = true;
@@ -113,7 +113,7 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   {
     return &*found;
   }
-  if (given_ || bins_.size() == MOST_BINS)
+  if (given_ || bins_.size() == MAX_BINS)
   {
     return nullptr;
   }
@@ -122,7 +122,7 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   return &bins_.back();
 }
 
-BaselineState Baseline::take(const SignalIndicators& indicators, Deviations& deviations) noexcept
+BaselineState Baseline::update(const SignalIndicators& indicators, Deviations& deviations) noexcept
 {
   deviations.fill({});
   ReferenceBin* bin = find(binOf(indicators.point, load_step_));
@@ -155,7 +155,7 @@ Deviation Baseline::compare(std::size_t indicator, const ReferenceBin& bin,
   const Reference& reference = bin.references[indicator];
   Deviation deviation;
   const double value = indicators.values[indicator];
-  if (reference.count < LEAST_COUNT || !std::isfinite(value))
+  if (reference.count < MIN_COUNT || !std::isfinite(value))
   {
     return deviation;
   }

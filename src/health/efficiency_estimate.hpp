@@ -21,7 +21,7 @@ namespace hjt
 /// - near standstill: a mean power below 0.1 W,
 /// - unless power flows one way through the drive: both means of one sign, and each at least 90 % of the mean of its
 ///   magnitude,
-/// - when more comes out than goes in, by over 1 %: then inertia is being slowed down.
+/// - when the output power exceeds the input power by over 1 %: then inertia is being slowed down.
 class EfficiencyEstimate
 {
 public:

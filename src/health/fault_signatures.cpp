@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double SHARPNESS = 20.0;
+constexpr double INVERSE_TEMPERATURE = 20.0;
 constexpr double NOISE =
     2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
 
@@ -30,7 +30,7 @@ double compressed(double score) noexcept
 }
 
 /// Cosine of the angle between the scores and a signature, over the features compared; 0 if they say nothing.
-double likeness(const FeatureScores& scores, const Signature& signature) noexcept
+double cosineSimilarity(const FeatureScores& scores, const Signature& signature) noexcept
 {
   double product = 0.0;
   double score_square = 0.0;
@@ -151,7 +151,7 @@ std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) 
   for (const Signature& signature : FITTED_SIGNATURES)
   {
     double& probability = probabilities[static_cast<std::size_t>(signature.cause)];
-    probability = std::max(probability, std::exp(SHARPNESS * likeness(scores, signature)));
+    probability = std::max(probability, std::exp(INVERSE_TEMPERATURE * cosineSimilarity(scores, signature)));
   }
   const double sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
   for (double& probability : probabilities)

@@ -10,7 +10,7 @@ namespace
 constexpr int COLUMNS = 5;
 /// Speed and direction tell Coulomb from viscous friction only while their variance is inflated less than this [-]: two
 /// speeds in the ratio 1 to 2, each way, give 10.
-constexpr double MOST_INFLATION = 30.0;
+constexpr double MAX_INFLATION = 30.0;
 }  // namespace
 
 FrictionEstimate::FrictionEstimate(double memory) : memory_(memory), regression_(COLUMNS, 1) {}
@@ -36,7 +36,7 @@ void FrictionEstimate::fit() noexcept
 
 Indicator FrictionEstimate::value(int column) const noexcept
 {
-  if (!fitted_ || regression_.inflation(0) > MOST_INFLATION || regression_.inflation(1) > MOST_INFLATION)
+  if (!fitted_ || regression_.inflation(0) > MAX_INFLATION || regression_.inflation(1) > MAX_INFLATION)
   {
     return {};
   }

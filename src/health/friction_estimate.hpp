@@ -14,7 +14,7 @@ namespace hjt
 /// where  tau, T      motor torque, load estimate (0 if none) [N.m];  i  ratio [-]
 ///        omega, phi  motor speed over about a turn [rad/s], output angle [rad]; the terms in phi take up the weight
 /// Recursive least squares over samples at near-constant speed, forgotten exponentially over travel.
-/// Valid while the motion tells the two apart: several speeds, each way.
+/// Valid while the motion separates the two: several speeds, each way.
 class FrictionEstimate
 {
 public:

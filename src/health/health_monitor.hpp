@@ -31,7 +31,7 @@ public:
 
   void reset() noexcept;
 
-  /// Stamps must ascend; `reset` before starting anew.
+  /// Stamps must ascend; call `reset` before a restart.
   void update(const HealthSample& sample) noexcept;
 
   MotionIndicators indicators() const noexcept;

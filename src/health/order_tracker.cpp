@@ -9,8 +9,8 @@ namespace hjt
 {
 namespace
 {
-constexpr double MOST_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
-constexpr double USED_BAND = 0.8;       // of half the samples a turn [-]
+constexpr double MAX_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
+constexpr double USED_BAND = 0.8;      // of half the samples a turn [-]
 }  // namespace
 
 double LineFit::amplitude() const noexcept
@@ -63,7 +63,7 @@ LineFit OrderTracker::line(LineSignal signal, std::size_t line) const noexcept
 {
   const int column = NUISANCES + 2 * static_cast<int>(line);
   if (column >= used_ || orders_[line] * angle_step_ >= USED_BAND * 0.5 * TWO_PI ||
-      regression_.inflation(column) > MOST_INFLATION || regression_.inflation(column + 1) > MOST_INFLATION)
+      regression_.inflation(column) > MAX_INFLATION || regression_.inflation(column + 1) > MAX_INFLATION)
   {
     return {};
   }

@@ -11,7 +11,7 @@ namespace hjt
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
 ///        w     weight: 1 when added, less by what `forget` keeps
 /// Columns are scaled to unit mean square before the factorisation. The ridge, 1e-6 of that, only matters where columns
-/// depend on each other: their coefficients are then shared, and `inflation` tells.
+/// depend on each other: their coefficients are then shared, and `inflation` shows it.
 class RunningRegression
 {
 public:

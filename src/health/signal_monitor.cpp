@@ -14,7 +14,7 @@ namespace
 constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;  // over which the mean speed forgets [rad]
 constexpr double MEAN_TIME = 0.5;             // and the time, for a joint that stands [s]
 constexpr double RESIDUAL_TRAVEL = TWO_PI;    // over which the residual's own mean forgets [rad]
-constexpr int LEAST_RESIDUALS = 100;          // for moments of the fourth order
+constexpr int MIN_RESIDUALS = 100;            // for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;     // memory of the friction estimate
 }  // namespace
 
@@ -204,7 +204,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   friction_.fit();
   set(ScalarIndicator::COULOMB_TORQUE, friction_.coulomb());
   set(ScalarIndicator::VISCOUS_FRICTION, friction_.viscous());
-  if (window_.residuals >= LEAST_RESIDUALS && window_.residual_square > 0.0)
+  if (window_.residuals >= MIN_RESIDUALS && window_.residual_square > 0.0)
   {
     const double mean_square = window_.residual_square / window_.residuals;
     set(ScalarIndicator::RESIDUAL_RMS, std::sqrt(mean_square));

@@ -9,8 +9,8 @@ namespace hjt
 namespace
 {
 constexpr int COLUMNS = 3;
-constexpr int SLOPE = 2;               // column of the torque
-constexpr double LARGEST_ERROR = 0.1;  // of the slope, standard, as a share of it [-]
+constexpr int SLOPE = 2;           // column of the torque
+constexpr double MAX_ERROR = 0.1;  // of the slope, standard, as a share of it [-]
 constexpr std::size_t RISING = 0;
 constexpr std::size_t FALLING = 1;
 }  // namespace
@@ -97,7 +97,7 @@ void TorsionLoopEstimate::fit() noexcept
     return;
   }
   const double slope = regression_.coefficient(SLOPE, 0);
-  if (!(slope > 0.0) || regression_.standardError(SLOPE, 0) > LARGEST_ERROR * slope)
+  if (!(slope > 0.0) || regression_.standardError(SLOPE, 0) > MAX_ERROR * slope)
   {
     return;
   }

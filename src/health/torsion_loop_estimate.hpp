@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What a swinging load tells of the torsion, over one window.
+/// Torsion under a swinging load, over one window.
 ///
 /// Stiffness    1 / slope of  torsion = a + h sign(speed) + T / K1  by least squares over samples with
 ///              |T| < indicators.stiffness_torque; needs T to span health.stiffness_torque_span there

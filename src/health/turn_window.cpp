@@ -12,7 +12,7 @@ namespace hjt
 namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
-constexpr double LEAST_TRAVEL = 1e-6;  // of the output, as a share of the nominal one [-]
+constexpr double MIN_TRAVEL = 1e-6;  // of the output, as a share of the nominal one [-]
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
@@ -74,7 +74,7 @@ Indicator TurnWindow::transmissionRatio() const noexcept
   const double torsion_then = (1.0 - share) * torsionAt(later) + share * torsionAt(later + 1);
   const double motor_travel = direction_ * TWO_PI;
   const double output_travel = motor_travel / nominal_ratio_ - (torsion_ - torsion_then);
-  if (std::abs(output_travel) < LEAST_TRAVEL * TWO_PI / nominal_ratio_)
+  if (std::abs(output_travel) < MIN_TRAVEL * TWO_PI / nominal_ratio_)
   {
     return {};
   }

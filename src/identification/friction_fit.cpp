@@ -16,11 +16,11 @@ namespace hjt
 {
 namespace
 {
-constexpr double SMALLEST_TOLERANCE = 1e-3;  // share of a column's square that the others do not explain
-constexpr double STRIBECK_SPEED = 5.0;       // of the motor, where the static rise has faded [rad/s]
-constexpr double OUTLIER = 3.0;              // blocks that many deviations off count less
-constexpr std::size_t FEWEST_BLOCKS = 12;
-constexpr std::size_t MOST_BLOCKS = 20000;  // a longer recording is thinned out
+constexpr double MIN_TOLERANCE = 1e-3;  // share of a column's square that the others do not explain
+constexpr double STRIBECK_SPEED = 5.0;  // of the motor, where the static rise has faded [rad/s]
+constexpr double OUTLIER = 3.0;         // blocks that many deviations off count less
+constexpr std::size_t MIN_BLOCKS = 12;
+constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
 
 /// Largest half width of an interval over its value. The gain, which is known within some percent before, is asked more of.
 double widest(std::size_t quantity)
@@ -74,11 +74,11 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
                          const std::vector<MotionSample>& samples)
 {
   addBlocks(parameters, friction, samples);
-  if (blocks_.size() < FEWEST_BLOCKS)
+  if (blocks_.size() < MIN_BLOCKS)
   {
     throw InputError("the joint hardly moves in the part to identify on: " + std::to_string(blocks_.size()) +
                      " stretches of " + numberText(BLOCK) + " s are faster than " + numberText(MOVING) + " rad/s, " +
-                     std::to_string(FEWEST_BLOCKS) + " are needed");
+                     std::to_string(MIN_BLOCKS) + " are needed");
   }
   values_[GAIN] = 1.0 / parameters.telemetry.torque_per_current;
   values_[OFFSET] = parameters.telemetry.current_offset;
@@ -149,7 +149,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
     }
     from = to;
   }
-  const std::size_t stride = blocks_.size() / MOST_BLOCKS + 1;
+  const std::size_t stride = blocks_.size() / MAX_BLOCKS + 1;
   for (std::size_t i = 1; stride * i < blocks_.size(); ++i)
   {
     blocks_[i] = blocks_[stride * i];
@@ -203,8 +203,8 @@ void FrictionFit::solve()
     cost->SetNumResiduals(1);
     problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
   }
-  constexpr int MOST_ITERATIONS = 100;
-  const Regression found = hjt::solve(problem, asked, MOST_ITERATIONS);
+  constexpr int MAX_ITERATIONS = 100;
+  const Regression found = hjt::solve(problem, asked, MAX_ITERATIONS);
   for (std::size_t k = 0; k < asked.size(); ++k)
   {
     const std::ptrdiff_t i = asked[k] - values_.data();
@@ -223,14 +223,14 @@ FrictionFit::Verdict FrictionFit::whyRefused(std::size_t i) const
   {
     return { 1e3, "nothing in this motion depends on it" };
   }
-  if (tolerance_[i] < SMALLEST_TOLERANCE)
+  if (tolerance_[i] < MIN_TOLERANCE)
   {
-    return { SMALLEST_TOLERANCE / tolerance_[i],
+    return { MIN_TOLERANCE / tolerance_[i],
              "the other quantities explain all but " + percentText(tolerance_[i]) + " of its effect" };
   }
   if (size <= 1e-6 * half_width_[i] && i != PRELOAD && i != GREASE)
   {
-    return { 1e3, "comes out at zero" };
+    return { 1e3, "its estimate is zero" };
   }
   if (half_width_[i] > widest(i) * size && size > 1e-6 * half_width_[i])
   {
@@ -240,7 +240,7 @@ FrictionFit::Verdict FrictionFit::whyRefused(std::size_t i) const
   return {};
 }
 
-/// True if something was refused, and the rest must be fitted anew.
+/// True if a parameter was dropped, so that the rest must be refitted.
 bool FrictionFit::refuseWorst()
 {
   double worst = 0.0;

@@ -7,7 +7,7 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/friction_map.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
@@ -15,10 +15,10 @@ namespace hjt
 ///
 ///   current = (load + J n^2 a + s (rest + P preload + G grease + F flanks + V n |w|)) / gain + offset
 /// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in which the
-/// ripple of the teeth cancels out. No friction can be negative: preload and grease are held at zero then. One quantity
-/// after the other is refused until the rest is sound, first what the twin does without, viscous friction beside the
-/// grease's and more friction of the flanks, then what is known before, offset, gain and inertia. A Stribeck rise,
-/// S n exp(-(w/5)^2), is looked for beside what was found.
+/// ripple of the teeth cancels out. No friction can be negative: preload and grease are held at zero then. Parameters
+/// that the data do not identify are dropped one at a time: first the optional ones (viscous friction in addition to
+/// the grease's, more friction of the flanks), then those with a known default (offset, gain, inertia). A Stribeck
+/// term, S n exp(-(w/5)^2), is fitted in addition.
 class FrictionFit
 {
 public:

@@ -23,7 +23,7 @@ constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.r
                                                                     "telemetry.ripple_flexspline_2",
                                                                     "telemetry.ripple_circular_spline_4",
                                                                     "telemetry.ripple_flexspline_4" };
-constexpr std::size_t MOST_RIPPLE_ROWS = 5000;  // in one fit; a longer recording is thinned out
+constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // in one fit; a longer recording is thinned out
 
 bool isMoving(const MotionSample& sample)
 {
@@ -181,7 +181,7 @@ std::vector<RippleRow> rippleRows(const Parameters& parameters, const std::vecto
       rows.push_back({ sample.position, sample.velocity, parameters.telemetry.torque_per_current * lacking });
     }
   }
-  const std::size_t stride = rows.size() / MOST_RIPPLE_ROWS + 1;
+  const std::size_t stride = rows.size() / MAX_RIPPLE_ROWS + 1;
   std::vector<RippleRow> kept;
   for (std::size_t i = 0; i < rows.size(); i += stride)
   {
@@ -229,7 +229,7 @@ public:
                 share.configured,
                 share.configured,
                 0.0,
-                trial.share <= 0.0 ? "comes out at zero" : "no rest of this motion shows it" };
+                trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it" };
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;

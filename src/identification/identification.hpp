@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
@@ -75,7 +75,7 @@ struct JudgedPart
 /// on all.
 ///
 /// Intervals are widened by the correlation of the residual. A quantity is refused, and stays as configured, if the motion
-/// does not move its column, if others explain it, if its interval is too wide or if it comes out of the range that it can
+/// does not move its column, if others explain it, if its interval is too wide or if it leaves the range that it can
 /// have. `train` and `judge`: samples of one stream each, in the order of time. `load_recorded`: their load comes from the
 /// recording, which may hold a part of the motor's inertia; that part is identified then, else the rotor's inertia.
 /// @throws InputError if the training part hardly moves.

@@ -155,15 +155,15 @@ void RippleFit::solve(const std::vector<RippleRow>& rows)
     cost->SetNumResiduals(1);
     problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
   }
-  constexpr int MOST_ITERATIONS = 60;
-  const Regression found = hjt::solve(problem, asked, MOST_ITERATIONS);
+  constexpr int MAX_ITERATIONS = 60;
+  const Regression found = hjt::solve(problem, asked, MAX_ITERATIONS);
   for (std::size_t k = 0; k < asked.size(); ++k)
   {
     half_width_[asked[k] - values_.data()] = found.half_width[static_cast<Eigen::Index>(k)];
   }
 }
 
-/// True if a line was refused, and the rest must be fitted anew.
+/// True if a line was dropped, so that the rest must be refitted.
 bool RippleFit::refuseWorst()
 {
   double worst = WIDEST;

@@ -7,7 +7,7 @@ namespace hjt
 {
 /// What one turn of the wave generator at a steady load does to the drive: forces, slips and stresses of the tooth
 /// model, friction coefficients left out.
-struct Exposure
+struct RevolutionLoad
 {
   double flank_sliding{};      ///< force times sliding on the flanks of one tooth of the flexspline [N.m]
   double interface_sliding{};  ///< the same between the bearing's outer race and the whole rim [N.m]

@@ -24,7 +24,7 @@ struct DriveAge
 };
 
 /// In what one drive differs from the next: unknown from outside, constant over its life.
-struct DriveNature
+struct UnitVariation
 {
   double flank_factor{ 1.0 };      ///< its flank wear over that of the nominal drive [-]
   double interface_factor{ 1.0 };  ///< its interface wear over that of the nominal drive [-]
@@ -48,23 +48,23 @@ const char* nameOf(const std::optional<EndOfLife>& end) noexcept;
 
 /// One drive out of many: factors of wear log-normal, the bearing's life after the catalogue's Weibull distribution.
 template <class Engine>
-DriveNature drawNature(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
+UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
 {
   boost::random::lognormal_distribution<double> wear(0.0, parameters.wear_spread);
   boost::random::lognormal_distribution<double> growth(std::log(parameters.spall_growth), parameters.spall_spread);
-  DriveNature nature;
-  nature.flank_factor = wear(engine);
-  nature.interface_factor = wear(engine);
-  nature.bearing_life = bearing.quantile(boost::random::uniform_01<double>()(engine));
-  nature.spall_growth = growth(engine);
-  return nature;
+  UnitVariation variation;
+  variation.flank_factor = wear(engine);
+  variation.interface_factor = wear(engine);
+  variation.bearing_life = bearing.quantile(boost::random::uniform_01<double>()(engine));
+  variation.spall_growth = growth(engine);
+  return variation;
 }
 
 /// Size of the bearing's spall: 0 up to `bearing_life`, 1 at the end of use, between them as the square of the turns, for a
 /// spall grows the faster the larger it is (assumed) [-].
-inline double spallSize(const DriveNature& nature, double bearing_turns)
+inline double spallSize(const UnitVariation& variation, double bearing_turns)
 {
-  const double grown = (bearing_turns / nature.bearing_life - 1.0) / nature.spall_growth;
+  const double grown = (bearing_turns / variation.bearing_life - 1.0) / variation.spall_growth;
   return grown > 0.0 ? grown * grown : 0.0;
 }
 }  // namespace hjt

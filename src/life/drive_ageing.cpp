@@ -26,9 +26,9 @@ using Entries = std::array<double, ENTRIES>;
 
 struct Scale
 {
-  explicit Scale(const LifeParameters& life, const GearParameters& gear, const DriveNature& nature)
+  explicit Scale(const LifeParameters& life, const GearParameters& gear, const UnitVariation& variation)
     : by{ life.grease_turns,  life.flank_wear_limit, life.interface_wear_limit, 1.0,
-          gear.rim_thickness, nature.bearing_life }
+          gear.rim_thickness, variation.bearing_life }
   {
   }
 
@@ -48,12 +48,12 @@ struct Scale
 };
 }  // namespace
 
-DriveNature nominalDrive(const LifeParameters& parameters)
+UnitVariation nominalDrive(const LifeParameters& parameters)
 {
   return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth };
 }
 
-DriveAge DriveAgeing::rates(const DriveNature& nature, const DriveAge& age) const
+DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age) const
 {
   const double height = gear_.tooth_height_flexspline;
   const double flank_area = life_.face_width * height;
@@ -63,14 +63,14 @@ DriveAge DriveAgeing::rates(const DriveNature& nature, const DriveAge& age) cons
   DriveAge rate;
   for (const DutyPhase& phase : duty_.phases)
   {
-    const Exposure exposure = exposures_.at(phase.load_torque, age.flank_wear, age.interface_wear);
+    const RevolutionLoad exposure = exposures_.at(phase.load_torque, age.flank_wear, age.interface_wear);
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
     // Each of the two surfaces loses its own depth: those of a pair share force and way.
-    rate.flank_wear += turns * 2.0 * nature.flank_factor * grease_factor *
+    rate.flank_wear += turns * 2.0 * variation.flank_factor * grease_factor *
                        archardDepth(life_.flank_wear_coefficient, exposure.flank_sliding, flank_area);
-    rate.interface_wear += turns * 2.0 * nature.interface_factor * grease_factor *
+    rate.interface_wear += turns * 2.0 * variation.interface_factor * grease_factor *
                            archardDepth(life_.interface_wear_coefficient, exposure.interface_sliding, interface_area);
     rate.grease += turns * greaseAgeing(life_, phase.temperature);
     rate.flaw_depth += turns * crackGrowth(life_, exposure.rim_stress_range, age.flaw_depth);
@@ -86,7 +86,7 @@ DriveAge DriveAgeing::rates(const DriveNature& nature, const DriveAge& age) cons
   return rate;
 }
 
-std::optional<EndOfLife> DriveAgeing::ended(const DriveNature& nature, const DriveAge& age) const
+std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, const DriveAge& age) const
 {
   if (age.flank_wear >= life_.flank_wear_limit)
   {
@@ -100,22 +100,22 @@ std::optional<EndOfLife> DriveAgeing::ended(const DriveNature& nature, const Dri
   {
     return EndOfLife::ROOT_CRACK;
   }
-  if (spallSize(nature, age.bearing_turns) >= 1.0)
+  if (spallSize(variation, age.bearing_turns) >= 1.0)
   {
     return EndOfLife::BEARING;
   }
   return std::nullopt;
 }
 
-DriveAgeing::Life DriveAgeing::live(const DriveNature& nature, double hours, double every, bool grease_changes,
+DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours, double every, bool grease_changes,
                                     const std::function<void(double, const DriveAge&)>& visit) const
 {
   constexpr double TOLERANCE = 1e-8;  // of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
-  const Scale scale(life_, gear_, nature);
+  const Scale scale(life_, gear_, variation);
   const auto rhs = [&](const Entries& entries, Entries& rate, double)
-  { rate = scale.from(rates(nature, scale.to(entries))); };
+  { rate = scale.from(rates(variation, scale.to(entries))); };
 
   DriveAge age;
   age.flaw_depth = life_.flaw_depth;
@@ -130,7 +130,7 @@ DriveAgeing::Life DriveAgeing::live(const DriveNature& nature, double hours, dou
   const auto stops = [&](double time)
   {
     const DriveAge then = age_at(time);
-    return time >= hours || ended(nature, then) || (grease_changes && then.grease >= 1.0);
+    return time >= hours || ended(variation, then) || (grease_changes && then.grease >= 1.0);
   };
 
   double next_visit = 0.0;
@@ -156,7 +156,7 @@ DriveAgeing::Life DriveAgeing::live(const DriveNature& nature, double hours, dou
       continue;
     }
     age = age_at(end);
-    const std::optional<EndOfLife> why = ended(nature, age);
+    const std::optional<EndOfLife> why = ended(variation, age);
     if (why || end >= hours * (1.0 - 1e-12))
     {
       if (visit)

@@ -7,32 +7,32 @@
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
-#include "life/exposure_map.hpp"
+#include "life/revolution_load_map.hpp"
 
 namespace hjt
 {
 /// The drive that the parameters describe: no factors, the median bearing.
-DriveNature nominalDrive(const LifeParameters& parameters);
+UnitVariation nominalDrive(const LifeParameters& parameters);
 
 /// A drive's use over years: the laws of ageing along a duty cycle, fed by the exposures of the tooth model.
 class DriveAgeing
 {
 public:
   DriveAgeing(const LifeParameters& life, const GearParameters& gear, const DutyCycle& duty,
-              const ExposureMap& exposures)
+              const RevolutionLoadMap& exposures)
     : life_(life), gear_(gear), duty_(duty), exposures_(exposures), turns_per_hour_(duty.turnsPerHour())
   {
   }
 
   /// Change of the age by hour, at an age.
-  DriveAge rates(const DriveNature& nature, const DriveAge& age) const;
+  DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
 
   /// The first limit that an age has reached.
-  std::optional<EndOfLife> ended(const DriveNature& nature, const DriveAge& age) const;
+  std::optional<EndOfLife> ended(const UnitVariation& variation, const DriveAge& age) const;
 
   struct Life
   {
-    double hours{};                ///< until the end of use, or as long as asked for
+    double hours{};                ///< until the end of use, or the requested time
     std::optional<EndOfLife> end;  ///< none: still in use
     DriveAge age;
   };
@@ -40,14 +40,14 @@ public:
   /// From new: up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of `every`
   /// hours and at the end. `grease_changes`: the grease is changed when it is due.
   /// Runge-Kutta of Dormand and Prince with its own steps, 1e-8 of the limits.
-  Life live(const DriveNature& nature, double hours, double every, bool grease_changes,
+  Life live(const UnitVariation& variation, double hours, double every, bool grease_changes,
             const std::function<void(double, const DriveAge&)>& visit) const;
 
 private:
   LifeParameters life_;
   GearParameters gear_;
   DutyCycle duty_;
-  const ExposureMap& exposures_;
+  const RevolutionLoadMap& exposures_;
   double turns_per_hour_;
 };
 }  // namespace hjt

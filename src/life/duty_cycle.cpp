@@ -12,9 +12,7 @@ namespace hjt
 DutyCycle DutyCycle::fromFile(const std::string& path)
 {
   // Beyond these no drive lives or works; sums over as many rows as a file may have stay finite.
-  constexpr Range ALLOWED[] = {
-    { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE }
-  };
+  constexpr Range ALLOWED[] = { { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { MIN_TEMPERATURE, MAX_TEMPERATURE } };
   constexpr const char* UNITS[] = { "s", "rad/s", "N.m", "degC" };
   NumberTable<4> table(path, { "duration", "motor_speed", "load_torque", "temperature" });
   DutyCycle duty;

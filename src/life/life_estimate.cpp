@@ -27,13 +27,13 @@ EndOfLife LifeEstimate::nearest() const
   return static_cast<EndOfLife>(std::max_element(used.begin(), used.end()) - used.begin());
 }
 
-LifeEstimate LifeEstimator::estimate(const UseRecord& record)
+LifeEstimate LifeEstimator::estimate(const UsageHistory& record)
 {
   const LifeParameters& life = parameters_.life;
   const DutyCycle duty = record.duty();
   exposures_.cover(duty, {});
   const DriveAgeing ageing(life, parameters_.gear, duty, exposures_);
-  const DriveNature nominal = nominalDrive(life);
+  const UnitVariation nominal = nominalDrive(life);
   LifeEstimate estimate;
   estimate.hours = record.hours();
   estimate.turns = record.turns();

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 
-#include "life/exposure_map.hpp"
 #include "life/remaining_life.hpp"
-#include "life/use_record.hpp"
+#include "life/revolution_load_map.hpp"
+#include "life/usage_history.hpp"
 
 namespace hjt
 {
@@ -31,10 +31,10 @@ public:
 
   /// `record`: with turns in it. Takes seconds where it holds loads that were not met before.
   /// @throws ParameterError if the ring finds no equilibrium under one of its loads.
-  LifeEstimate estimate(const UseRecord& record);
+  LifeEstimate estimate(const UsageHistory& record);
 
 private:
   Parameters parameters_;
-  ExposureMap exposures_;
+  RevolutionLoadMap exposures_;
 };
 }  // namespace hjt

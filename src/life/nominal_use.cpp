@@ -24,15 +24,15 @@ Usage NominalUse::until(double hours) const
   return { hourly_.flank_wear * fresh_hours, hourly_.interface_wear * fresh_hours, hourly_.bearing_turns * hours };
 }
 
-Outlook NominalUse::from(double now, double hours, int stretches) const
+FutureLoad NominalUse::from(double now, double hours, int stretches) const
 {
-  Outlook outlook;
-  outlook.step = hours / stretches;
+  FutureLoad future_load;
+  future_load.step = hours / stretches;
   const Usage before = until(now);
   for (int i = 0; i <= stretches; ++i)
   {
-    outlook.usage.push_back(until(now + i * outlook.step) - before);
+    future_load.usage.push_back(until(now + i * future_load.step) - before);
   }
-  return outlook;
+  return future_load;
 }
 }  // namespace hjt

@@ -14,7 +14,7 @@ public:
 
   Usage until(double hours) const;  ///< from new
   /// `hours`: how far it looks; the use goes on as in its last stretch.
-  Outlook from(double now, double hours, int stretches) const;
+  FutureLoad from(double now, double hours, int stretches) const;
 
 private:
   Usage hourly_;        // in fresh grease

@@ -22,18 +22,18 @@ enum Nature
 
 /// Hours until the use ahead has grown by `left`, of what `of` takes from a usage.
 template <class Of>
-double hoursUntil(const Outlook& outlook, double left, Of&& of)
+double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
 {
   if (left <= 0.0)
   {
     return 0.0;
   }
-  const auto after = std::lower_bound(outlook.usage.begin() + 1, outlook.usage.end() - 1, left,
+  const auto after = std::lower_bound(future_load.usage.begin() + 1, future_load.usage.end() - 1, left,
                                       [&](const Usage& usage, double value) { return of(usage) < value; });
   const auto before = after - 1;
   const double stretch = of(*after) - of(*before);
-  const auto begin = static_cast<double>(before - outlook.usage.begin());
-  return stretch > 0.0 ? outlook.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
+  const auto begin = static_cast<double>(before - future_load.usage.begin());
+  return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
 }
 
 double squared(double value)
@@ -53,18 +53,18 @@ RemainingLife::RemainingLife(const LifeParameters& parameters, int particles, st
   const BearingLife bearing(parameters);
   for (Particle& particle : particles_)
   {
-    const DriveNature nature = drawNature(parameters, bearing, random_);
-    particle.nature = { std::log(nature.flank_factor), std::log(nature.interface_factor), std::log(nature.bearing_life),
-                        std::log(nature.spall_growth) };
+    const UnitVariation variation = drawVariation(parameters, bearing, random_);
+    particle.variation = { std::log(variation.flank_factor), std::log(variation.interface_factor),
+                           std::log(variation.bearing_life), std::log(variation.spall_growth) };
     particle.flank_wear = 0.0;
     particle.interface_wear = 0.0;
   }
 }
 
-DriveNature RemainingLife::natureOf(const Particle& particle) noexcept
+UnitVariation RemainingLife::variationOf(const Particle& particle) noexcept
 {
-  return { std::exp(particle.nature[FLANK]), std::exp(particle.nature[INTERFACE]),
-           std::exp(particle.nature[BEARING_LIFE]), std::exp(particle.nature[SPALL_GROWTH]) };
+  return { std::exp(particle.variation[FLANK]), std::exp(particle.variation[INTERFACE]),
+           std::exp(particle.variation[BEARING_LIFE]), std::exp(particle.variation[SPALL_GROWTH]) };
 }
 
 void RemainingLife::use(const Usage& usage) noexcept
@@ -72,8 +72,8 @@ void RemainingLife::use(const Usage& usage) noexcept
   bearing_turns_ += usage.bearing_turns;
   for (Particle& particle : particles_)
   {
-    particle.flank_wear += std::exp(particle.nature[FLANK]) * usage.flank_wear;
-    particle.interface_wear += std::exp(particle.nature[INTERFACE]) * usage.interface_wear;
+    particle.flank_wear += std::exp(particle.variation[FLANK]) * usage.flank_wear;
+    particle.interface_wear += std::exp(particle.variation[INTERFACE]) * usage.interface_wear;
   }
 }
 
@@ -82,7 +82,7 @@ void RemainingLife::read(const WearReading& reading) noexcept
   double largest = -HUGE_VAL;
   for (std::size_t i = 0; i < particles_.size(); ++i)
   {
-    const double spall = std::min(spallSize(natureOf(particles_[i]), bearing_turns_), LARGEST_SPALL);
+    const double spall = std::min(spallSize(variationOf(particles_[i]), bearing_turns_), MAX_SPALL);
     const double deviation = squared((particles_[i].flank_wear - reading.flank_wear) / reading.flank_wear_error) +
                              squared((spall - reading.spall) / reading.spall_error);
     weights_[i] = std::log(weights_[i]) - 0.5 * deviation;
@@ -110,7 +110,7 @@ bool RemainingLife::hasEnded(const Particle& particle) const noexcept
 {
   return particle.flank_wear >= parameters_.flank_wear_limit ||
          particle.interface_wear >= parameters_.interface_wear_limit ||
-         spallSize(natureOf(particle), bearing_turns_) >= 1.0;
+         spallSize(variationOf(particle), bearing_turns_) >= 1.0;
 }
 
 void RemainingLife::survive() noexcept
@@ -136,7 +136,7 @@ void RemainingLife::resample() noexcept
   {
     for (int k = 0; k < NATURES; ++k)
     {
-      mean[k] += weights_[i] * particles_[i].nature[k];
+      mean[k] += weights_[i] * particles_[i].variation[k];
     }
   }
   std::array<double, NATURES> variance{};
@@ -144,7 +144,7 @@ void RemainingLife::resample() noexcept
   {
     for (int k = 0; k < NATURES; ++k)
     {
-      variance[k] += weights_[i] * squared(particles_[i].nature[k] - mean[k]);
+      variance[k] += weights_[i] * squared(particles_[i].variation[k] - mean[k]);
     }
   }
   std::size_t from = 0;
@@ -160,34 +160,34 @@ void RemainingLife::resample() noexcept
     }
     mark += spacing;
     drawn = particles_[from];
-    const double flank_before = drawn.nature[FLANK];
-    const double interface_before = drawn.nature[INTERFACE];
+    const double flank_before = drawn.variation[FLANK];
+    const double interface_before = drawn.variation[INTERFACE];
     for (int k = 0; k < NATURES; ++k)
     {
-      drawn.nature[k] =
-          mean[k] + SHRINK * (drawn.nature[k] - mean[k]) + spread * std::sqrt(variance[k]) * normal(random_);
+      drawn.variation[k] =
+          mean[k] + SHRINK * (drawn.variation[k] - mean[k]) + spread * std::sqrt(variance[k]) * normal(random_);
     }
-    // Another nature would have worn another depth by the same use.
-    drawn.flank_wear *= std::exp(drawn.nature[FLANK] - flank_before);
-    drawn.interface_wear *= std::exp(drawn.nature[INTERFACE] - interface_before);
+    // Another variation would have worn another depth by the same use.
+    drawn.flank_wear *= std::exp(drawn.variation[FLANK] - flank_before);
+    drawn.interface_wear *= std::exp(drawn.variation[INTERFACE] - interface_before);
   }
   particles_.swap(drawn_);
   std::fill(weights_.begin(), weights_.end(), spacing);
 }
 
-RemainingHours RemainingLife::remaining(const Outlook& outlook) noexcept
+RemainingHours RemainingLife::remaining(const FutureLoad& future_load) noexcept
 {
   RemainingHours result;
   for (std::size_t i = 0; i < particles_.size(); ++i)
   {
     const Particle& particle = particles_[i];
-    const DriveNature nature = natureOf(particle);
+    const UnitVariation variation = variationOf(particle);
     const std::array<double, 3> hours{
-      hoursUntil(outlook, (parameters_.flank_wear_limit - particle.flank_wear) / nature.flank_factor,
+      hoursUntil(future_load, (parameters_.flank_wear_limit - particle.flank_wear) / variation.flank_factor,
                  [](const Usage& usage) { return usage.flank_wear; }),
-      hoursUntil(outlook, (parameters_.interface_wear_limit - particle.interface_wear) / nature.interface_factor,
+      hoursUntil(future_load, (parameters_.interface_wear_limit - particle.interface_wear) / variation.interface_factor,
                  [](const Usage& usage) { return usage.interface_wear; }),
-      hoursUntil(outlook, nature.bearing_life * (1.0 + nature.spall_growth) - bearing_turns_,
+      hoursUntil(future_load, variation.bearing_life * (1.0 + variation.spall_growth) - bearing_turns_,
                  [](const Usage& usage) { return usage.bearing_turns; })
     };
     const auto first = std::min_element(hours.begin(), hours.end());

@@ -27,7 +27,7 @@ struct Usage
 };
 
 /// The use ahead, from now on: entry i after i times `step` hours. The last stretch goes on for ever.
-struct Outlook
+struct FutureLoad
 {
   double step{};             ///< [h]
   std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
@@ -51,12 +51,12 @@ struct RemainingHours
   std::array<double, 3> by_cause{};              ///< shares that end by flank wear, interface wear, bearing [-]
 };
 
-/// The remaining life as a distribution: a particle filter on what cannot be seen of one drive, its nature.
+/// The remaining life as a distribution: a particle filter on what cannot be seen of one drive, its variation.
 ///
 /// A particle is a drive with factors of wear and a life of its bearing of its own, drawn from what the literature and the
 /// catalogue leave open (log-normal factors, the Weibull distribution of the bearing's life). Use ages every particle by
 /// the same laws; a reading weighs it by how likely it makes what was read. Where few particles carry the weight they are
-/// drawn anew, with a kernel that keeps mean and variance of the natures (Liu and West 2001).
+/// drawn anew, with a kernel that keeps mean and variance of the variations (Liu and West 2001).
 class RemainingLife
 {
 public:
@@ -72,18 +72,18 @@ public:
   void survive() noexcept;
 
   /// The hours until each particle's end, with this use ahead. Allocates nothing.
-  RemainingHours remaining(const Outlook& outlook) noexcept;
+  RemainingHours remaining(const FutureLoad& future_load) noexcept;
 
 private:
   struct Particle
   {
-    std::array<double, 4> nature;  // logarithms: flank factor, interface factor, bearing life, spall growth
+    std::array<double, 4> variation;  // logarithms: flank factor, interface factor, bearing life, spall growth
     double flank_wear;
     double interface_wear;
   };
-  static constexpr double LARGEST_SPALL = 3.0;  // beyond the end of use one is as bad as the other
+  static constexpr double MAX_SPALL = 3.0;  // beyond the end of use one is as bad as the other
   bool hasEnded(const Particle& particle) const noexcept;
-  static DriveNature natureOf(const Particle& particle) noexcept;
+  static UnitVariation variationOf(const Particle& particle) noexcept;
   void resample() noexcept;
 
   LifeParameters parameters_;

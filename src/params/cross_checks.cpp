@@ -124,8 +124,8 @@ void checkFaults(const Parameters& p, Contradictions& check)
     const std::string errors = faultErrors(p.faults[i], p, key);
     check.require(errors.empty(), { key + "kind" }, errors);
   }
-  check.require(p.faults.size() <= MOST_FAULTS, { faultKey(static_cast<int>(MOST_FAULTS)) + ".kind" },
-                "more than " + std::to_string(MOST_FAULTS) + " faults");
+  check.require(p.faults.size() <= MAX_FAULTS, { faultKey(static_cast<int>(MAX_FAULTS)) + ".kind" },
+                "more than " + std::to_string(MAX_FAULTS) + " faults");
 }
 
 void checkRates(const Parameters& p, Contradictions& check)

@@ -8,6 +8,6 @@
 
 namespace hjt
 {
-/// What two parameters, each in its range, contradict each other in; one text each. `map` tells where they came from.
+/// Contradictions between parameters that are each in range; one text each. `map` has their origins.
 std::vector<std::string> contradictions(const Parameters& parameters, const ParameterMap& map);
 }  // namespace hjt

@@ -87,7 +87,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, shift,
         "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
-        "what the wave generator's amplitude exceeds gear.wave_amplitude by, which the teeth were cut for");
+        "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
         ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
@@ -164,8 +164,8 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("the drive gives no torque that would speed the motor up beyond this"));
 
   visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{ 1e-7, 100.0 },
-        ofOthers("circular spline and what turns with it inside the joint"));
-  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, ofOthers("what the joint carries"));
+        ofOthers("circular spline and the parts that turn with it inside the joint"));
+  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, ofOthers("inertia of the load"));
   visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{ 0.0, 1e6 },
         ofOthers("viscous friction, joint side"));
   visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 },
@@ -209,10 +209,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
         ofOthers("noise of the output encoder at every step, before it is resolved into counts, rms"));
   visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
-        ofOthers("noise of the motor torque told from the current, at every step, rms"));
+        ofOthers("noise of the motor torque estimated from the current, at every step, rms"));
   visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
-        ofOthers("step of the motor torque told from the current; 0 = none"));
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("by which all readings lag, in whole steps"));
+        ofOthers("resolution of the motor torque estimated from the current; 0 = none"));
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("delay of all readings, in whole steps"));
   visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
         ofOthers("of the noise: the same seed gives the same noise at the same stamps"));
 
@@ -222,20 +222,20 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("time constant over which efficiency and stiffness forget"));
 
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
-        ofOthers("of the readings the twin's own indicators are made of; the nearest that divides solver.rate"));
+        ofOthers("sample rate of the twin's own indicators; the nearest that divides solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
         ofOthers("motor turns at steady speed that make one window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
         ofOthers("a window ends after this even with fewer turns"));
   visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
-        ofOthers("motor speed below which the joint is taken to stand"));
+        ofOthers("motor speed below which the joint counts as standing"));
   visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
         ofOthers("speed is steady while it is within this share of its mean over half a turn"));
   visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
         ofOthers("K1 is the stiffness at joint torques below this"));
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
-        ofOthers(
-            "lost motion is taken at joint torques below this; a torque that comes back by as much has turned round"));
+        ofOthers("lost motion is evaluated at joint torques below this; also the change of torque that counts as a "
+                 "reversal"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("windows at one operating point the healthy reference is learned from"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
@@ -245,15 +245,15 @@ void visitFields(P& p, Visitor&& visit)
   visit("indicators.confirm_windows", "-", p.indicators.confirm_windows, Range{ 1, 1000 },
         ofOthers("windows in a row that must agree before the level changes"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
-        ofOthers("a deviation of so many times the threshold is an error, not a warning"));
+        ofOthers("a deviation of this many times the threshold is an error, not a warning"));
   visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
         ofOthers("rated output torque of the catalogue, at which the bearing's lives are given"));
   visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
         ofOthers("rated motor speed of the catalogue, at which the bearing's lives are given"));
   visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
-        ofOthers("hours at rated torque and speed by which 10 % of the wave generator's bearings have failed"));
+        ofOthers("hours at rated torque and speed after which 10 % of the wave generator's bearings have failed"));
   visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
-        ofOthers("hours at rated torque and speed by which half of them have failed; more than bearing_l10"));
+        ofOthers("hours at rated torque and speed after which half of them have failed; more than bearing_l10"));
   visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
         ofOthers("share of the bearing's life, in turns, from its first spall to the end of use"));
   visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
@@ -275,7 +275,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
         ofOthers("temperature grease_turns holds for"));
   visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
-        ofOthers("by so much warmer the grease lasts half as long"));
+        ofOthers("rise of temperature that halves the life of the grease"));
   visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
         ofOthers("wear in grease due for a change over wear in fresh grease"));
   visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, ofOthers("deepest flaw of a new tooth root"));
@@ -292,28 +292,27 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("live: time between two forecasts of the remaining life, and between two writes of the record"));
 
   visit("input.mode", p.input.mode,
-        ofOthers(
-            "commands: the twin alone; beside a robot, driven by what it measured: torque, motion or both (observer)"));
+        ofOthers("commands: the twin alone; beside a robot, driven by its measured torque, motion or both (observer)"));
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
         ofOthers("a torque command older than this counts as zero"));
-  visit("input.hold_back", "s", p.input.hold_back, Range{ 0.0, 10.0 },
+  visit("input.delay", "s", p.input.delay, Range{ 0.0, 10.0 },
         ofOthers("live, the twin stays this far behind the clock, so that stamped commands arrive in time"));
   visit(
       "input.wait_for_first_input", p.input.wait_for_first_input,
       ofOthers("true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant"));
-  visit("input.temperature", "degC", p.input.temperature, Range{ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE },
+  visit("input.temperature", "degC", p.input.temperature, Range{ MIN_TEMPERATURE, MAX_TEMPERATURE },
         ofOthers("temperature of the drive"));
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
         ofOthers("torque at the joint per measured motor current"));
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
-        ofOthers("current measured where there is none"));
+        ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
         ofOthers("motor angle over which friction builds up after a reversal"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
-        ofOthers("share of the friction that a small motion does not turn round, and that stays at rest"));
+        ofOthers("share of the friction that a small motion does not reverse and that remains at rest"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
-        ofOthers("of the motor's inertia, what a recorded load torque holds already"));
+        ofOthers("part of the motor's inertia that a recorded load torque already contains"));
   visit(
       "telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
       ofOthers(
@@ -326,30 +325,30 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("four waves against the flexspline"));
   visit(
       "telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
-      ofOthers("of what the joint carries on the joint's stiffness: far below it the load follows the kinematic error, "
-               "far above it stands"));
+      ofOthers("resonance of the load on the joint's stiffness: far below it the load follows the kinematic error, far "
+               "above it stands still"));
   visit("telemetry.ripple_damping", "-", p.telemetry.ripple_damping, Range{ 0.001, 10.0 },
         ofOthers("damping ratio of that resonance"));
   visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
-        ofOthers("of the current's ripple behind the angle"));
+        ofOthers("lag of the current's ripple behind the angle"));
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
-        ofOthers("by so much a healthy joint's current departs from the predicted one, rms"));
+        ofOthers("rms difference between measured and predicted current of a healthy joint"));
   visit(
       "telemetry.load", p.telemetry.load,
-      ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: these and what is told; "
-               "target_moment: what is told is all"));
+      ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: weight and inertia plus "
+               "the received load torque; target_moment: only the received torque"));
 
   visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
         ofOthers("of the measured joint angle, rms"));
   visit("observer.motor_angle_noise", "rad", p.observer.motor_angle_noise, Range{ 1e-9, 1.0 },
         ofOthers("of the measured motor angle, rms, where there is one"));
   visit("observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
-        ofOthers("of the motor torque told from the current, white: rms of one reading times the root of the time it "
-                 "stands for"));
+        ofOthers("white noise of the motor torque estimated from the current: rms of one reading times the root of its "
+                 "period"));
   visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
         ofOthers("of the load torque, white, likewise"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
-        ofOthers("rms of what the unmodelled torque at the motor changes in a second"));
+        ofOthers("rms change of the unmodelled torque at the motor within a second"));
 
   visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
         ofOthers("share by which a sound joint's friction may differ from the twin's"));
@@ -383,7 +382,7 @@ void visitFields(P& p, Visitor&& visit)
   const Range part{ 0.0, 1.0 };
   const Range factor{ 1.0, 100.0 };
   visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
-        ofFaults("interface_wear at severity 1: what rim and outer race have lost together, radially"));
+        ofFaults("interface_wear at severity 1: radial wear of rim and outer race together"));
   visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
         ofFaults("interface_wear at severity 1: contact.friction_coefficient times this"));
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
@@ -407,9 +406,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
         ofFaults("pitting at severity 1: friction of that tooth's flanks times this"));
   visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
-        ofFaults("wave_generator_wear at severity 1: what the major semi-axis has lost"));
+        ofFaults("wave_generator_wear at severity 1: loss of the major semi-axis"));
   visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
-        ofFaults("what bearing.race_preload falls by with the mean radius of the wave generator"));
+        ofFaults("decrease of bearing.race_preload per decrease of the wave generator's mean radius"));
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
         ofFaults("part of bearing.race_preload that bends the race, which wear does not take away"));
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
@@ -430,8 +429,8 @@ void visitFields(P& p, Visitor&& visit)
         ofFaults("spalls in the bearing at severity 1: depth"));
   visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
         ofFaults("spalls in the bearing: length along the race or on the ball"));
-  visit("fault_scale.cage_sag", "m", scale.cage_sag, depth,
-        ofFaults("bearing_cage at severity 1: by which the outer race sags where the ball fails to carry"));
+  visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
+        ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
 }
 
 /// The parameters that shape a response surface, a line each; `faulty`: also those that shape its faults.

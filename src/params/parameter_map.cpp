@@ -319,7 +319,7 @@ Parameters parseParameters(const ParameterMap& map)
   reader.readFaults(parameters.faults);
   reader.refuseUnknownKeys();
   throwIfAny(reader.errors());
-  // Only values that are right by themselves can be held against each other.
+  // Only values that are each in range can be compared with each other.
   throwIfAny(contradictions(parameters, map));
   return parameters;
 }

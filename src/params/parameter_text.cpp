@@ -14,7 +14,7 @@ namespace
 {
 using Fields = std::function<bool(Shapes)>;
 
-/// Writes each field that is asked for as `section.key: value  # [unit] meaning`.
+/// Writes each requested field as `section.key: value  # [unit] meaning`.
 class FieldWriter
 {
 public:

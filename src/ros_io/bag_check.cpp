@@ -21,7 +21,7 @@ namespace hjt
 namespace
 {
 constexpr std::string_view VERSION_LINE = "#ROSBAG V2.0\n";
-constexpr std::uint32_t LARGEST_CHUNK = 1U << 28;  // compressed, when unpacked [byte]; rosbag's own have 0.75 MB
+constexpr std::uint32_t MAX_CHUNK = 1U << 28;  // compressed, when unpacked [byte]; rosbag's own have 0.75 MB
 
 /// Position in the file [byte] and what is wrong there.
 struct Damage
@@ -210,7 +210,7 @@ private:
   {
     const auto size = record.number<std::uint32_t>(rosbag::SIZE_FIELD_NAME);
     const std::string_view compression = record.text(rosbag::COMPRESSION_FIELD_NAME);
-    if (compression == rosbag::COMPRESSION_NONE ? size != bytes.size() : size > LARGEST_CHUNK)
+    if (compression == rosbag::COMPRESSION_NONE ? size != bytes.size() : size > MAX_CHUNK)
     {
       throw Damage{ chunk_, "a chunk of another size than it tells" };
     }

@@ -16,7 +16,7 @@ namespace hjt
 namespace
 {
 /// Between a stamp and the time of recording; farther apart, two clocks that do not agree were at work [s].
-constexpr double LONGEST_DELAY = 10.0;
+constexpr double MAX_DELAY = 10.0;
 
 /// Sorts the messages of one bag into inputs.
 class InputReader
@@ -89,7 +89,7 @@ private:
     const Stamp recorded = fromRosTime(instance.getTime());
     const Stamp stamp = header.stamp.isZero() ? recorded : fromRosTime(header.stamp);
     const double delay = toSeconds(recorded - stamp);
-    if (std::abs(delay) > LONGEST_DELAY)
+    if (std::abs(delay) > MAX_DELAY)
     {
       throw InputError(instance.getTopic() + ": a message is stamped " + std::to_string(std::abs(delay)) + " s " +
                        (delay > 0.0 ? "before" : "after") + " the time it was recorded at; the clocks do not agree");

@@ -79,6 +79,6 @@ void BagWriter::giveUp(const std::string& reason)
   const std::uintmax_t size = std::filesystem::file_size(active_path_, unknown);
   throw InputError(path_ + " cannot be written: " + reason + "; " + active_path_ + " has " + std::to_string(size) +
                    " bytes of " + std::to_string(messages_) +
-                   " messages, nearly all of which can be read after `rosbag reindex`");
+                   " messages: `rosbag reindex` makes all but the last 0.8 MB readable");
 }
 }  // namespace hjt

@@ -15,11 +15,11 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// A clock that stands longer than this by the wall clock is said to stand [s].
+/// Report the ROS clock as stopped after this long without a change [s, wall time].
 constexpr double CLOCK_STANDS_AFTER = 1.0;
-/// The twin is said to be behind beyond this [s].
+/// Warn when the twin is further behind than this [s].
 constexpr double LAG_WARNING = 1.0;
-/// Command stamps further ahead of the clock than this are said to be [s].
+/// Warn when a command's stamp is further ahead of the clock than this [s].
 constexpr double AHEAD_WARNING = 1.0;
 
 const char* stateText(LoopState state)
@@ -141,7 +141,7 @@ void Diagnostics::logClockJumps()
 {
   for (; logged_clock_jumps_ < snapshot_.loop.clock_jumps; ++logged_clock_jumps_)
   {
-    ROS_WARN("The clock jumped back: the twin starts anew");
+    ROS_WARN("The clock jumped back: the twin restarts");
   }
 }
 
@@ -189,7 +189,7 @@ DiagnosticVerdict Diagnostics::judgeInput() const
   }
   if (late_inputs_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.hold_back" };
+    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.delay" };
   }
   if (!snapshot_.loop.command_seen)
   {
@@ -216,7 +216,7 @@ DiagnosticVerdict Diagnostics::judgeTiming() const
   }
   if (clock_jumps_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "The clock jumped back: started anew" };
+    return { DiagnosticStatus::WARN, "The clock jumped back: restarted" };
   }
   if (drops_.areRecent())
   {
@@ -224,7 +224,7 @@ DiagnosticVerdict Diagnostics::judgeTiming() const
   }
   if (toSeconds(snapshot_.loop.lag) > LAG_WARNING)
   {
-    return { DiagnosticStatus::WARN, "Behind the clock and catching up; ~reset starts anew at the current instant" };
+    return { DiagnosticStatus::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" };
   }
   if (missed_deadlines_.areRecent())
   {
@@ -236,7 +236,7 @@ DiagnosticVerdict Diagnostics::judgeTiming() const
   }
   if (!realtime_.refusals.empty())
   {
-    return { DiagnosticStatus::WARN, "In time, but without what was asked for below realtime: see the log" };
+    return { DiagnosticStatus::WARN, "In time, but a request of realtime was refused: see the log" };
   }
   return { DiagnosticStatus::OK, "In time" };
 }

@@ -19,13 +19,14 @@
 
 namespace hjt
 {
-/// What the indicators say, whether or not they are up to date. A fault told once stands until windows say otherwise.
+/// State of the indicators, also if they are not up to date. A reported fault remains until windows contradict it.
 std::string verdictText(const Assessment& assessment);
 
 /// Cause, evidence and windows of a verdict.
 void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
 
-/// Tells /diagnostics how the drive, the input, the timing and the health are: about once a second by the wall clock, and at once
+/// Publishes the state of drive, input, timing and health on /diagnostics: about once a second by the wall clock, and
+/// at once
 /// when a level changes. Also logs, once per jump, that the clock went back.
 class Diagnostics
 {

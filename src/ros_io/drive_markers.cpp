@@ -22,7 +22,7 @@ constexpr double LINE_WIDTH = 0.2e-3;   // [m]
 constexpr double TEXT_HEIGHT = 1.8e-3;  // [m]
 constexpr double ARROW_WIDTH = 0.2e-3;  // of the shaft [m]
 constexpr double ARROW_HEAD = 0.7e-3;   // length and width [m]
-constexpr double LEAST_ARROW = 0.2e-3;  // shorter ones are left out [m]
+constexpr double MIN_ARROW = 0.2e-3;    // shorter ones are left out [m]
 constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
 constexpr double ROOT_SHARE = 0.28;
 constexpr double RING_HEIGHTS = 2.0;    // circular spline behind its roots, in tooth heights
@@ -96,7 +96,7 @@ void addQuad(Marker& marker, const Point& a, const Point& b, const Point& c, con
 void addArrow(Marker& marker, const Point& tip, const Point& along)
 {
   const double length = along.norm();
-  if (!(length > LEAST_ARROW))
+  if (!(length > MIN_ARROW))
   {
     return;
   }

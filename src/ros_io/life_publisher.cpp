@@ -38,7 +38,7 @@ std::string unusedName(const std::string& path)
 LifePublisher::LifePublisher(ros::NodeHandle& node, const Parameters& parameters)
   : parameters_(parameters)
   , path_(parameters.life.use_record == NO_FILE ? "" : parameters.life.use_record)
-  , counted_{ 0, UseRecord(parameters.life) }
+  , counted_{ 0, UsageHistory(parameters.life) }
   , stretches_(STRETCH_SLOTS, counted_)
   , record_(parameters.life)
   , estimator_(parameters)
@@ -74,7 +74,7 @@ void LifePublisher::readRecord()
   }
   try
   {
-    record_ = UseRecord(parameters_.life, path_);
+    record_ = UsageHistory(parameters_.life, path_);
     ROS_INFO_STREAM("The drive has " << record_.hours() << " h of use behind it (" << path_ << ")");
   }
   catch (const InputError& error)
@@ -99,7 +99,7 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   last_ = instant;
   if (elapsed < 0 || elapsed > STRETCH)
   {
-    return;  // started anew at another instant
+    return;  // restarted at another instant
   }
   counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
   counted_.until = instant;

@@ -19,7 +19,7 @@ namespace hjt
 /// Keeps the drive's record of use and publishes what is left of its life. Whoever runs the twin counts; ageing, publishing
 /// and the file are done in a thread of its own, every life.forecast_period by the wall clock and at the end.
 ///
-/// A file that cannot be read is set aside under another name, and the count starts anew.
+/// A file that cannot be read is renamed, and the count restarts.
 class LifePublisher
 {
 public:
@@ -36,7 +36,7 @@ private:
   struct Stretch
   {
     Stamp until;
-    UseRecord use;
+    UsageHistory use;
   };
   void readRecord();
   void run();
@@ -50,7 +50,7 @@ private:
   Stamp counted_from_{};
   Stamp last_{};
   SlotRing<Stretch> stretches_;
-  UseRecord record_;
+  UsageHistory record_;
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

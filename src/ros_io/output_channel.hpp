@@ -31,7 +31,7 @@ public:
   }
 
   /// Loop: whether anybody listened when last looked.
-  bool isWanted() const noexcept { return heard_.load(std::memory_order_relaxed); }
+  bool isWanted() const noexcept { return has_subscribers_.load(std::memory_order_relaxed); }
 
   /// Loop: lets `fill(Message&)` write the next message, unless it returns false. A full ring drops it and counts.
   template <class Fill>
@@ -61,14 +61,14 @@ public:
   }
 
   /// Publisher thread: asks roscpp, which locks and counts, who listens.
-  void refreshHeard() { heard_.store(publisher_.getNumSubscribers() > 0, std::memory_order_relaxed); }
+  void refreshSubscribers() { has_subscribers_.store(publisher_.getNumSubscribers() > 0, std::memory_order_relaxed); }
 
   ChannelCounters counters(const char* name) const noexcept { return { name, computed_, dropped_ }; }
 
 private:
   SlotRing<Message> ring_;
   ros::Publisher publisher_;
-  std::atomic<bool> heard_{ false };
+  std::atomic<bool> has_subscribers_{ false };
   std::atomic<std::uint64_t> computed_{ 0 };
   std::atomic<std::uint64_t> dropped_{ 0 };
 };

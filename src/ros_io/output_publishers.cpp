@@ -101,7 +101,7 @@ void OutputPublishers::run()
         {
           if (round == 0)
           {
-            sink.refreshHeard();
+            sink.refreshSubscribers();
           }
           heard = heard || sink.isWanted();
         });

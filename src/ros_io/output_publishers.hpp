@@ -14,7 +14,8 @@
 
 namespace hjt
 {
-/// Everything the twin publishes. The loop fills what is due and heard; serialising and sending, which allocate and
+/// Everything the twin publishes. The loop fills the messages that are due and have subscribers; serialising and
+/// sending, which allocate and
 /// lock, happen in a thread of their own.
 class OutputPublishers
 {

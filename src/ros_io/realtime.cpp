@@ -32,7 +32,7 @@ std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
 std::string remedy(const std::string& limits_line, const std::string& capability)
 {
   return ". To permit it, add to /etc/security/limits.conf the line '" + userName() + " - " + limits_line +
-         "' and log in anew, or run with " + capability + ". The node goes on without";
+         "' and log in again, or run with " + capability + ". The node continues without it";
 }
 
 void applyPriority(int priority, pthread_t loop_thread, RealtimeState& state)
@@ -98,7 +98,7 @@ void applyProcessor(int processor, pthread_t loop_thread, RealtimeState& state)
   state.processor += ", " + wanted + " refused";
   state.refusals.push_back("realtime.processor = " + wanted + " [-]: refused, " + std::strerror(error) +
                            "; this machine has " + std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) +
-                           " processors, counted from 0. The node goes on without");
+                           " processors, counted from 0. The node continues without it");
 }
 }  // namespace
 

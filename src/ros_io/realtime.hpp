@@ -16,7 +16,7 @@ struct RealtimeState
   std::string scheduling;  ///< policy and priority of the loop's thread
   std::string memory;      ///< whether it is locked
   std::string processor;   ///< that the loop's thread is bound to
-  /// For each thing asked for and refused: what, why, and what to change on the system.
+  /// For each refused request: its name, the reason, and the change of the system that permits it.
   std::vector<std::string> refusals;
 };
 

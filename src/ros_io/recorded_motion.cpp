@@ -34,7 +34,7 @@ public:
   {
     const double step = time - time_;
     const double mean = 0.5 * (velocity + velocity_);
-    if (step > MotionSmoother::SMALLEST_STEP && step < MotionSmoother::LONGEST_GAP && std::abs(mean) > SLOWEST)
+    if (step > MotionDifferentiator::MIN_STEP && step < MotionDifferentiator::MAX_GAP && std::abs(mean) > SLOWEST)
     {
       products_ += (position - position_) / step * mean;
       squares_ += mean * mean;
@@ -45,11 +45,11 @@ public:
     velocity_ = velocity;
   }
 
-  double ratio() const { return rows_ >= FEWEST_ROWS ? products_ / squares_ : 0.0; }
+  double ratio() const { return rows_ >= MIN_ROWS ? products_ / squares_ : 0.0; }
 
 private:
   static constexpr double SLOWEST = 0.05;  // [rad/s]
-  static constexpr int FEWEST_ROWS = 50;
+  static constexpr int MIN_ROWS = 50;
 
   double time_{ -HUGE_VAL };
   double position_{};
@@ -231,7 +231,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
     {
       found += (found.empty() ? "" : ", ") + name;
     }
-    throw InputError(source.topic + " never tells angle and effort of joint '" + source.joint +
+    throw InputError(source.topic + " never contains angle and effort of joint '" + source.joint +
                      "'; joints found: " + (found.empty() ? "none" : found));
   }
   return rows.count();

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
@@ -38,7 +38,7 @@ struct MotionCount
 struct MotionFindings : MotionCount
 {
   std::uint64_t refused{};  ///< rows repeated or out of order
-  std::uint64_t gaps{};     ///< longer than MotionSmoother::LONGEST_GAP
+  std::uint64_t gaps{};     ///< longer than MotionDifferentiator::MAX_GAP
   bool has_load{};          ///< the recording gives the load
 };
 

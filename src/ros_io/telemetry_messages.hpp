@@ -5,7 +5,7 @@
 
 #include "harmonic_joint_twin/Comparison.h"
 #include "ros_io/conversions.hpp"
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {

@@ -23,7 +23,7 @@ using std::chrono::steady_clock;
 /// Of the loop, by the wall clock.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
 /// Simulated at most in one cycle, so that the loop stays responsive while it catches up [ns].
-constexpr Stamp LONGEST_CATCH_UP = 20'000'000;
+constexpr Stamp MAX_CATCH_UP = 20'000'000;
 /// A smaller step back, as time synchronisation makes, is waited out [ns].
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// How long a request waits for the loop.
@@ -50,7 +50,7 @@ __attribute__((noinline)) void touchStack()
 void prepareThread()
 {
   pthread_setname_np(pthread_self(), "twin_loop");
-  // Linux may let a thread without real-time priority sleep 50 us longer than it asked for.
+  // Linux may let a thread without real-time priority sleep 50 us longer than requested.
   prctl(PR_SET_TIMERSLACK, 1UL);
   touchStack();
 }
@@ -62,7 +62,7 @@ TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, 
   , clock_(std::move(clock))
   , clock_kind_(clock_kind)
   , after_step_(std::move(after_step))
-  , hold_back_(toStampLength(twin.parameters().input.hold_back))
+  , input_delay_(toStampLength(twin.parameters().input.delay))
   , deadline_(toStampLength(twin.parameters().realtime.deadline))
   , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
   , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
@@ -100,7 +100,7 @@ void TwinLoop::run()
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
     wake_up = std::max(wake_up + CYCLE_PERIOD, end);
-    if (wake_up > end && status_.lag < LONGEST_CATCH_UP)
+    if (wake_up > end && status_.lag < MAX_CATCH_UP)
     {
       std::this_thread::sleep_until(wake_up);
       status_.timing.wake_up.add(nanoseconds(steady_clock::now() - wake_up));
@@ -110,7 +110,7 @@ void TwinLoop::run()
 
 void TwinLoop::cycle() noexcept
 {
-  // Without a time there is nothing to start anew, and inputs cannot be put in order yet.
+  // Without a time there is nothing to restart, and inputs cannot be ordered yet.
   if (clock_() == 0)
   {
     resets_done_ = resets_requested_.load();
@@ -125,7 +125,7 @@ void TwinLoop::cycle() noexcept
     waiting = 0;
   }
   stampInputs(waiting);
-  const Stamp limit = std::max<Stamp>(status_.clock - hold_back_, 0);
+  const Stamp limit = std::max<Stamp>(status_.clock - input_delay_, 0);
   answerRequests(limit, waiting);
   if (status_.state == LoopState::RUNNING || tryStart(limit))
   {
@@ -233,7 +233,7 @@ void TwinLoop::handOverInputs() noexcept
 {
   for (const Input& input : arrived_)
   {
-    twin_.give(input);
+    twin_.push(input);
     if (input.kind == InputKind::MOTOR_TORQUE)
     {
       status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
@@ -250,7 +250,7 @@ void TwinLoop::catchUp(Stamp limit) noexcept
     released_ = status_.clock;
   }
   const Stamp first = twin_.stamp() + step_length_;
-  const Stamp until = std::min(limit, twin_.stamp() + LONGEST_CATCH_UP);
+  const Stamp until = std::min(limit, twin_.stamp() + MAX_CATCH_UP);
   while (twin_.step(until))
   {
     after_step_(twin_);
@@ -259,7 +259,7 @@ void TwinLoop::catchUp(Stamp limit) noexcept
   status_.largest_lag = std::max(status_.largest_lag, status_.lag);
   if (twin_.stamp() >= first)
   {
-    judgeLateness(std::max(first + hold_back_, released_));
+    judgeLateness(std::max(first + input_delay_, released_));
   }
 }
 

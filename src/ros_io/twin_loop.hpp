@@ -75,9 +75,9 @@ struct LoopStatus
 
 /// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
 ///
-/// The twin stays `input.hold_back` behind the clock. It never skips time: after a jump forward it catches up, a
-/// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back starts it
-/// anew.
+/// The twin stays `input.delay` behind the clock. It never skips time: after a jump forward it catches up, a
+/// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
+/// it.
 class TwinLoop
 {
 public:
@@ -90,7 +90,7 @@ public:
   /// Stops the thread.
   ~TwinLoop();
 
-  /// From any thread: starts the twin anew at the current instant. Waits for it. False: the loop did not answer.
+  /// From any thread: restarts the twin at the current instant. Waits for it. False: the loop did not answer.
   bool reset();
 
   LoopStatus status() const { return shown_status_.read(); }
@@ -117,7 +117,7 @@ private:
   Clock clock_;
   const ClockKind clock_kind_;
   AfterStep after_step_;
-  const Stamp hold_back_;
+  const Stamp input_delay_;
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;

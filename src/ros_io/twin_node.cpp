@@ -32,7 +32,8 @@ RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& lo
   return state;
 }
 
-/// Response surfaces from the user's cache; building tells how far it is. By the wall clock it goes on beside the loop; in
+/// Response surfaces from the user's cache; building prints its progress. With the wall clock it runs in parallel to
+/// the loop; in
 /// simulated time the twin waits for it, so that a replay gives the same bits every time.
 SurfaceSource surfaceSource()
 {
@@ -74,7 +75,7 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
 bool TwinNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   response.success = loop_.reset();
-  response.message = response.success ? "the twin starts anew at the current instant" : "the loop does not answer";
+  response.message = response.success ? "the twin restarts at the current instant" : "the loop does not answer";
   return true;
 }
 

@@ -17,11 +17,11 @@ namespace hjt
 /// The sensors of a joint: both encoders and the motor's current, which is read as a torque.
 ///
 /// Law:   a' = a + e sin a + s n     angle that an encoder resolves into counts   [rad]
-///        T' = T + s_T n, rounded    torque told from the current                 [N.m]
+///        T' = T + s_T n, rounded    torque estimated from the current [N.m]
 /// where  e    amplitude that an eccentric disc or magnet brings, once a turn     [rad]
 ///        s    noise, root mean square, s_T of the torque                         [rad], [N.m]
-///        n    standard normal, anew at every step: of seed, sensor and step      [-]
-/// All readings lag by the same delay, in whole steps. What is zero costs nothing and changes no bit.
+///        n standard normal, a new number at every step: of seed, sensor and step      [-]
+/// All readings have the same delay, in whole steps. An effect set to zero costs nothing and changes no bit.
 class JointSensors
 {
 public:

@@ -70,8 +70,8 @@ bool solveSlip(double free, double most, double e, double& share)
 /// following or held, whichever slips more.
 double DryFriction::width(const FrictionTerm& term, double follow) const noexcept
 {
-  constexpr double LEAST_WIDTH = 1e-100;  // of a term that nothing slips: its powers up to the third stay numbers
-  return width_ * (std::abs(term.slip[0]) + std::abs(follow * term.slip[1])) + LEAST_WIDTH;
+  constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its powers up to the third stay numbers
+  return width_ * (std::abs(term.slip[0]) + std::abs(follow * term.slip[1])) + MIN_WIDTH;
 }
 
 Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
@@ -137,17 +137,17 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
 bool DryFriction::slide(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
-  constexpr std::size_t MOST_TERMS = 8;
+  constexpr std::size_t MAX_TERMS = 8;
   constexpr double SLIDING = 3e4;      // slip over the regularisation's width
   constexpr double STICK_RANGE = 1e3;  // as in `solve`
   const std::size_t count = friction.terms.size();
-  if (count == 0 || count > MOST_TERMS)
+  if (count == 0 || count > MAX_TERMS)
   {
     return false;
   }
   // The term nearest to sticking is the one unknown.
-  std::array<double, MOST_TERMS> widths{};
-  std::array<double, MOST_TERMS> senses{};
+  std::array<double, MAX_TERMS> widths{};
+  std::array<double, MAX_TERMS> senses{};
   std::size_t nearest = 0;
   double least = 0.0;  // slip of the nearest
   for (std::size_t j = 0; j < count; ++j)

@@ -120,18 +120,18 @@ SolveStatus EnergyDescent::settle(RingLinearisation& system, RingState& state) n
 {
   constexpr int MAX_STEPS = 2000;
   constexpr double FIRST_DAMPING = 1e6;  // N/m, added to every tooth's stiffness
-  constexpr double LEAST_DAMPING = 1e-3;
-  constexpr double MOST_DAMPING = 1e16;
+  constexpr double MIN_DAMPING = 1e-3;
+  constexpr double MAX_DAMPING = 1e16;
   SolveStatus status;
   double damping = FIRST_DAMPING;
-  while (status.iterations < MAX_STEPS && damping < MOST_DAMPING)
+  while (status.iterations < MAX_STEPS && damping < MAX_DAMPING)
   {
     system.updateForces(state);
     status.residual = system.residual();
     if (status.residual > tolerance_)
     {
       ++status.iterations;
-      damping = dampedStep(damping, system, state) ? std::max(LEAST_DAMPING, 0.2 * damping) : 5.0 * damping;
+      damping = dampedStep(damping, system, state) ? std::max(MIN_DAMPING, 0.2 * damping) : 5.0 * damping;
     }
     else if (pairsAgain(state))
     {

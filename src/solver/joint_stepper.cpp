@@ -146,7 +146,7 @@ bool JointStepper::stepRungeKutta() noexcept
   return true;
 }
 
-double JointStepper::swingPhase() const noexcept
+double JointStepper::phaseAdvance() const noexcept
 {
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d inertia = dynamics_.model().inertia();

@@ -15,7 +15,7 @@ class JointStepper
 public:
   /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
   /// after four swings [rad].
-  static constexpr double MAX_SWING_PHASE = 0.1;
+  static constexpr double MAX_PHASE_ADVANCE = 0.1;
   static constexpr double REST_SPEED = 1e-7;  ///< of the output, 0.02 seconds of arc a second [rad/s]
   static constexpr double REST_TIME = 0.1;    ///< [s]
 
@@ -50,7 +50,7 @@ public:
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
-  double swingPhase() const noexcept;
+  double phaseAdvance() const noexcept;
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

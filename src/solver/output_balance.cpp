@@ -54,7 +54,7 @@ SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, do
   constexpr int MAX_IDLE = 20;          // iterations in a row that come no closer
   constexpr double CLOSER = 0.999;      // of the least excess before
   constexpr double FIRST_REACH = 0.01;  // of a tooth space
-  constexpr double MOST_REACH = 0.25;   // farther, teeth would pair with other spaces
+  constexpr double MAX_REACH = 0.25;    // farther, teeth would pair with other spaces
   SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);
   double reach = FIRST_REACH * toothSpace(ring);
   double excess = ring.forces().output_torque - load_torque;
@@ -75,7 +75,7 @@ SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, do
     idle = std::abs(excess) < CLOSER * least ? 0 : idle + 1;
     least = std::min(least, std::abs(excess));
     reach =
-        moved.ok() && std::abs(excess) <= before ? std::min(2.0 * reach, MOST_REACH * toothSpace(ring)) : 0.5 * reach;
+        moved.ok() && std::abs(excess) <= before ? std::min(2.0 * reach, MAX_REACH * toothSpace(ring)) : 0.5 * reach;
     if (idle > MAX_IDLE)
     {
       total.code = codeOfFailure(ring, load_torque);

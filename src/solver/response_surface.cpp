@@ -102,16 +102,16 @@ SurfaceCell::Energy SurfaceCell::energy() const noexcept
            along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height };
 }
 
-ResponseSurface::ResponseSurface(SurfaceTable table, DepartureTable departures)
+ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable departures)
   : table_(std::move(table))
-  , departures_(std::move(departures))
+  , deviations_(std::move(departures))
   , pitches_per_radian_(1.0 / table_.pitch)
   , inverse_ratio_(1.0 / table_.ratio)
   , line_index_(table_.lines)
 {
-  for (const DepartureTable::Pitch& pitch : departures_.pitches)
+  for (const DeviationTable::Pitch& pitch : deviations_.pitches)
   {
-    departure_index_.emplace_back(pitch.lines);
+    deviation_index_.emplace_back(pitch.lines);
   }
   for (std::size_t i = 0; i + 1 < table_.lines.size(); ++i)
   {
@@ -121,10 +121,10 @@ ResponseSurface::ResponseSurface(SurfaceTable table, DepartureTable departures)
 
 bool ResponseSurface::locate(double motor_angle, double output_angle, Place& place) const noexcept
 {
-  constexpr double MOST_PITCHES = 1e15;  // beyond it an angle has no place within a pitch
+  constexpr double MAX_PITCHES = 1e15;  // beyond it an angle has no place within a pitch
   const double pitches = motor_angle * pitches_per_radian_;
   const double v = output_angle - motor_angle * inverse_ratio_;
-  if (!(v >= lowest() && v <= highest() && std::abs(pitches) < MOST_PITCHES))
+  if (!(v >= lowest() && v <= highest() && std::abs(pitches) < MAX_PITCHES))
   {
     return false;
   }
@@ -144,34 +144,34 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   cell.height = table_.lines[line + 1] - table_.lines[line];
   place.at = v;
   place.departure.below = nullptr;
-  if (!departures_.pitches.empty())
+  if (!deviations_.pitches.empty())
   {
-    locateDeparture(pitch, part, place);
+    locateDeviation(pitch, part, place);
   }
   return true;
 }
 
 /// `part` of a pitch beyond a whole one.
-void ResponseSurface::locateDeparture(std::int64_t pitch, double part, Place& place) const noexcept
+void ResponseSurface::locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept
 {
-  const auto count = static_cast<std::int64_t>(departures_.pitches.size());
+  const auto count = static_cast<std::int64_t>(deviations_.pitches.size());
   const std::int64_t turns = pitch / count - (pitch % count < 0 ? 1 : 0);
   const auto within = static_cast<std::size_t>(pitch - turns * count);
-  const DepartureTable::Pitch& table = departures_.pitches[within];
+  const DeviationTable::Pitch& table = deviations_.pitches[within];
   if (table.lines.empty())
   {
     return;
   }
   const double columns = part * table.columns;
   const int column = std::min(static_cast<int>(columns), table.columns - 1);
-  const std::size_t line = departure_index_[within].below(table.lines, place.at);
+  const std::size_t line = deviation_index_[within].below(table.lines, place.at);
   const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
   const double height = table.lines[line + 1] - table.lines[line];
   const SurfaceTable::Node* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
   place.departure = {
     below, below + stride, columns - column, (place.at - table.lines[line]) / height, 1.0 / table.columns, height
   };
-  place.lobes_swapped = departures_.swaps_lobes && turns % 2 != 0;
+  place.lobes_swapped = deviations_.swaps_lobes && turns % 2 != 0;
 }
 
 std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept

@@ -41,10 +41,10 @@ struct SurfaceTable
   std::vector<Node> nodes;    ///< (columns + 1) a line; the last is the first again
 };
 
-/// What a gear whose teeth differ departs by from the gear of equal teeth, at the same angles, over the turn after which it
-/// is the same again: a table of its own for every tooth pitch of that turn. At the edge between two pitches both tables
+/// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
+/// one table per tooth pitch. At the edge between two pitches both tables
 /// are the same function of v, so that energy and torques are continuous.
-struct DepartureTable
+struct DeviationTable
 {
   struct Pitch
   {
@@ -113,7 +113,7 @@ class ResponseSurface
 {
 public:
   /// `table`: at least two lines. The lines of a pitch of `departures` span those of the table.
-  explicit ResponseSurface(SurfaceTable table, DepartureTable departures = {});
+  explicit ResponseSurface(SurfaceTable table, DeviationTable departures = {});
 
   /// A place on the surface.
   struct Place
@@ -154,19 +154,19 @@ public:
   static std::array<double, 2> lobeForces(const Place& place) noexcept;
 
   const SurfaceTable& table() const noexcept { return table_; }
-  const DepartureTable& departures() const noexcept { return departures_; }
+  const DeviationTable& departures() const noexcept { return deviations_; }
   double lowest() const noexcept { return table_.lines.front(); }  ///< of v [rad]
   double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
 
 private:
-  void locateDeparture(std::int64_t pitch, double part, Place& place) const noexcept;
+  void locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept;
 
   SurfaceTable table_;
-  DepartureTable departures_;
+  DeviationTable deviations_;
   double pitches_per_radian_;
   double inverse_ratio_;
   LineIndex line_index_;
   std::vector<double> inverse_height_;
-  std::vector<LineIndex> departure_index_;  // one a pitch
+  std::vector<LineIndex> deviation_index_;  // one a pitch
 };
 }  // namespace hjt

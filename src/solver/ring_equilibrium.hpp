@@ -25,14 +25,15 @@ class RingEquilibrium
 public:
   RingEquilibrium(const RingModel& model, const SolverParameters& parameters);
 
-  /// Cold start: from the round ring the wave amplitude grows to its full value, in the circular spline if it goes, else
-  /// before the circular spline is put on.
+  /// Cold start: the radial deflection is raised from zero with the circular spline in place; if that does not
+  /// converge, without it, and the circular spline is added afterwards.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
   /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
   SolveStatus relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
-  /// As `insert`, in mid-run, where `moveTo` found no way: the teeth pair anew. On failure the present state stays.
+  /// Repeats the insertion during a run after `moveTo` failed: the teeth are paired again. On failure the state is
+  /// unchanged.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
   /// After a change of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
@@ -42,8 +43,8 @@ public:
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// Where `moveTo` found no way because the ring snaps: downhill in energy to the next equilibrium, teeth that are lifted
-  /// out of their spaces pairing anew on the way. Slow; `iterations` counts its steps. On failure the last state stays.
+  /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their
+  /// spaces are paired again on the way. Slow; `iterations` counts its steps. On failure the state is unchanged.
   SolveStatus settle(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return model_; }
@@ -51,7 +52,7 @@ public:
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return system_.forces(); }
 
-  /// What a coordinate's last digit is worth as a force [N]: no solve comes below it.
+  /// Rounding of a coordinate as a force [N], the lower limit of any solve.
   double rounding() const noexcept { return rounding_; }
 
   /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
@@ -83,7 +84,7 @@ private:
   RingState now_;
   RingState start_;    // of the present move
   RingState halfway_;  // the farthest point of the present move
-  RingState kept_;     // before inserting anew
+  RingState kept_;     // before the insertion was repeated
   RingLinearisation system_;
   double rounding_;   // [N]
   double tolerance_;  // largest out-of-balance force of an equilibrium [N]

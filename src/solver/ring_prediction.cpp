@@ -30,7 +30,7 @@ RingPrediction::RingPrediction(const RingModel& model)
 
 void RingPrediction::predict(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double ALIKE = 0.8;  // less has come about by chance
+  constexpr double ALIKE = 0.8;  // smaller similarities are chance
   double share = 0.0;
   if (guessed_)
   {
@@ -58,11 +58,11 @@ void RingPrediction::forget() noexcept
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double SMALL = 0.02;        // of a pitch; below it the tangent alone is as good
-  constexpr double MOST_PITCHES = 1e9;  // counted as an int
+  constexpr double SMALL = 0.02;       // of a pitch; below it the tangent alone is as good
+  constexpr double MAX_PITCHES = 1e9;  // counted as an int
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
-  if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MOST_PITCHES)
+  if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
   {
     const int whole = static_cast<int>(pitches);
     if (whole != 0)

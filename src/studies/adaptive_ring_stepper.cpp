@@ -9,9 +9,9 @@ namespace hjt
 namespace
 {
 constexpr double SAFETY = 0.9;
-constexpr double LEAST_CHANGE = 0.2;
-constexpr double MOST_CHANGE = 5.0;
-constexpr double SMALLEST_RATIO = 1e-6;  // an error of nothing is not taken for more than luck
+constexpr double MIN_CHANGE = 0.2;
+constexpr double MAX_CHANGE = 5.0;
+constexpr double MIN_RATIO = 1e-6;  // an error of nothing is not taken for more than luck
 }  // namespace
 
 AdaptiveRingStepper::AdaptiveRingStepper(DynamicRing& ring, std::unique_ptr<EmbeddedRingStepper> method,
@@ -56,7 +56,7 @@ bool AdaptiveRingStepper::step(RingMotion& motion, double length) noexcept
       just_rejected_ = true;
       motion = before_;
       const double change = SAFETY * std::pow(ratio, -1.0 / method_->errorPower());
-      next_ = stride * (change > LEAST_CHANGE ? change : LEAST_CHANGE);  // also if it is not a number
+      next_ = stride * (change > MIN_CHANGE ? change : MIN_CHANGE);  // also if it is not a number
     }
     else
     {
@@ -91,11 +91,11 @@ double AdaptiveRingStepper::firstStep(const RingMotion& motion, double length) n
 double AdaptiveRingStepper::growth(double ratio) noexcept
 {
   const double power = 1.0 / method_->errorPower();
-  const double bounded = std::max(ratio, SMALLEST_RATIO);
+  const double bounded = std::max(ratio, MIN_RATIO);
   const double change = SAFETY * std::pow(bounded, -0.7 * power) * std::pow(previous_, 0.4 * power);
-  const double most = just_rejected_ ? 1.0 : MOST_CHANGE;
+  const double most = just_rejected_ ? 1.0 : MAX_CHANGE;
   previous_ = bounded;
   just_rejected_ = false;
-  return std::clamp(change, LEAST_CHANGE, most);
+  return std::clamp(change, MIN_CHANGE, most);
 }
 }  // namespace hjt

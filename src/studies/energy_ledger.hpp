@@ -38,7 +38,7 @@ private:
   JointInputs inputs_;
 };
 
-/// What the books of a random motion say.
+/// Energy balance of a random motion.
 struct LedgerResult
 {
   SolveStatus status;   ///< of the last step
@@ -49,7 +49,7 @@ struct LedgerResult
   int reversals{};      ///< of the motor
 };
 
-/// `duration` [s] from rest. `progress` is told the part done.
+/// `duration` [s] from rest. `progress` gets the part done.
 LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& settings, double duration,
                        const std::function<void(double)>& progress = {});
 }  // namespace hjt

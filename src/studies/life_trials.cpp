@@ -22,7 +22,7 @@ public:
   {
   }
 
-  RemainingHours reading(double hours, const DriveNature& nature, const DriveAge& age)
+  RemainingHours reading(double hours, const UnitVariation& variation, const DriveAge& age)
   {
     constexpr int STRETCHES = 400;
     constexpr double HORIZON = 3.0;  // of the present age; past it use goes on as in the last stretch
@@ -30,7 +30,7 @@ public:
     filter_.use(usage - used_);
     used_ = usage;
     filter_.read({ age.flank_wear + options_.flank_wear_error * normal_(random_), options_.flank_wear_error,
-                   spallSize(nature, age.bearing_turns) + options_.spall_error * normal_(random_),
+                   spallSize(variation, age.bearing_turns) + options_.spall_error * normal_(random_),
                    options_.spall_error });
     return filter_.remaining(use_.from(hours, HORIZON * (hours + options_.every), STRETCHES));
   }
@@ -71,19 +71,20 @@ std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAg
   std::vector<LifeTrial> trials;
   for (int i = 0; i < options.lives; ++i)
   {
-    const DriveNature nature = drawNature(parameters.life, bearing, random);
-    LifeTrial trial{ nature, ageing.live(nature, longest, longest, options.grease_changes, {}), {} };
+    const UnitVariation variation = drawVariation(parameters.life, bearing, random);
+    LifeTrial trial{ variation, ageing.live(variation, longest, longest, options.grease_changes, {}), {} };
     if (trial.life.end)
     {
       Watch watch(parameters, ageing, options, options.seed + static_cast<std::uint32_t>(i) + 1u);
-      ageing.live(nature, trial.life.hours, options.every, options.grease_changes,
-                  [&](double hours, const DriveAge& age)
-                  {
-                    if (hours > 0.0 && hours < trial.life.hours)
-                    {
-                      trial.forecasts.push_back({ hours, trial.life.hours - hours, watch.reading(hours, nature, age) });
-                    }
-                  });
+      ageing.live(
+          variation, trial.life.hours, options.every, options.grease_changes,
+          [&](double hours, const DriveAge& age)
+          {
+            if (hours > 0.0 && hours < trial.life.hours)
+            {
+              trial.forecasts.push_back({ hours, trial.life.hours - hours, watch.reading(hours, variation, age) });
+            }
+          });
     }
     trials.push_back(std::move(trial));
     progress((i + 1.0) / options.lives);

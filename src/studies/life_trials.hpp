@@ -22,7 +22,7 @@ struct LifeTrialOptions
   bool grease_changes{};
 };
 
-/// What the filter said at one reading, and what came.
+/// A forecast of the filter at one reading, and the true life.
 struct LifeForecast
 {
   double hours{};           ///< of use when it was said
@@ -35,7 +35,7 @@ struct LifeForecast
 
 struct LifeTrial
 {
-  DriveNature nature;
+  UnitVariation variation;
   DriveAgeing::Life life;
   std::vector<LifeForecast> forecasts;  ///< none if the life did not end
 };
@@ -53,7 +53,7 @@ struct Coverage
 Coverage coverage(const std::vector<LifeTrial>& trials, double from);
 
 /// Drives drawn from the spread of the parameters, each worn by the laws until its end and watched by a filter that
-/// knows neither its nature nor, but for the readings with their errors, its wear.
+/// knows neither its variation nor, but for the readings with their errors, its wear.
 /// `longest`: a life still going on then is left out [h].
 std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAgeing& ageing,
                                      const LifeTrialOptions& options, double longest,

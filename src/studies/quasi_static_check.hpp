@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// The working drive with a dynamic ring, held against the ring in equilibrium: the wave generator turns at a constant
+/// The working drive with a dynamic ring, compared with the ring in equilibrium: the wave generator turns at a constant
 /// speed, the circular spline is a free body under a constant load. Dry friction is left out on both sides.
 ///
 /// It starts from the travelling equilibrium: positions and speeds of the ring that follows the wave generator in

@@ -51,7 +51,7 @@ public:
   /// One step of just this length, teeth and spaces as they are. False if it does not come about: the motion stays.
   virtual bool attempt(RingMotion& motion, double length) noexcept = 0;
 
-  /// To be told before the first attempt from a motion, and whenever motion or drive were changed from outside.
+  /// To be called before the first attempt from a motion, and whenever motion or drive were changed from outside.
   virtual void restart() noexcept = 0;
   /// The last attempt stands: the next one goes on from its end. Otherwise the next one starts where that did.
   virtual void accept() noexcept = 0;

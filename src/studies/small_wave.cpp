@@ -90,10 +90,10 @@ ShapeError errorOf(const RingTheory& theory, const RingModel& model, const RingS
   for (int i = 0; i < shape.teeth(); ++i)
   {
     const Displacement is = displacement(model, shape, i);
-    const Displacement ought = theory.at(i * model.rest.pitchAngle());
-    error.radial = std::max(error.radial, std::abs(is.radial - ought.radial) / w);
-    error.tangential = std::max(error.tangential, std::abs(is.tangential - ought.tangential) / (0.5 * w));
-    error.tilt = std::max(error.tilt, std::abs(is.tilt - ought.tilt) / (1.5 * w / r));
+    const Displacement expected = theory.at(i * model.rest.pitchAngle());
+    error.radial = std::max(error.radial, std::abs(is.radial - expected.radial) / w);
+    error.tangential = std::max(error.tangential, std::abs(is.tangential - expected.tangential) / (0.5 * w));
+    error.tilt = std::max(error.tilt, std::abs(is.tilt - expected.tilt) / (1.5 * w / r));
   }
   return error;
 }

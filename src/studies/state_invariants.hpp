@@ -16,7 +16,7 @@ struct RingDifference
   double flank_force{};    ///< largest difference of the force on a flank [N]
 };
 
-/// A state at rest under load, and what has to hold in it whatever the parameters.
+/// A state at rest under load, and the properties that hold in it for any parameters.
 struct StateInvariants
 {
   SolveStatus status;
@@ -29,7 +29,7 @@ struct StateInvariants
   double contact_force_max{};      ///< [N]
   double flank_force_max{};        ///< [N]
   RingDifference half_turn;        ///< tooth i + N/2 against tooth i, mirrored at the axis
-  RingDifference pitch_shift;      ///< the ring solved anew some tooth pitches on, against this one renumbered
+  RingDifference pitch_shift;      ///< the ring solved some tooth pitches on, compared with this one renumbered
   double pitch_shift_energy{};     ///< difference of the stored energies, relative [-]
   double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
   double output_torque{};          ///< of the mesh on the circular spline [N.m]

@@ -19,7 +19,7 @@ struct TrialSample
   double joint_torque{};
 };
 
-/// What a trial of the twin was like, and all that the twin said of itself.
+/// Course of a trial of the twin, and the twin's own messages.
 struct TrialResult
 {
   std::vector<TrialSample> samples;
@@ -31,7 +31,7 @@ struct TrialResult
   double residual_max{};             ///< largest out-of-balance force on a tooth [N]
   double energy_residual_max{};      ///< largest |energy in - stored - dissipated| [J]
   double throughput{};               ///< sum of |work| of motor and load [J]
-  double swing_phase_max{};          ///< largest, per step [rad]
+  double phase_advance_max{};        ///< largest, per step [rad]
   double wave_generator_turn_max{};  ///< largest, per step [rad]
 };
 

@@ -19,9 +19,9 @@ using Line = std::vector<Node>;
 constexpr double TORQUE_MARGIN = 2.0;  // the table reaches to this times the torque limits
 constexpr int COARSE_LINES = 32;       // a side, before refinement, about
 constexpr int MAX_HALVINGS = 9;        // of an interval between two lines
-constexpr int LEAST_COLUMNS = 16;
-constexpr int MOST_COLUMNS = 64;
-constexpr std::size_t MOST_NODES = 500000;  // 150 MB; the shipped gear needs a third of it
+constexpr int MIN_COLUMNS = 16;
+constexpr int MAX_COLUMNS = 64;
+constexpr std::size_t MAX_NODES = 500000;  // 150 MB; the shipped gear needs a third of it
 
 class SurfaceBuilder
 {
@@ -42,7 +42,7 @@ public:
     }
     else
     {
-      obstacle_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
+      failure_reason_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
     }
     if (good())
     {
@@ -52,7 +52,7 @@ public:
     {
       refine();
     }
-    result.obstacle = obstacle_;
+    result.failure_reason = failure_reason_;
     result.solves = ring_.solves();
     for (const auto& [v, line] : lines_)
     {
@@ -64,13 +64,13 @@ public:
   }
 
 private:
-  bool good() const { return obstacle_.empty(); }
+  bool good() const { return failure_reason_.empty(); }
 
   void insert()
   {
     if (!ring_.insert())
     {
-      obstacle_ = "the insertion of the wave generator did not converge";
+      failure_reason_ = "the insertion of the wave generator did not converge";
     }
   }
 
@@ -128,14 +128,14 @@ private:
   /// Fewest columns that give a line's torques half way between them.
   int columnsFor(double v)
   {
-    const Line finest = measureLine(v, 2 * MOST_COLUMNS);
+    const Line finest = measureLine(v, 2 * MAX_COLUMNS);
     if (finest.empty())
     {
-      return MOST_COLUMNS;
+      return MAX_COLUMNS;
     }
-    for (int columns = LEAST_COLUMNS; columns < MOST_COLUMNS; columns *= 2)
+    for (int columns = MIN_COLUMNS; columns < MAX_COLUMNS; columns *= 2)
     {
-      const int stride = 2 * MOST_COLUMNS / columns;
+      const int stride = 2 * MAX_COLUMNS / columns;
       Line line;
       for (int i = 0; i <= columns; ++i)
       {
@@ -143,11 +143,11 @@ private:
       }
       const ResponseSurface surface = between(v, line, v + 1.0, line, columns);
       bool fine = true;
-      for (int i = 0; i < 2 * MOST_COLUMNS; ++i)
+      for (int i = 0; i < 2 * MAX_COLUMNS; ++i)
       {
         // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
         ResponseSurface::Place place;
-        const double motor_angle = table_.pitch * i / (2 * MOST_COLUMNS);
+        const double motor_angle = table_.pitch * i / (2 * MAX_COLUMNS);
         if (surface.locate(motor_angle, v + motor_angle / table_.ratio, place))
         {
           const RingResponse response = surface.response(place);
@@ -163,14 +163,14 @@ private:
         return columns;
       }
     }
-    return MOST_COLUMNS;
+    return MAX_COLUMNS;
   }
 
   /// Coarse lines from no load outwards, until the torque limits with margin are reached both ways.
   void coverRange()
   {
     const double step = ring_.twist(TORQUE_MARGIN * ring_.torqueLimit()) / COARSE_LINES;
-    table_.columns = LEAST_COLUMNS;
+    table_.columns = MIN_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
     {
       table_.columns = std::max(table_.columns, columnsFor(-ring_.twist(load * ring_.torqueLimit())));
@@ -197,7 +197,7 @@ private:
         std::ostringstream text;
         text << "the ring finds no equilibrium beyond " << reached << " N.m at the output, less than the "
              << ring_.torqueLimit() << " N.m that load or motor can bring";
-        obstacle_ = text.str();
+        failure_reason_ = text.str();
       }
     }
   }
@@ -214,7 +214,7 @@ private:
     {
       if (!ring_.moveTo(0.0, *v))
       {
-        obstacle_ = "the ring did not come back to an equilibrium that it had been in";
+        failure_reason_ = "the ring did not come back to an equilibrium that it had been in";
         return;
       }
     }
@@ -227,17 +227,17 @@ private:
 
   void refine(double below, double above, int halvings)
   {
-    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= MOST_NODES)
+    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= MAX_NODES)
     {
-      obstacle_ =
-          "a table as fine as its tolerances ask for would have more than " + std::to_string(MOST_NODES) + " points";
+      failure_reason_ =
+          "a table as fine as its tolerances ask for would have more than " + std::to_string(MAX_NODES) + " points";
       return;
     }
     const double middle = 0.5 * (below + above);
     Line line = measureLine(middle, table_.columns);
     if (line.empty())
     {
-      obstacle_ = "the ring found no equilibrium between two that it had been in";
+      failure_reason_ = "the ring found no equilibrium between two that it had been in";
       return;
     }
     const ResponseSurface surface = between(below, lines_[below], above, lines_[above], table_.columns);
@@ -273,7 +273,7 @@ private:
   SurfaceRing ring_;
   SurfaceTable table_;
   std::map<double, Line> lines_;
-  std::string obstacle_;
+  std::string failure_reason_;
 };
 }  // namespace
 

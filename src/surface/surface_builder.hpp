@@ -14,8 +14,8 @@ namespace hjt
 struct SurfaceBuild
 {
   SurfaceTable table;
-  std::string obstacle;  ///< empty: the table is good
-  int solves{};          ///< equilibria of the ring that were found for it
+  std::string failure_reason;  ///< empty: the table is good
+  int solves{};                ///< equilibria of the ring that were found for it
 };
 
 /// Tabulates the ring in equilibrium from no load to twice the torque that load or motor can bring, both ways.

@@ -27,7 +27,7 @@
 #include "gear/angle.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
-#include "surface/departure_builder.hpp"
+#include "surface/deviation_builder.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
 
@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 /// First line of a file, before the hash of the code that made it.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
 /// No table is larger; the shipped gear's has 51 MB [bytes].
-constexpr std::size_t LARGEST_FILE = std::size_t{ 1 } << 30;
+constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
@@ -79,12 +79,12 @@ std::string body(const SurfaceTable& table)
   return bytes;
 }
 
-std::string body(const DepartureTable& table)
+std::string body(const DeviationTable& table)
 {
   std::string bytes;
   const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
   append(bytes, sizes.data(), sizes.size());
-  for (const DepartureTable::Pitch& pitch : table.pitches)
+  for (const DeviationTable::Pitch& pitch : table.pitches)
   {
     const std::array<double, 2> counts{ static_cast<double>(pitch.columns), static_cast<double>(pitch.lines.size()) };
     append(bytes, counts.data(), counts.size());
@@ -167,13 +167,13 @@ bool parseBody(std::string_view bytes, SurfaceTable& table)
          std::isfinite(table.ratio) && ascending(table.lines) && finite(table.nodes);
 }
 
-bool parseBody(std::string_view bytes, DepartureTable& table)
+bool parseBody(std::string_view bytes, DeviationTable& table)
 {
   BodyReader reader(bytes);
   table.pitches.resize(reader.size(2.0));
   table.swaps_lobes = reader.size(0.0) != 0;
   bool good = true;
-  for (DepartureTable::Pitch& pitch : table.pitches)
+  for (DeviationTable::Pitch& pitch : table.pitches)
   {
     const std::size_t columns = reader.size(0.0);
     const std::size_t lines = reader.size(0.0);
@@ -197,7 +197,7 @@ std::optional<std::string> readOwnFile(const std::string& path)
   struct stat status = {};
   std::optional<std::string> bytes;
   if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
-      (status.st_mode & S_IWOTH) == 0 && static_cast<std::size_t>(status.st_size) <= LARGEST_FILE)
+      (status.st_mode & S_IWOTH) == 0 && static_cast<std::size_t>(status.st_size) <= MAX_FILE)
   {
     bytes.emplace(static_cast<std::size_t>(status.st_size), '\0');
     std::size_t done = 0;
@@ -259,7 +259,7 @@ void tell(const SurfaceSource& source, const std::string& what)
   }
 }
 
-/// A table from the cache, or built and put there. Empty: it could not be built, and why has been told.
+/// A table from the cache, or built and stored there. Empty: it could not be built, and the reason was reported.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {
@@ -271,9 +271,9 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
     return table;
   }
   auto built = build();
-  if (!built.obstacle.empty())
+  if (!built.failure_reason.empty())
   {
-    tell(source, NO_SURFACE + built.obstacle + FULL_RING_INSTEAD);
+    tell(source, NO_SURFACE + built.failure_reason + FULL_RING_INSTEAD);
     return std::nullopt;
   }
   if (kept)
@@ -328,11 +328,11 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
   SurfaceTables tables{ std::move(*table), {} };
   if (repetition > 1)
   {
-    std::optional<DepartureTable> departures = obtain<DepartureTable>(
+    std::optional<DeviationTable> departures = obtain<DeviationTable>(
         "departures", header(parameters, faults), source,
         [&]
         {
-          return buildDepartures(parameters, equal, model, repetition, tables.table.lines.front(),
+          return buildDeviations(parameters, equal, model, repetition, tables.table.lines.front(),
                                  tables.table.lines.back(), source.progress);
         });
     if (!departures)

@@ -16,7 +16,7 @@ namespace hjt
 struct SurfaceTables
 {
   SurfaceTable table;
-  DepartureTable departures;
+  DeviationTable departures;
 };
 
 /// The surface of a gear: from the cache, or built and put there. Nothing if the gear has none.

@@ -22,7 +22,8 @@ class SurfacePool
 public:
   using Surface = std::shared_ptr<const ResponseSurface>;
 
-  /// `kept`: so many of those asked for last, at least one, stay in memory, 50 MB each, also while no twin uses them.
+  /// `kept`: number of surfaces, at least one, that stay in memory, the last requested ones, 50 MB each, also while no
+  /// twin uses them.
   explicit SurfacePool(std::size_t kept) : kept_(kept) {}
 
   /// The surface under this key, made by `make` if it is not there; may be none.
@@ -35,6 +36,6 @@ private:
 
   std::size_t kept_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // those asked for last in front
+  std::list<Entry> entries_;  // last requested first
 };
 }  // namespace hjt

@@ -33,7 +33,7 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// Balls meet a spall anew at every turn: no table over the angles of motor and output holds that.
+/// Balls meet a spall differently at every turn: a table over the angles of motor and output cannot contain that.
 bool isOfTheBalls(const ActiveFault& active) noexcept
 {
   const FaultKind kind = active.fault.kind;

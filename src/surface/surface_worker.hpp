@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// The response surface of the drive with these faults; none, and the source is told why, if there is none.
+/// The response surface of the drive with these faults; if there is none, the source gets the reason.
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source);
 
@@ -30,7 +30,7 @@ public:
   /// False: not now, ask again. Neither waits nor allocates.
   bool request(const FaultList& faults) noexcept;
 
-  /// The surface asked for last once it is there; until then, or if there is none, null. Neither waits nor allocates.
+  /// The surface requested last, once it is ready; null until then or if there is none. Neither waits nor allocates.
   const ResponseSurface* surface() const noexcept
   {
     return done_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed) ? surface_.get() : nullptr;
@@ -43,7 +43,7 @@ private:
   const Parameters parameters_;
   const SurfaceSource source_;
   std::mutex mutex_;
-  FaultList faults_;  // asked for last
+  FaultList faults_;  // requested last
   SurfacePool::Surface surface_;
   std::atomic<std::uint64_t> asked_{ 1 };  // requests so far
   std::atomic<std::uint64_t> done_{ 0 };   // the request that surface_ is for

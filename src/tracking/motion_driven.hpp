@@ -4,7 +4,7 @@
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
 #include "tracking/friction_map.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 #include "tracking/presliding.hpp"
 #include "tracking/torque_ripple.hpp"
 
@@ -16,7 +16,7 @@ inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
   return load.inertia() * sample.acceleration - load.gravityTorque(sample.position);
 }
 
-/// What a healthy joint takes to make a motion.
+/// Motor torque and current of a healthy joint for a motion.
 struct MotionPrediction
 {
   double motor_torque{};     ///< at the shaft [N.m]
@@ -31,7 +31,7 @@ struct MotionPrediction
 ///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
-///       T_r what the kinematic error makes of it (TorqueRipple)
+///       T_r torque ripple caused by the kinematic error (TorqueRipple)
 /// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred nanoseconds;
 /// nothing allocates.
 class MotionDriven
@@ -42,7 +42,7 @@ public:
 
   MotionPrediction step(const MotionSample& sample) noexcept;
 
-  /// Weight and inertia of what the joint is configured to carry, where a recording does not tell the load [N.m].
+  /// Torque of the configured weight and inertia, for recordings without a load [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
 private:
@@ -51,7 +51,7 @@ private:
   TorqueRipple ripple_;
   Load load_;
   TelemetryParameters telemetry_;
-  double inertia_;  // of motor and wave generator, less what the load holds [kg.m^2]
+  double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
   double temperature_;
   MotionSample last_;

@@ -79,7 +79,7 @@ Observer::Observer(const Parameters& parameters)
   }
 }
 
-/// At rest under the load; what the first rows say of speed and disturbance is believed at once.
+/// At rest under the load; the first rows determine speed and disturbance at once.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);

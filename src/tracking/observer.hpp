@@ -41,18 +41,18 @@ ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, do
 /// Kalman gain of one measured angle; the covariance becomes that after the measurement (Joseph's form).
 ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece::State angle, double noise) noexcept;
 
-/// What is measured at one instant.
+/// Measurements at one instant.
 struct Measurement
 {
   double time{};          ///< [s]
-  double motor_torque{};  ///< told from the current [N.m]
+  double motor_torque{};  ///< estimated from the current [N.m]
   double load_torque{};   ///< external, at the output, > 0 resists positive motion [N.m]
   double output_angle{};  ///< [rad]
   double motor_angle{};   ///< NaN: there is no such encoder [rad]
-  bool anew{};            ///< first after a gap: what was before is forgotten
+  bool anew{};            ///< first after a gap: the state before is discarded
 };
 
-/// What the observer knows after it.
+/// Estimate after the measurement.
 struct Observation
 {
   double motor_angle{};      ///< zero where output and load say [rad]
@@ -61,22 +61,24 @@ struct Observation
   double output_velocity{};  ///< [rad/s]
   double joint_torque{};     ///< in the gear, at the output [N.m]
   double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
-  double residual_torque{};  ///< at the motor: what the measurement needs beyond the healthy joint [N.m]
+  double residual_torque{};  ///< at the motor: torque beyond that of the healthy joint that explains the measurement
+                             ///< [N.m]
   double residual_band{};    ///< of it, three deviations, if the noise is as stated and the joint healthy [N.m]
   double innovation{};       ///< output angle measured less predicted [rad]
   double innovation_band{};  ///< of it, three deviations [rad]
-  bool sticking{};           ///< friction holds the motor: within it any torque fits, so the residual says nothing new
+  bool sticking{};           ///< friction holds the motor: any torque within it fits, so the residual carries no
+                             ///< information
 };
 
 /// The joint of four states, driven by the measured torque and corrected towards the encoders, the output's alone or both: an
 /// extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
 ///
 /// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed to
-/// stop the motor, at most what it is. While friction holds the motor, no torque within it moves anything, so angles teach
-/// nothing of the disturbance and nothing winds up; its band widens instead. A robot that moves all the same pulls the model's
-/// output along, whose spring then tears the motor loose.
-/// What the encoders ask for beyond is one torque, the residual: friction that has grown, a load that was not told. The
-/// model's own parameters are never adapted, so a fault cannot be learnt away. A step costs about a microsecond.
+/// stop the motor, at most what it is. While the motor sticks, the angle measurement does not update the disturbance,
+/// so the estimate does not wind up; its band widens instead. If the robot moves nevertheless, the model's output
+/// follows it until the spring torque exceeds stiction. The remaining torque is the residual: increased friction, an
+/// unknown load. The model's parameters are never adapted, so a fault cannot be adapted away. A step costs about a
+/// microsecond.
 class Observer
 {
 public:

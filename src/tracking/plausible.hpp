@@ -5,24 +5,24 @@
 
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
 /// Beyond these a message was damaged [rad], [A] or [N.m].
-constexpr double LARGEST_ANGLE = 1.0e4;
-constexpr double LARGEST_EFFORT = 1.0e4;
+constexpr double MAX_ANGLE = 1.0e4;
+constexpr double MAX_EFFORT = 1.0e4;
 
 inline bool isPlausibleEffort(double effort) noexcept
 {
-  return std::abs(effort) <= LARGEST_EFFORT;  // false for NaN
+  return std::abs(effort) <= MAX_EFFORT;  // false for NaN
 }
 
 /// The motor's angle may be missing.
 inline bool isPlausible(const MotionRow& row) noexcept
 {
-  return std::isfinite(row.time) && std::abs(row.position) < LARGEST_ANGLE && isPlausibleEffort(row.current) &&
-         !(std::abs(row.motor_angle) > LARGEST_ANGLE * LARGEST_ANGLE);
+  return std::isfinite(row.time) && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
+         !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
 }
 
 /// Within what this joint's motor and gear can bear.

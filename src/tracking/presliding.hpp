@@ -11,7 +11,7 @@ namespace hjt
 /// Two of them add up. The contacts' builds up over telemetry.presliding_angle. While the joint stands the motion does not
 /// tell it, and it forgets the last one within RELAXATION, as the current of standing joints does (UR5 CB series, K.
 /// Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over LASTING_ANGLE, so
-/// that what the encoder sees of a standing joint hardly moves it, and stays.
+/// that the encoder's noise at standstill hardly changes it, and remains.
 class Presliding
 {
 public:

@@ -17,7 +17,7 @@ SignalWatch::SignalWatch(const Parameters& parameters)
 {
 }
 
-bool SignalWatch::take(const MotionSample& sample) noexcept
+bool SignalWatch::update(const MotionSample& sample) noexcept
 {
   SignalSample signal;
   signal.stamp = std::llround(1e9 * sample.time);
@@ -31,7 +31,7 @@ bool SignalWatch::take(const MotionSample& sample) noexcept
   {
     return false;
   }
-  assessor_.take(monitor_.indicators());
+  assessor_.update(monitor_.indicators());
   return true;
 }
 

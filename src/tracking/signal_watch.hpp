@@ -5,7 +5,7 @@
 
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/signal_monitor.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
@@ -16,10 +16,10 @@ public:
   explicit SignalWatch(const Parameters& parameters);
 
   /// The reference to hold the joint against; none: it is learned from the first windows.
-  void giveReference(std::vector<ReferenceBin> bins) { assessor_.give(std::move(bins)); }
+  void setReference(std::vector<ReferenceBin> bins) { assessor_.setReference(std::move(bins)); }
 
   /// `sample`: its load holds weight and inertia too. True: a window is complete, and what follows is of it.
-  bool take(const MotionSample& sample) noexcept;
+  bool update(const MotionSample& sample) noexcept;
 
   void reset() noexcept;
 

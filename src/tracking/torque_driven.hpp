@@ -3,14 +3,14 @@
 
 #include "elements/load.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
-/// The whole twin driven by a measured motor current, open loop: motion out. What it does differently from the robot adds up.
+/// The whole twin driven by a measured motor current, open loop: motion out. Differences from the robot accumulate.
 ///
 /// The current of a sample drives from its time on. The weight is that at the measured angle, so that a twin gone astray
-/// does not hang elsewhere. Starts at rest at the measured angle, after a gap anew.
+/// does not hang elsewhere. Starts at rest at the measured angle, and again after a gap.
 class TorqueDriven
 {
 public:
@@ -25,7 +25,7 @@ public:
     double friction_torque{};  ///< of the whole, at the joint, against the motion [N.m]
   };
 
-  /// What the joint has done by the time of `sample`, whose current and load act from then on.
+  /// State of the joint at the time of `sample`, whose current and load act from then on.
   /// @param load external torque at the output, without the configured weight and inertia [N.m]
   Motion step(const MotionSample& sample, double load) noexcept;
 

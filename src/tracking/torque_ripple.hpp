@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// What the drive's kinematic error makes of the motor's torque, at the joint.
+/// Motor torque ripple caused by the kinematic error, referred to the joint.
 ///
 /// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load standing still would feel. The
 /// load is carried along: with its resonance w0 on that stiffness and its damping z the gear feels

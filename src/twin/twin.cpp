@@ -77,7 +77,7 @@ const FaultList& Twin::activeFaults() const noexcept
   return impl_->active;
 }
 
-void Twin::give(const Input& input) noexcept
+void Twin::push(const Input& input) noexcept
 {
   if (input.kind == InputKind::FAULT)
   {

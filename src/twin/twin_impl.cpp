@@ -170,7 +170,7 @@ void Twin::Impl::takeInputs() noexcept
         brake_engaged = input.value != 0.0;
         break;
       case InputKind::TEMPERATURE:
-        temperature = std::clamp(input.value, LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE);
+        temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
         break;
       case InputKind::FAULT:
         break;
@@ -179,7 +179,7 @@ void Twin::Impl::takeInputs() noexcept
   counters.input = queue.counters();
 }
 
-/// The surface of the present faults that is built beside: asked for, and used when it is there.
+/// The surface of the present faults, built in the background: requested, and used when ready.
 void Twin::Impl::takeSurface() noexcept
 {
   if (!surface_awaited)
@@ -234,7 +234,7 @@ void Twin::Impl::step() noexcept
   const bool cut = stepper.status().cuts > 0;
   const bool jumped = stepper.status().jumps > 0;
   fillOutputs(drive.torque, converged);
-  const bool coarse = outputs.swing_phase > JointStepper::MAX_SWING_PHASE || overshoots(drive);
+  const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE || overshoots(drive);
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += cut ? 1 : 0;
   counters.jumps += jumped ? 1 : 0;
@@ -266,7 +266,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
   outputs.residual = stepper.status().residual;
-  outputs.swing_phase = stepper.swingPhase();
+  outputs.phase_advance = stepper.phaseAdvance();
 }
 
 /// What watches the joint step by step: sensors and health.
@@ -281,7 +281,7 @@ void Twin::Impl::observe() noexcept
   }
 }
 
-/// What a drive would know: readings, the load it was told, its temperature.
+/// Signals known to a drive: readings, received load, temperature.
 void Twin::Impl::takeReadings() noexcept
 {
   const EncoderReadings readings = sensors.encoders();
@@ -295,7 +295,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.temperature = temperature;
   if (signals.update(sample))
   {
-    assessor.take(signals.indicators());
+    assessor.update(signals.indicators());
   }
 }
 

@@ -35,7 +35,7 @@ struct Twin::Impl
   const JointModel& model;
   FaultList active;
   FaultSchedule waiting;
-  FaultList surface_faults;  // that the surface was asked for with
+  FaultList surface_faults;  // of the surface requested
   std::shared_ptr<const ResponseSurface> surface;
   std::unique_ptr<SurfaceWorker> surface_worker;
   bool surface_awaited{};

@@ -396,7 +396,7 @@ TEST(Faults, ThatComeLateDoNotUndoWhatIsNewer)
 TEST(FaultList, HasRoomForSoMany)
 {
   FaultList list;
-  for (int i = 0; i < static_cast<int>(MOST_FAULTS); ++i)
+  for (int i = 0; i < static_cast<int>(MAX_FAULTS); ++i)
   {
     EXPECT_TRUE(list.set({ FaultKind::TOOTH_WEAR, 0.5, i, 0.0 }, 0));
   }
@@ -442,13 +442,13 @@ TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
 }
 
 /// How often the sag over one tooth, or anywhere, has a maximum in `turns` of the wave generator.
-TEST(BearingSag, OrdersComeOutOfTheKinematics)
+TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
 {
   const Parameters parameters = shippedParameters();
   const int teeth = parameters.gear.teeth_flexspline;
-  const auto eventsPerTurn = [&](const std::function<void(BearingSag&)>& damage)
+  const auto eventsPerTurn = [&](const std::function<void(RaceDeflection&)>& damage)
   {
-    BearingSag bearing(parameters.bearing);
+    RaceDeflection bearing(parameters.bearing);
     damage(bearing);
     Eigen::VectorXd sag(teeth);
     Eigen::VectorXd rate(teeth);
@@ -467,16 +467,16 @@ TEST(BearingSag, OrdersComeOutOfTheKinematics)
     return static_cast<double>(events) / TURNS;
   };
   const double length = 1e-3;
-  EXPECT_NEAR(eventsPerTurn([&](BearingSag& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.6793, 0.006);
-  EXPECT_NEAR(eventsPerTurn([&](BearingSag& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
-  EXPECT_NEAR(eventsPerTurn([&](BearingSag& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
-  EXPECT_NEAR(BearingSag(parameters.bearing).cageRate(), 0.4487, 5e-5);
+  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.6793, 0.006);
+  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
+  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
+  EXPECT_NEAR(RaceDeflection(parameters.bearing).cageRate(), 0.4487, 5e-5);
 }
 
-TEST(BearingSag, OfAllBallsIsTheSameAllRound)
+TEST(RaceDeflection, OfAllBallsIsTheSameAllRound)
 {
   const Parameters parameters = shippedParameters();
-  BearingSag bearing(parameters.bearing);
+  RaceDeflection bearing(parameters.bearing);
   for (int ball = 0; ball < parameters.bearing.balls; ++ball)
   {
     bearing.addIdleBall(ball, 3e-6);

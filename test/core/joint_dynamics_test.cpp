@@ -272,7 +272,7 @@ TEST(LeapfrogUnderOdeint, MarchesAsTheStepperDoes)
   EXPECT_GT(x[MOTOR_ANGLE], 0.1);
 }
 
-TEST(FreeSwing, DecaysAtTheFrequencyOfTheLockedGear)
+TEST(FreeOscillation, DecaysAtTheFrequencyOfTheLockedGear)
 {
   // The brake holds the motor; a load is put on the output, and taken away at once.
   const Parameters parameters = shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=0.0" });
@@ -315,7 +315,7 @@ TEST(FreeSwing, DecaysAtTheFrequencyOfTheLockedGear)
   EXPECT_LT(energies.back(), 0.99 * energies.front());
 }
 
-TEST(FreeSwing, LosesTwiceTheCupsFrictionEveryHalfSwing)
+TEST(FreeOscillation, LosesTwiceTheCupsFrictionEveryHalfSwing)
 {
   // Dry friction beside a spring: every half swing ends a constant nearer to rest, and the swing stops where the spring
   // no longer overcomes the friction.

@@ -13,8 +13,8 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "life/drive_ageing.hpp"
-#include "life/exposure_analysis.hpp"
 #include "life/life_estimate.hpp"
+#include "life/revolution_load_analysis.hpp"
 #include "studies/life_trials.hpp"
 
 namespace hjt
@@ -50,7 +50,7 @@ struct RatedUse
 
   Parameters parameters;
   DutyCycle duty;
-  ExposureMap exposures;
+  RevolutionLoadMap exposures;
   DriveAgeing ageing;
 };
 
@@ -91,13 +91,13 @@ TEST(AgeingLaws, FlawGrowsOnlyAboveItsThresholdAndAsParisSays)
               1e-12 * growth);
 }
 
-TEST(Exposure, GrowsWithTheLoadAndIsThatOfTheLosses)
+TEST(RevolutionLoad, GrowsWithTheLoadAndIsThatOfTheLosses)
 {
   const Parameters parameters = shippedParameters();
-  ExposureAnalysis analysis(parameters, POSITIONS);
-  const Exposure idle = analysis.under(0.0);
-  const Exposure rated = analysis.under(67.0);
-  const Exposure peak = analysis.under(157.0);
+  RevolutionLoadAnalysis analysis(parameters, POSITIONS);
+  const RevolutionLoad idle = analysis.under(0.0);
+  const RevolutionLoad rated = analysis.under(67.0);
+  const RevolutionLoad peak = analysis.under(157.0);
   EXPECT_LT(idle.flank_sliding, rated.flank_sliding);
   EXPECT_LT(rated.flank_sliding, peak.flank_sliding);
   EXPECT_GT(rated.interface_sliding, 0.0);
@@ -108,19 +108,19 @@ TEST(Exposure, GrowsWithTheLoadAndIsThatOfTheLosses)
   EXPECT_LT(peak.rim_stress_range, 3.0 * ring_theory);
 }
 
-TEST(Exposure, OfBothDirectionsOfLoadIsAlike)
+TEST(RevolutionLoad, OfBothDirectionsOfLoadIsAlike)
 {
-  ExposureAnalysis analysis(shippedParameters(), POSITIONS);
-  const Exposure forth = analysis.under(67.0);
-  const Exposure back = analysis.under(-67.0);
+  RevolutionLoadAnalysis analysis(shippedParameters(), POSITIONS);
+  const RevolutionLoad forth = analysis.under(67.0);
+  const RevolutionLoad back = analysis.under(-67.0);
   EXPECT_NEAR(forth.flank_sliding, back.flank_sliding, 0.05 * forth.flank_sliding);
   EXPECT_NEAR(forth.interface_sliding, back.interface_sliding, 0.05 * forth.interface_sliding);
 }
 
-TEST(ExposureMap, IsTheToothModelAtItsStagesAndNearItBetween)
+TEST(RevolutionLoadMap, IsTheToothModelAtItsStagesAndNearItBetween)
 {
   const RatedUse& use = ratedUse();
-  const Exposure fresh = ExposureAnalysis(use.parameters, POSITIONS).under(use.duty.phases[0].load_torque);
+  const RevolutionLoad fresh = RevolutionLoadAnalysis(use.parameters, POSITIONS).under(use.duty.phases[0].load_torque);
   EXPECT_DOUBLE_EQ(use.exposures.at(use.duty.phases[0].load_torque, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
   EXPECT_LT(use.exposures.largestError(), 0.05);
 }
@@ -131,7 +131,7 @@ TEST(DriveAgeing, NominalWearIsTheClosedFormAsLongAsWearChangesLittle)
   for (const bool changes : { false, true })
   {
     const NominalUse closed(use.ageing, use.parameters.life, changes);
-    DriveNature tough = nominalDrive(use.parameters.life);
+    UnitVariation tough = nominalDrive(use.parameters.life);
     tough.flank_factor = 1e-6;  // no wear to feed back
     tough.interface_factor = 1e-6;
     tough.bearing_life = 1e30;
@@ -147,7 +147,7 @@ TEST(DriveAgeing, NominalWearIsTheClosedFormAsLongAsWearChangesLittle)
 TEST(DriveAgeing, LimitsEndALifeAndTheEndIsFoundExactly)
 {
   const RatedUse& use = ratedUse();
-  const DriveNature nominal = nominalDrive(use.parameters.life);
+  const UnitVariation nominal = nominalDrive(use.parameters.life);
   double last = -1.0;
   const DriveAgeing::Life life = use.ageing.live(nominal, 1e6, 500.0, true,
                                                  [&](double hours, const DriveAge&)
@@ -162,7 +162,7 @@ TEST(DriveAgeing, LimitsEndALifeAndTheEndIsFoundExactly)
                                     std::sqrt(spallSize(nominal, life.age.bearing_turns)) });
   EXPECT_NEAR(largest, 1.0, 1e-6);
 
-  DriveNature soft = nominal;
+  UnitVariation soft = nominal;
   soft.flank_factor = 50.0;
   const DriveAgeing::Life shorter = use.ageing.live(soft, 1e6, 1e6, true, {});
   EXPECT_EQ(shorter.end, EndOfLife::FLANK_WEAR);
@@ -176,7 +176,7 @@ TEST(RemainingLife, WithoutReadingsIsThePriorOfTheCatalogue)
   life.spall_spread = 0.0;
   const double turns_per_hour = life.rated_speed * 3600.0 / TWO_PI;
   RemainingLife filter(life, 20000, 7);
-  Outlook rated{ 1000.0, {} };
+  FutureLoad rated{ 1000.0, {} };
   for (int i = 0; i < 400; ++i)
   {
     rated.usage.push_back({ 0.0, 0.0, 1000.0 * i * turns_per_hour });
@@ -197,10 +197,10 @@ TEST(RemainingLife, NarrowsOnADriveWhoseWearItReads)
   RemainingLife filter(life, 2000, 3);
   boost::random::mt19937 random(5);
   boost::random::normal_distribution<double> normal;
-  const Outlook outlook{ 1000.0, { {}, { 1000.0 * hourly, 0.0, 1.0 } } };
+  const FutureLoad future_load{ 1000.0, { {}, { 1000.0 * hourly, 0.0, 1.0 } } };
   const auto width = [&]
   {
-    const RemainingHours remaining = filter.remaining(outlook);
+    const RemainingHours remaining = filter.remaining(future_load);
     return remaining.quantile[3] - remaining.quantile[1];
   };
   const double at_first = width();
@@ -211,8 +211,8 @@ TEST(RemainingLife, NarrowsOnADriveWhoseWearItReads)
   }
   EXPECT_LT(width(), 0.1 * at_first);
   const double remaining = (life.flank_wear_limit / (truth * hourly)) - 300.0;
-  EXPECT_NEAR(filter.remaining(outlook).quantile[2], remaining, 0.1 * remaining);
-  EXPECT_GT(filter.remaining(outlook).by_cause[0], 0.99);
+  EXPECT_NEAR(filter.remaining(future_load).quantile[2], remaining, 0.1 * remaining);
+  EXPECT_GT(filter.remaining(future_load).by_cause[0], 0.99);
 }
 
 TEST(RemainingLife, IntervalsHoldTheTruthAsOftenAsTheySay)
@@ -241,11 +241,11 @@ struct CountedMotion
     }
   }
 
-  UseRecord record;
+  UsageHistory record;
   DutyCycle motion;
 };
 
-TEST(UseRecord, KeepsTimeTurnsAndLoadsOfAMotion)
+TEST(UsageHistory, KeepsTimeTurnsAndLoadsOfAMotion)
 {
   const CountedMotion counted;
   const DutyCycle duty = counted.record.duty();
@@ -273,17 +273,17 @@ TEST(UseRecord, KeepsTimeTurnsAndLoadsOfAMotion)
   EXPECT_NEAR(kept[3] / truth[3], 1.0, 2e-2) << "ageing of the grease, halved every 15 K";
 }
 
-TEST(UseRecord, AgesTheDriveAsItsMotionDoes)
+TEST(UsageHistory, AgesTheDriveAsItsMotionDoes)
 {
   const Parameters parameters = shippedParameters();
   DutyCycle motion;
-  UseRecord record(parameters.life);
+  UsageHistory record(parameters.life);
   for (int i = 0; i < 20; ++i)
   {
     motion.phases.push_back({ 1800.0, 200.0, 3.3 * i, 40.0 });
     record.add(motion.phases.back());
   }
-  ExposureMap exposures(parameters, 8);
+  RevolutionLoadMap exposures(parameters, 8);
   exposures.cover(motion, {});
   const DriveAgeing ageing(parameters.life, parameters.gear, motion, exposures);
   const DriveAge age = ageing.live(nominalDrive(parameters.life), 10.0, 10.0, true, {}).age;
@@ -293,7 +293,7 @@ TEST(UseRecord, AgesTheDriveAsItsMotionDoes)
   { EXPECT_NEAR(estimate.usedOf(limit) / of, 1.0, 0.01) << nameOf(limit); };
   expectShare(EndOfLife::FLANK_WEAR, age.flank_wear / parameters.life.flank_wear_limit);
   expectShare(EndOfLife::INTERFACE_WEAR, age.interface_wear / parameters.life.interface_wear_limit);
-  const DriveNature nominal = nominalDrive(parameters.life);
+  const UnitVariation nominal = nominalDrive(parameters.life);
   expectShare(EndOfLife::BEARING, age.bearing_turns / nominal.bearing_life / (1.0 + nominal.spall_growth));
   EXPECT_NEAR(estimate.grease_used, age.grease, 1e-9);
 }
@@ -302,7 +302,7 @@ TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
 {
   const Parameters parameters = shippedParameters();
   LifeEstimator estimator(parameters);
-  UseRecord record(parameters.life);
+  UsageHistory record(parameters.life);
   DutyPhase rated = ratedDuty(parameters.life.grease_temperature).phases[0];
   record.add(rated);
   const LifeEstimate fresh = estimator.estimate(record);
@@ -318,12 +318,12 @@ TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
   EXPECT_LT(worn.remaining.quantile[2], fresh.remaining.quantile[2]);
 }
 
-TEST(UseRecord, IsTheSameAfterItsFile)
+TEST(UsageHistory, IsTheSameAfterItsFile)
 {
   const TemporaryFolder folder;
   const CountedMotion counted;
   const std::string path = folder.write("use.csv", counted.record.text());
-  const UseRecord read(shippedLife(), path);
+  const UsageHistory read(shippedLife(), path);
   const DutyCycle before = counted.record.duty();
   const DutyCycle after = read.duty();
   ASSERT_EQ(after.phases.size(), before.phases.size());
@@ -335,7 +335,7 @@ TEST(UseRecord, IsTheSameAfterItsFile)
     EXPECT_EQ(after.phases[i].temperature, before.phases[i].temperature);
   }
   folder.write("use.csv", "duration,motor_speed,load_torque\n10,0,5\n");
-  EXPECT_THROW(UseRecord(shippedLife(), path), InputError);
+  EXPECT_THROW(UsageHistory(shippedLife(), path), InputError);
 }
 
 TEST(DutyCycle, RefusesNumbersThatNoDriveHas)
@@ -353,7 +353,7 @@ TEST(DutyCycle, RefusesNumbersThatNoDriveHas)
   {
     write(row);
     EXPECT_THROW(DutyCycle::fromFile(path), InputError) << row;
-    EXPECT_THROW(UseRecord(shippedLife(), path), InputError) << row;
+    EXPECT_THROW(UsageHistory(shippedLife(), path), InputError) << row;
   }
   write("10,-62.83185307179586,5,20\n10,0,0,20\n");
   EXPECT_NEAR(DutyCycle::fromFile(path).turnsPerHour(), 5.0 * 3600.0, 1e-6);

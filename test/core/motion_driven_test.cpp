@@ -76,7 +76,7 @@ std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, co
 
 std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const MotionDriven& twin)
 {
-  MotionSmoother smoother;
+  MotionDifferentiator smoother;
   std::vector<MotionSample> samples;
   for (const RobotRow& row : rows)
   {
@@ -207,9 +207,9 @@ TEST(Identification, SaysThatAJointAtRestTellsNothing)
   EXPECT_THROW(identify(shippedParameters(), samples, { samples }, false), InputError);
 }
 
-TEST(MotionSmoother, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
+TEST(MotionDifferentiator, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
 {
-  MotionSmoother smoother;
+  MotionDifferentiator smoother;
   std::mt19937 engine(11);
   std::vector<MotionSample> samples;
   const auto collect = [&](bool at_end)

@@ -428,9 +428,9 @@ TEST(Contradictions, FaultsMustBeValidAndNotTooMany)
     return YamlFile(text).complaint();
   };
   const std::string wear = "{kind: tooth_wear, severity: 0.1, place: -1, onset: 0.0}";
-  EXPECT_EQ(listOf(MOST_FAULTS, wear), "");
-  const std::string many = listOf(MOST_FAULTS + 1, wear);
-  EXPECT_THAT(many, HasSubstr("more than " + std::to_string(MOST_FAULTS) + " faults"));
+  EXPECT_EQ(listOf(MAX_FAULTS, wear), "");
+  const std::string many = listOf(MAX_FAULTS + 1, wear);
+  EXPECT_THAT(many, HasSubstr("more than " + std::to_string(MAX_FAULTS) + " faults"));
   EXPECT_EQ(many.find('\n'), std::string::npos) << many;
   EXPECT_EQ(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 199, onset: 0.0}"), "");
   EXPECT_THAT(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 200, onset: 0.0}"), HasSubstr("place = 200"));

@@ -130,7 +130,7 @@ std::string obstacleOf(const std::vector<std::string>& assignments)
   std::vector<std::string> all{ "solver.scene=auto" };
   all.insert(all.end(), assignments.begin(), assignments.end());
   const Parameters parameters = shippedParameters(all);
-  return buildSurface(parameters, JointModel(parameters), {}).obstacle;
+  return buildSurface(parameters, JointModel(parameters), {}).failure_reason;
 }
 
 TEST(ResponseSurface, IsNotBuiltBeyondABoundedNumberOfPoints)
@@ -356,7 +356,7 @@ JointModel brokenModel()
 }
 
 /// What a broken tooth changes, at the same angles: to a hundredth of its largest effect, root mean square.
-TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
+TEST(SurfaceDeviations, ABrokenToothIsFeltAsOnTheFullRing)
 {
   const Parameters parameters = surfaceParameters();
   const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenModel(), "broken tooth 40 ", cached());
@@ -401,7 +401,7 @@ TEST(Departures, ABrokenToothIsFeltAsOnTheFullRing)
 }
 
 /// Energy and torques are continuous where the tables of two pitches meet, whatever lines they have.
-TEST(Departures, AreContinuousFromPitchToPitch)
+TEST(SurfaceDeviations, AreContinuousFromPitchToPitch)
 {
   const std::optional<SurfaceTables> tables =
       obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
@@ -426,7 +426,7 @@ TEST(Departures, AreContinuousFromPitchToPitch)
   }
 }
 
-TEST(Departures, ComeFromTheCacheAsTheyWereBuilt)
+TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
 {
   const std::optional<SurfaceTables> built =
       obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());

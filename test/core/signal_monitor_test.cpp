@@ -320,7 +320,7 @@ TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)
   const std::uint64_t before = allocationCount();
   for (int window = 0; window < 11; ++window)
   {
-    assessor.take(joint.nextWindow());
+    assessor.update(joint.nextWindow());
   }
   EXPECT_EQ(allocationCount(), before);
 }
@@ -345,7 +345,7 @@ protected:
   {
     for (int i = 0; i < count; ++i)
     {
-      assessor_.take(joint_.nextWindow());
+      assessor_.update(joint_.nextWindow());
     }
     return assessor_.assessment();
   }

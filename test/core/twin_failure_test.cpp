@@ -131,11 +131,11 @@ TEST(DoubtfulStep, IsSaidWhenItIsTooLongForTheSwing)
   Twin fine(shippedParameters());
   EXPECT_EQ(countersAfter(fine, 20 * MILLISECOND).coarse_steps, 0U);
   EXPECT_EQ(fine.health().solver_state, SolverState::OK);
-  EXPECT_NEAR(fine.outputs().swing_phase, 0.028, 0.001);
+  EXPECT_NEAR(fine.outputs().phase_advance, 0.028, 0.001);
   Twin coarse(shippedParameters({ "solver.rate=1000" }));
   EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 20U);
   EXPECT_EQ(coarse.health().solver_state, SolverState::DEGRADED);
-  EXPECT_NEAR(coarse.outputs().swing_phase, 10.0 * fine.outputs().swing_phase, 0.01);
+  EXPECT_NEAR(coarse.outputs().phase_advance, 10.0 * fine.outputs().phase_advance, 0.01);
 }
 
 TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)

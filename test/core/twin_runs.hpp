@@ -80,6 +80,6 @@ inline std::vector<Input> randomInputs(unsigned seed, Stamp duration, double mot
 
 inline void give(Twin& twin, const Input& input)
 {
-  twin.give(input);
+  twin.push(input);
 }
 }  // namespace hjt

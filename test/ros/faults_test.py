@@ -20,7 +20,7 @@ NODE = "/twin_under_test"
 JOINT = "elbow_joint"
 START = 100.0     # first time of the clock [s]
 STEP = 0.1        # of the clock; then it waits for the twin [s]
-HOLD_BACK = 0.02  # input.hold_back [s]
+INPUT_DELAY = 0.02  # input.delay [s]
 TIMEOUT = 1.0     # input.command_timeout [s]
 MESSAGE_TIME = 0.2  # for a message to arrive before the clock goes on [s]
 
@@ -68,7 +68,7 @@ class FaultsOfANode(unittest.TestCase):
             self.now += STEP
             self.clock.publish(rospy.Time.from_sec(self.now))
             wait_until(lambda: self.health.messages() and
-                       self.health.messages()[-1].header.stamp.to_sec() > self.now - HOLD_BACK - 0.011, "the twin")
+                       self.health.messages()[-1].header.stamp.to_sec() > self.now - INPUT_DELAY - 0.011, "the twin")
 
     def run_until(self, condition, what, longest=20.0):
         end = self.now + longest

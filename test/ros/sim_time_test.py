@@ -17,7 +17,7 @@ WAITING_NODE = "/waiting_twin"
 JOINT = "elbow_joint"
 MILLISECOND = 1_000_000    # [ns]
 SECOND = 1000 * MILLISECOND
-HOLD_BACK = 20 * MILLISECOND
+INPUT_DELAY = 20 * MILLISECOND
 PERIOD = MILLISECOND       # of joint_states
 
 
@@ -47,7 +47,7 @@ class SimTime(unittest.TestCase):
         for now in range(begin, end + 1, MILLISECOND):
             self.clock.publish(rospy.Time(0, 0) + rospy.Duration(now // SECOND, now % SECOND))
             time.sleep(0.0005)
-        self.await_instant(end - HOLD_BACK)
+        self.await_instant(end - INPUT_DELAY)
 
     def await_instant(self, stamp):
         wait_until(lambda: self.states.messages() and self.states.messages()[-1].header.stamp.to_nsec() == stamp,
@@ -96,7 +96,7 @@ class SimTime(unittest.TestCase):
         self.assertEqual(self.waiting_states.messages(), [])
         self.assertIn("waiting for the first input", self.waiting_diagnostics.values("Drive")["State"])
         self.send(self.waiting_command, 101 * SECOND + 70 * MILLISECOND, 0.1)
-        # A message and the clock come by different ways: the clock waits for the message here, as hold_back would.
+        # A message and the clock come by different ways: the clock waits for the message here, as input.delay would.
         time.sleep(0.2)
         self.run_clock(101 * SECOND + 61 * MILLISECOND, 101 * SECOND + 150 * MILLISECOND)
         last = 101 * SECOND + 130 * MILLISECOND

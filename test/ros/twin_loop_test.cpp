@@ -26,7 +26,7 @@ namespace
 constexpr Stamp MILLISECOND = 1'000'000;
 constexpr Stamp SECOND = 1000 * MILLISECOND;
 constexpr Stamp STEP = MILLISECOND;  // solver.rate 1000 Hz: the loop is under test here, not the solver
-constexpr Stamp HOLD_BACK = 20 * MILLISECOND;
+constexpr Stamp INPUT_DELAY = 20 * MILLISECOND;
 
 struct Instant
 {
@@ -42,7 +42,7 @@ protected:
   {
     const std::string wait = wait_for_first_input ? "true" : "false";
     twin_ = std::make_unique<Twin>(
-        shippedParameters({ "solver.rate=1000", "input.hold_back=0.02", "input.wait_for_first_input=" + wait }));
+        shippedParameters({ "solver.rate=1000", "input.delay=0.02", "input.wait_for_first_input=" + wait }));
     instants_.reserve(1 << 20);
     loop_ = std::make_unique<TwinLoop>(
         *twin_, inbox_, [this] { return clock_.load(); }, clock_kind,
@@ -94,7 +94,7 @@ TEST_F(LoopFixture, RestsWithoutAClockAndStartsWithItsFirstInstant)
   setClock(101 * SECOND);
   ASSERT_FALSE(instants_.empty());
   EXPECT_EQ(instants_.front().stamp, 100 * SECOND + STEP);
-  EXPECT_EQ(instants_.back().stamp, 101 * SECOND - HOLD_BACK);
+  EXPECT_EQ(instants_.back().stamp, 101 * SECOND - INPUT_DELAY);
 }
 
 TEST_F(LoopFixture, VisitsEveryInstantAfterAJumpForwardAndNoneWhileTheClockStands)
@@ -103,7 +103,7 @@ TEST_F(LoopFixture, VisitsEveryInstantAfterAJumpForwardAndNoneWhileTheClockStand
   setClock(100 * SECOND);
   setClock(103 * SECOND);
   const std::size_t visited = instants_.size();
-  ASSERT_EQ(visited, static_cast<std::size_t>((3 * SECOND - HOLD_BACK) / STEP));
+  ASSERT_EQ(visited, static_cast<std::size_t>((3 * SECOND - INPUT_DELAY) / STEP));
   for (std::size_t i = 1; i < visited; ++i)
   {
     ASSERT_EQ(instants_[i].stamp - instants_[i - 1].stamp, STEP);
@@ -180,7 +180,7 @@ TEST_F(LoopFixture, ResetStartsAnewAtTheCurrentInstantAndGivesUpALag)
   ASSERT_TRUE(loop_->reset());
   waitFor([this] { return loop_->status().lag < STEP; });
   waitForCycles(2);
-  EXPECT_EQ(loop_->status().twin_stamp, 100000 * SECOND - HOLD_BACK);
+  EXPECT_EQ(loop_->status().twin_stamp, 100000 * SECOND - INPUT_DELAY);
   EXPECT_EQ(loop_->status().resets, 1U);
 }
 
@@ -198,14 +198,14 @@ TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
 {
   start(false, ClockKind::RUNNING);
   setClock(100 * SECOND);
-  setClock(100 * SECOND + HOLD_BACK + 5 * MILLISECOND);
+  setClock(100 * SECOND + INPUT_DELAY + 5 * MILLISECOND);
   EXPECT_EQ(loop_->status().timing.lateness.largest(), 4 * MILLISECOND) << "the oldest of five instants";
   EXPECT_EQ(loop_->status().timing.missed_deadlines, 0U) << "4 ms late are within 5 ms";
   setClock(103 * SECOND);
   const LoopTiming timing = loop_->status().timing;
-  EXPECT_EQ(timing.lateness.largest(), 3 * SECOND - HOLD_BACK - 6 * MILLISECOND);
+  EXPECT_EQ(timing.lateness.largest(), 3 * SECOND - INPUT_DELAY - 6 * MILLISECOND);
   EXPECT_GE(timing.missed_deadlines, 140U) << "one a cycle of 20 ms, until it has caught up";
-  EXPECT_EQ(timing.simulated, 3 * SECOND - HOLD_BACK);
+  EXPECT_EQ(timing.simulated, 3 * SECOND - INPUT_DELAY);
   EXPECT_GT(timing.wake_up.count(), 0U);
   EXPECT_GT(timing.longest_cycle, 0);
   EXPECT_GT(timing.load(), 0.0);
@@ -274,7 +274,7 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   waitForCycles(2);
   waitFor([this] { return loop_->status().lag < STEP; });
   EXPECT_EQ(allocationCount(), before);
-  EXPECT_EQ(loop_->status().counters.steps, static_cast<std::uint64_t>((SECOND - HOLD_BACK) / STEP));
+  EXPECT_EQ(loop_->status().counters.steps, static_cast<std::uint64_t>((SECOND - INPUT_DELAY) / STEP));
 }
 
 TEST(LatencyHistogram, HoldsEveryLatencyInABinOfAnEighth)

@@ -7,11 +7,11 @@ import rosbag
 
 import tool
 
-LIMIT = 300000  # of a file [byte]
+LIMIT = 2000000  # of a file [byte]
 PLAN = """
 name: test
 seed: 7
-duration: 1.0
+duration: 3.0
 repeats: 1
 duty:
   - name: turning
@@ -22,7 +22,7 @@ GROUPS = """  format: hdf5
   start: 0.0
   deflate: 0
   groups:
-    signals: {rate: 10000.0, type: float64, columns: [motor_angle_encoder, motor_torque_reading, joint_torque]}
+    signals: {rate: 500.0, type: float64, columns: [mesh_force, joint_torque]}
 """
 
 
@@ -34,7 +34,7 @@ class FullDisk(tool.ToolTest):
         return done.stderr
 
     def check_active(self, name, said):
-        """The unfinished bag: told, readable once it is indexed, and with nearly all that was recorded."""
+        """The unfinished bag: told, readable once it is indexed, and without its last chunk alone."""
         self.assertFalse(os.path.exists(self.path(name)))
         self.assertIn(f"{name} cannot be written", said)
         self.assertIn(f"{name}.active has {LIMIT} bytes of ", said)
@@ -43,7 +43,7 @@ class FullDisk(tool.ToolTest):
             for _ in bag.reindex():
                 pass
         told = int(said.split(" bytes of ")[1].split()[0])
-        self.assertGreater(len(tool.raw_messages(self.path(name + ".active"))), 0.5 * told)
+        self.assertGreater(len(tool.raw_messages(self.path(name + ".active"))), 0.3 * told)
 
     def test_a_simulation_keeps_what_was_recorded(self):
         said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.bag")
@@ -52,11 +52,11 @@ class FullDisk(tool.ToolTest):
         self.assertIn("out.csv cannot be written", said)
 
     def test_a_replay_keeps_what_was_recorded(self):
-        tool.write_recording(self.path("in.bag"), duration=2.0)
+        tool.write_recording(self.path("in.bag"), duration=3.0)
         self.check_active("out.bag", self.fail_at_limit("replay", "in.bag", "--out", "out.bag"))
 
     def test_an_import_keeps_what_was_recorded(self):
-        self.write("in.csv", "\n".join(tool.telemetry_csv(rows=5000)) + "\n")
+        self.write("in.csv", "\n".join(tool.telemetry_csv(rows=20000)) + "\n")
         self.check_active("out.bag", self.fail_at_limit("import", "in.csv", "--joint", "2", "--out", "out.bag"))
 
     def test_a_sweep_leaves_no_half_run(self):

@@ -10,13 +10,13 @@ namespace hjt
 using Stamp = std::int64_t;
 
 /// Of a stamp difference made of a duration [ns]: it can still be added to any time that a message can have.
-constexpr Stamp LONGEST_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
+constexpr Stamp MAX_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
 
-/// Stamp difference [ns] of a duration [s], >= 0; LONGEST_STAMP_LENGTH for what is longer, and for NaN.
+/// Stamp difference [ns] of a duration [s], >= 0; MAX_STAMP_LENGTH for what is longer, and for NaN.
 inline Stamp toStampLength(double duration)
 {
   const double length = duration * 1e9 + 0.5;
-  return length < static_cast<double>(LONGEST_STAMP_LENGTH) ? static_cast<Stamp>(length) : LONGEST_STAMP_LENGTH;
+  return length < static_cast<double>(MAX_STAMP_LENGTH) ? static_cast<Stamp>(length) : MAX_STAMP_LENGTH;
 }
 
 /// Duration [s] of a stamp difference [ns].

@@ -23,7 +23,7 @@ enum class AssessmentState : std::uint8_t
 {
   WAITING = 0,      ///< no window has been completed
   LEARNING = 1,     ///< the reference of this operating point is being learned
-  ASSESSED = 2,     ///< the last window was held against it
+  ASSESSED = 2,     ///< the last window was compared with the reference
   NO_REFERENCE = 3  ///< the given reference does not know this operating point
 };
 
@@ -39,7 +39,7 @@ struct Evidence
 /// What the indicators say of the drive.
 struct Assessment
 {
-  static constexpr std::size_t MOST_EVIDENCE = 3;
+  static constexpr std::size_t MAX_EVIDENCE = 3;
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< windows seen
@@ -49,7 +49,7 @@ struct Assessment
   double confidence{};     ///< probability of the cause among all of the table, 0 at level OK [-]
   double largest_score{};  ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
   std::size_t evidence_count{};
-  std::array<Evidence, MOST_EVIDENCE> evidence;  ///< strongest first
+  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first
 };
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
@@ -63,10 +63,10 @@ public:
   explicit Assessor(const Parameters& parameters);
 
   void reset() noexcept;
-  void give(std::vector<ReferenceBin> bins) { baseline_.give(std::move(bins)); }
+  void setReference(std::vector<ReferenceBin> bins) { baseline_.setReference(std::move(bins)); }
 
   /// A window was completed.
-  const Assessment& take(const SignalIndicators& indicators) noexcept;
+  const Assessment& update(const SignalIndicators& indicators) noexcept;
 
   const Assessment& assessment() const noexcept { return assessment_; }
   const Baseline& baseline() const noexcept { return baseline_; }

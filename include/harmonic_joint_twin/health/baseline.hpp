@@ -38,7 +38,7 @@ struct Reference
   void add(double value) noexcept;
   double variance() const noexcept { return count > 1 ? squares / (count - 1) : 0.0; }
 
-  int count{};       // windows that told it
+  int count{};       // windows that determined it
   double mean{};     // unit of the indicator
   double squares{};  // sum of squares about the mean
 };
@@ -66,11 +66,11 @@ using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 enum class BaselineState : std::uint8_t
 {
   LEARNING,     ///< the window went into the reference of its operating point
-  COMPARED,     ///< the window was held against it
+  COMPARED,     ///< the window was compared with it
   NO_REFERENCE  ///< no reference for this operating point, and none is learned
 };
 
-/// What a healthy joint's indicators are, by operating point: learned from the first windows there, or given.
+/// Indicators of a healthy joint by operating point: learned from the first windows there, or given.
 ///
 /// Law:   t = (x - m) / sqrt(max(s^2, u^2) (1 + 1/n) + (f m)^2 + q^2),
 ///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1
@@ -82,16 +82,16 @@ enum class BaselineState : std::uint8_t
 class Baseline
 {
 public:
-  static constexpr std::size_t MOST_BINS = 64;
+  static constexpr std::size_t MAX_BINS = 64;
 
   explicit Baseline(const Parameters& parameters);
 
-  /// From a file: is held against, and learns no more.
-  void give(std::vector<ReferenceBin> bins);
+  /// Uses the reference of a file; learning stops.
+  void setReference(std::vector<ReferenceBin> bins);
 
   void reset() noexcept;  ///< forgets what was learned, not what was given
 
-  BaselineState take(const SignalIndicators& indicators, Deviations& deviations) noexcept;
+  BaselineState update(const SignalIndicators& indicators, Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }

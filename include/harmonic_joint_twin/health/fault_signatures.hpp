@@ -91,10 +91,10 @@ struct Signature
 /// The table of docs/indicators.md, fitted to the model's own faults by `scripts/evaluate_health --fit`.
 const std::vector<Signature>& faultSignatures() noexcept;
 
-/// Probabilities of the causes given the scores, NONE left out: 0. All alike if no feature says anything.
+/// Probabilities of the causes given the scores; NONE is excluded, 0. Equal if no feature carries information.
 ///
 /// Law:   P(c | s) ~ exp(k max cos(y, d)),  over the signatures d of the cause, of different motions
-/// where  y   asinh of what the scores of the features compared have beyond the noise, the others left out of both
+/// where  y   asinh of the noise-corrected scores, over the features present in both vectors
 ///        k   sharpness, assumed: P ranks the causes, it is no frequency
 std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept;
 }  // namespace hjt

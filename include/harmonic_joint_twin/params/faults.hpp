@@ -38,7 +38,7 @@ constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);
 constexpr int WHOLE_MEMBER = -1;
 
 /// As many can be active at once, and be configured.
-constexpr std::size_t MOST_FAULTS = 256;
+constexpr std::size_t MAX_FAULTS = 256;
 
 /// One fault of the gear. It is known by kind and place: the same once more replaces its severity.
 struct Fault
@@ -124,7 +124,7 @@ inline constexpr std::array FAULT_DESCRIPTIONS{
   FaultDescription{ FaultKind::BEARING_BALL, "bearing_ball", FaultPlace::BALL, false,
                     "spall of fault_scale.spall_depth and spall_length on a ball", "orders {ball} and {lobe}" },
   FaultDescription{ FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
-                    "the ball of a broken pocket lets the outer race down by fault_scale.cage_sag",
+                    "the ball of a broken pocket lets the outer race down by fault_scale.cage_deflection",
                     "order {lobe}: twice 1 less the cage's {cage}" }
 };
 

@@ -251,15 +251,15 @@ struct LifeParameters
 };
 
 /// Temperatures that the drive can have [degC].
-constexpr double LOWEST_TEMPERATURE = -40.0;
-constexpr double HIGHEST_TEMPERATURE = 150.0;
+constexpr double MIN_TEMPERATURE = -40.0;
+constexpr double MAX_TEMPERATURE = 150.0;
 
-/// What the node runs on.
+/// Input of the node.
 enum class InputMode
 {
   COMMANDS,  ///< commanded torques: the twin alone
   TORQUE,    ///< beside a robot: its measured current drives the twin, open loop
-  MOTION,    ///< beside a robot: its measured motion tells what torque and current a healthy joint takes
+  MOTION,    ///< beside a robot: predicts torque and current of a healthy joint from the measured motion
   OBSERVER   ///< beside a robot: both, the joint's states corrected towards the encoders
 };
 
@@ -267,15 +267,15 @@ enum class InputMode
 enum class LoadSource
 {
   MODEL,         ///< weight and inertia as configured below output
-  LOAD_TORQUE,   ///< the same and the external torque that is told
-  TARGET_MOMENT  ///< the torque that is told is all that acts, as a controller's rigid-body torque
+  LOAD_TORQUE,   ///< the same plus the received external torque
+  TARGET_MOMENT  ///< only the received torque, as a controller's rigid-body torque
 };
 
 struct InputParameters
 {
   InputMode mode{};
   double command_timeout{};
-  double hold_back{};
+  double delay{};
   bool wait_for_first_input{};
   double temperature{};
 };
@@ -298,7 +298,7 @@ struct TelemetryParameters
   LoadSource load{};
 };
 
-/// What the observer is told of its sensors and of what no model knows. The gains follow from nothing else.
+/// Noise of the observer's sensors and of the unmodelled torque. The gains follow from nothing else.
 struct ObserverParameters
 {
   double output_angle_noise{};
@@ -339,7 +339,7 @@ struct JointParameters
   std::string hardware_id{};
 };
 
-/// What a fault of severity 1 is, by kind.
+/// Size of severity 1, by kind of fault.
 struct FaultScaleParameters
 {
   double interface_wear_depth{};
@@ -366,7 +366,7 @@ struct FaultScaleParameters
   double ratcheting_tip_loss{};
   double spall_depth{};
   double spall_length{};
-  double cage_sag{};
+  double cage_deflection{};
 };
 
 /// Everything the twin is made from.

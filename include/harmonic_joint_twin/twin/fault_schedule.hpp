@@ -24,7 +24,7 @@ struct FaultCounters
 class FaultSchedule
 {
 public:
-  static constexpr std::size_t CAPACITY = 2 * MOST_FAULTS;
+  static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;
 
   explicit FaultSchedule(const Parameters& parameters);
 

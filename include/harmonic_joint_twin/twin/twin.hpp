@@ -19,7 +19,7 @@
 
 namespace hjt
 {
-/// What the joint does at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
+/// State of the joint at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
 struct JointOutputs
 {
   Stamp stamp{};         ///< simulated instant [ns]
@@ -40,7 +40,7 @@ struct JointOutputs
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
   double residual{};           ///< largest out-of-balance force [N]
-  double swing_phase{};        ///< of the joint's fastest swing, in one step [rad]
+  double phase_advance{};      ///< of the joint's fastest swing, in one step [rad]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
@@ -104,7 +104,7 @@ public:
 
   const Parameters& parameters() const noexcept;
 
-  /// Starts anew at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
+  /// Restarts at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
   /// inputs, other faults and counters.
   void reset(Stamp stamp) noexcept;
 
@@ -120,7 +120,7 @@ public:
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;
 
-  void give(const Input& input) noexcept;  ///< one of these, by its kind
+  void push(const Input& input) noexcept;  ///< one of these, by its kind
 
   /// Advances by one solver step if the next instant is not after `until`. False: nothing was done.
   bool step(Stamp until) noexcept;
@@ -130,7 +130,7 @@ public:
 
   const JointOutputs& outputs() const noexcept;
   EncoderReadings encoders() const noexcept;
-  double motorTorqueReading() const noexcept;  ///< as the drive tells it from its current [N.m]
+  double motorTorqueReading() const noexcept;  ///< as the drive estimates it from its current [N.m]
   const TwinCounters& counters() const noexcept;
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 

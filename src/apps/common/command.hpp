@@ -123,7 +123,8 @@ public:
   Command root() { return Command(*app_); }
   void addSubcommands();
 
-  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, told if `aloud`.
+  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, printed if
+  /// `aloud`.
   std::optional<int> parse(int argc, char** argv, bool aloud = true);
 
   /// Runs the subcommand that was chosen. @returns its exit code.

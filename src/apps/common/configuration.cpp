@@ -58,7 +58,7 @@ void addFaultOption(Command& command, CommonOptions& options)
 {
   command
       .add("--fault", options.faults,
-           "a fault of the gear beside the configured ones, see `joint_twin faults`; repeatable")
+           "a fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
       .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 
@@ -122,9 +122,9 @@ void addFaults(const CommonOptions& options, Parameters& parameters)
   {
     parameters.faults.push_back(parseFault(fault, parameters));
   }
-  if (parameters.faults.size() > MOST_FAULTS)
+  if (parameters.faults.size() > MAX_FAULTS)
   {
-    throw ParameterError("--fault: more than " + std::to_string(MOST_FAULTS) + " faults");
+    throw ParameterError("--fault: more than " + std::to_string(MAX_FAULTS) + " faults");
   }
 }
 

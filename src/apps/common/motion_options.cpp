@@ -85,7 +85,7 @@ MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
 {
   MotionFindings findings;
   findings.has_load = recordsLoad(source);
-  MotionSmoother smoother;
+  MotionDifferentiator smoother;
   Progress progress("reading");
   const auto forward = [&](bool at_end)
   {
@@ -115,7 +115,7 @@ MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
   {
     std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "
               << findings.refused << " rows repeated or out of order, " << findings.gaps << " gaps over "
-              << MotionSmoother::LONGEST_GAP << " s\n";
+              << MotionDifferentiator::MAX_GAP << " s\n";
   }
   return findings;
 }

@@ -7,7 +7,8 @@
 
 namespace hjt
 {
-/// Tells on stderr how far a long step is: a bar on a terminal, else a line every few seconds; nothing if it is quick.
+/// Prints the progress of a long step to stderr: a bar on a terminal, else a line every few seconds; nothing if it is
+/// quick.
 class Progress
 {
 public:

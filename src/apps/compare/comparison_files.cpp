@@ -109,7 +109,7 @@ void writeTeeth(const std::string& path, const RecordingComparison& comparison, 
   csv.close();
 }
 
-void writeTwinStates(const std::string& path, const Thinned<TwinState>& states)
+void writeTwinStates(const std::string& path, const Decimated<TwinState>& states)
 {
   if (states.rows().empty())
   {

@@ -21,7 +21,7 @@ struct ComparisonRecord
   std::string made_with;  ///< name and version of the program
   MotionFindings found;
   RecordingContents contents;
-  Thinned<TwinState> twin_states;
+  Decimated<TwinState> twin_states;
   Verdict verdict;
 };
 

@@ -29,7 +29,7 @@ std::vector<FrictionPoint> FrictionPoints::points() const
   {
     for (const Bin& bin : way)
     {
-      if (bin.rows >= FEWEST_ROWS)
+      if (bin.rows >= MIN_ROWS)
       {
         const auto n = static_cast<double>(bin.rows);
         const double mean = bin.measured / n;

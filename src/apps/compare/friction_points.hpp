@@ -22,7 +22,7 @@ struct FrictionPoint
 class FrictionPoints
 {
 public:
-  static constexpr std::uint64_t FEWEST_ROWS = 30;  ///< a point of fewer is not told
+  static constexpr std::uint64_t MIN_ROWS = 30;  ///< points with fewer are not given
 
   /// `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m].
   void add(double speed, double measured, double twin);

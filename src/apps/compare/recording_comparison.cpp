@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double MOST_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
+constexpr double MAX_PRESLIDING = 0.05;  // share of the friction not mobilised in rows that tell friction [-]
 }  // namespace
 
 RecordingComparison::RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
@@ -31,11 +31,11 @@ RecordingComparison::RecordingComparison(const Parameters& parameters, std::vect
 {
   if (baseline_given_)
   {
-    health_.giveReference(std::move(baseline));
+    health_.setReference(std::move(baseline));
   }
 }
 
-void RecordingComparison::take(const MotionSample& sample)
+void RecordingComparison::update(const MotionSample& sample)
 {
   if (!isPossible(sample, parameters_))
   {
@@ -61,7 +61,7 @@ void RecordingComparison::take(const MotionSample& sample)
   if (std::abs(sample.velocity) > MOVING)
   {
     const double gain = parameters_.telemetry.torque_per_current;
-    if (gain * row.predicted.band < MOST_PRESLIDING * std::abs(row.predicted.friction_torque))
+    if (gain * row.predicted.band < MAX_PRESLIDING * std::abs(row.predicted.friction_torque))
     {
       const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
       const double friction = row.predicted.friction_torque;
@@ -79,7 +79,7 @@ void RecordingComparison::take(const MotionSample& sample)
 
 void RecordingComparison::watchSignals(const MotionSample& sample)
 {
-  if (!health_.take(sample))
+  if (!health_.update(sample))
   {
     return;
   }

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "apps/compare/decimated.hpp"
 #include "apps/compare/friction_points.hpp"
 #include "apps/compare/residual_spectrum.hpp"
-#include "apps/compare/thinned.hpp"
 #include "apps/compare/torsion_points.hpp"
 
 #include "tracking/motion_driven.hpp"
@@ -57,12 +57,12 @@ public:
   RecordingComparison(const Parameters& parameters, std::vector<ReferenceBin> baseline,
                       std::function<void(const JudgedWindow&)> watch);
 
-  void take(const MotionSample& sample);
+  void update(const MotionSample& sample);
 
   double ratio() const { return ratio_; }
   const MotionDriven& twin() const { return twin_; }
   const MotionReach& reach() const { return reach_; }
-  const Thinned<ComparedRow>& course() const { return course_; }
+  const Decimated<ComparedRow>& course() const { return course_; }
   const FrictionPoints& friction() const { return friction_; }
   const ResidualSpectrum& spectrum() const { return spectrum_; }
   const TorsionPoints& torsion() const { return torsion_; }
@@ -76,7 +76,7 @@ public:
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return assessed_; }
-  /// The last window of those at the worst level; none: no window was held against a reference.
+  /// The last window of those at the worst level; none: no window was compared with a reference.
   const std::optional<JudgedWindow>& worst() const { return worst_; }
   double alarmTime() const { return alarm_time_; }  ///< when the level first left OK [s]
   Cause cause() const;                              ///< that most windows in alarm name
@@ -91,7 +91,7 @@ private:
   const double ratio_;
   MotionDriven twin_;
   MotionReach reach_;
-  Thinned<ComparedRow> course_;
+  Decimated<ComparedRow> course_;
   FrictionPoints friction_;
   ResidualSpectrum spectrum_;
   TorsionPoints torsion_;

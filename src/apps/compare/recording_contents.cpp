@@ -18,7 +18,7 @@ namespace
 constexpr const char* ANGLE_AND_CURRENT = "angle and current of the joint";
 constexpr const char* MOTOR_ANGLE = "angle of the motor: torsion, stiffness, kinematic error";
 constexpr const char* LOAD = "load at the output; else weight and inertia as configured";
-constexpr const char* TWIN = "the twin's own angle and speed, of a run beside the robot";
+constexpr const char* TWIN = "angle and speed of a twin that ran beside the robot";
 
 std::uint64_t messagesOn(const rosbag::Bag& bag, const std::string& topic)
 {
@@ -72,9 +72,9 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   return contents;
 }
 
-Thinned<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start)
+Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start)
 {
-  Thinned<TwinState> states;
+  Decimated<TwinState> states;
   if (isCsv(source) || twin_topic == source.topic)
   {
     return states;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/compare/thinned.hpp"
+#include "apps/compare/decimated.hpp"
 
 #include "ros_io/recorded_motion.hpp"
 
@@ -43,5 +43,5 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
                                std::uint64_t motor_rows, bool has_load);
 
 /// The twin's recorded states; none where the recording has no such topic, or it is the telemetry itself.
-Thinned<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start);
+Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start);
 }  // namespace hjt

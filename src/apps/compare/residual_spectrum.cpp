@@ -61,7 +61,7 @@ void ResidualSpectrum::add(double angle, double speed, double residual)
 
 std::vector<SpectrumLine> ResidualSpectrum::lines() const
 {
-  const int highest = static_cast<int>(HIGHEST_ORDER * ratio_);
+  const int highest = static_cast<int>(MAX_ORDER * ratio_);
   std::array<std::vector<double>, 2> found;
   bool any = false;
   for (std::size_t way = 0; way < 2; ++way)

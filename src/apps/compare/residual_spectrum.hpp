@@ -22,7 +22,7 @@ struct SpectrumLine
 class ResidualSpectrum
 {
 public:
-  static constexpr double HIGHEST_ORDER = 16.0;
+  static constexpr double MAX_ORDER = 16.0;
 
   explicit ResidualSpectrum(double ratio);
 

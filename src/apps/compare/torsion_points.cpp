@@ -40,7 +40,7 @@ RunningRegression TorsionPoints::fitted() const
 
 double TorsionPoints::compliance() const
 {
-  return twinAmplitude() < LEAST_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(2, 0);
+  return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(2, 0);
 }
 
 std::vector<TorsionMean> TorsionPoints::means() const

@@ -19,7 +19,7 @@ struct TorsionMean
   double backward{};  ///< [rad]
 };
 
-/// Torsion of a joint with two encoders, held against the twin's curve. Memory is bound by the torques a joint has.
+/// Torsion of a joint with two encoders, compared with the twin's curve. Memory is limited by the range of torques.
 class TorsionPoints
 {
 public:
@@ -40,8 +40,9 @@ public:
   double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
 
 private:
-  static constexpr double STEPS = 142.0;         // up to the largest load
-  static constexpr double LEAST_VARIED = 20e-6;  // standard deviation of the twin's torsion that tells anything [rad]
+  static constexpr double STEPS = 142.0;       // up to the largest load
+  static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
+                                               // estimate [rad]
   struct Bin
   {
     double sum{};

@@ -26,10 +26,10 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
 }
 
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
-constexpr double LEAST_LOADING = 0.035;
+constexpr double MIN_LOADING = 0.035;
 
 /// Part of a fault's signature, a unit vector, from which on the fault is said to move a feature.
-constexpr double LEAST_PART = 0.2;
+constexpr double MIN_PART = 0.2;
 
 /// @param sign +1: up, -1: down.
 std::vector<Cause> causesOf(Feature feature, double sign)
@@ -37,7 +37,7 @@ std::vector<Cause> causesOf(Feature feature, double sign)
   std::vector<Cause> causes;
   for (const Signature& signature : faultSignatures())
   {
-    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= LEAST_PART;
+    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= MIN_PART;
     if (moves && std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {
       causes.push_back(signature.cause);
@@ -93,9 +93,9 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
   if (finding.level != HealthLevel::OK)
   {
     finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
-    finding.text += (finding.causes.empty() ? std::string(" No fault in the list does this.") :
-                                              " Faults that do this: " + namesOf(finding.causes) + ".") +
-                    " So do " + ratio.besides + ".";
+    finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
+                                              " Possible faults: " + namesOf(finding.causes) + ".") +
+                    " Other causes: " + ratio.besides + ".";
   }
 }
 
@@ -151,12 +151,12 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   const std::vector<FrictionPoint> points = comparison.friction().points();
   if (points.empty())
   {
-    finding.text = "The joint never moves steadily for long enough to tell its friction.";
+    finding.text = "The joint never moves steadily for long enough to measure its friction.";
     return finding;
   }
   if (!movesBothWays(points) && !has_load)
   {
-    finding.text = "The joint moves one way only and no load was recorded: friction and load cannot be told apart.";
+    finding.text = "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
     return finding;
   }
   if (const double way = impossibleWay(points); way != 0.0)
@@ -169,7 +169,7 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   judgeRatio({ "Friction", comparison.friction().ratio(), own.friction_ratio, parameters.comparison.friction_tolerance,
                Feature::RUNNING_TORQUE, +1.0, "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
-  finding.text += " Told at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
+  finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
                   " to " + rounded(points.back().speed, 2) + " rad/s.";
   return finding;
 }
@@ -185,7 +185,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   const double compliance = comparison.torsion().compliance();
   if (!std::isfinite(compliance))
   {
-    finding.text = "The load hardly varies, so that nothing tells how stiff the drive is.";
+    finding.text = "The load hardly varies, so the stiffness of the drive cannot be measured.";
     return finding;
   }
   // Once a turn an encoder off its axis looks like torsion under a weight.
@@ -193,7 +193,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
       (parameters.sensors.output_eccentricity + parameters.sensors.motor_eccentricity / comparison.ratio()) /
       std::sqrt(2.0) / comparison.torsion().twinAmplitude();
   judgeRatio({ "Torsion", compliance, own.compliance_ratio, parameters.comparison.compliance_tolerance + eccentricity,
-               Feature::STIFFNESS, -1.0, "a load other than told, encoders off their axes" },
+               Feature::STIFFNESS, -1.0, "a wrong load, eccentric encoders" },
              parameters, finding);
   if (!std::isfinite(own.compliance_ratio) && eccentricity > 0.01)
   {
@@ -222,7 +222,7 @@ Finding judgeSignals(const RecordingComparison& comparison)
   finding.judged = true;
   const Assessment& assessment = comparison.worst()->assessment;
   finding.level = assessment.level;
-  const std::string windows = std::to_string(comparison.assessedWindows()) + " windows held against " + reference;
+  const std::string windows = std::to_string(comparison.assessedWindows()) + " windows compared with " + reference;
   if (assessment.level == HealthLevel::OK)
   {
     finding.text = windows + ": nothing out of the ordinary.";
@@ -292,7 +292,7 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
   {
     missing.emplace_back("How friction depends on the speed: fewer than three speeds.");
   }
-  if (reach.most_load - reach.least_load < LEAST_LOADING * parameters.output.load_torque_limit)
+  if (reach.most_load - reach.least_load < MIN_LOADING * parameters.output.load_torque_limit)
   {
     missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
                          rounded(reach.most_load - reach.least_load, 1) + " N.m.");

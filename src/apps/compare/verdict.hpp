@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What was told of the same joint when it was sound; NaN: nothing.
+/// Figures of the same joint in sound condition; NaN: none.
 struct OwnReference
 {
   double friction_ratio{ std::numeric_limits<double>::quiet_NaN() };
@@ -26,7 +26,7 @@ struct Finding
   std::vector<Cause> causes;  ///< that would show like this; none at level OK
 };
 
-/// What the recording says of the joint.
+/// Findings of a recording.
 struct Verdict
 {
   HealthLevel level{};

@@ -17,9 +17,11 @@ const std::vector<RunColumn>& columns()
       nullptr },
     { "output_velocity_encoder", "rad/s", "output encoder, difference over sensors.velocity_window",
       [](I i) { return i.encoders.output_velocity; }, nullptr },
-    { "motor_torque_reading", "N.m", "motor torque told from the current", [](I i) { return i.motor_torque_reading; },
-      nullptr },
-    { "speed_reference", "rad/s", "joint speed asked for", [](I i) { return i.speed_reference; }, nullptr },
+    { "motor_torque_reading", "N.m",
+      "motor torque estimated from the "
+      "current",
+      [](I i) { return i.motor_torque_reading; }, nullptr },
+    { "speed_reference", "rad/s", "reference of the joint speed", [](I i) { return i.speed_reference; }, nullptr },
     // What only the twin knows.
     { "motor_angle", "rad", "motor, true", [](I i) { return i.outputs.motor_angle; }, nullptr },
     { "motor_velocity", "rad/s", "motor, true", [](I i) { return i.outputs.motor_velocity; }, nullptr },
@@ -61,7 +63,8 @@ std::string columnNames()
 
 const RunColumn* findColumn(const std::string& name)
 {
-  const auto found = std::find_if(columns().begin(), columns().end(), [&](const RunColumn& c) { return c.name == name; });
+  const auto found =
+      std::find_if(columns().begin(), columns().end(), [&](const RunColumn& c) { return c.name == name; });
   return found == columns().end() ? nullptr : &*found;
 }
 }  // namespace hjt

@@ -22,7 +22,7 @@ std::unique_lock<std::mutex> lockLibrary()
 {
   static std::mutex mutex;
   std::unique_lock<std::mutex> lock(mutex);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by exceptions
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by exceptions
   return lock;
 }
 

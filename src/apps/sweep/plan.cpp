@@ -14,7 +14,7 @@ namespace
 {
 using Kind = PlanNode::Kind;
 
-constexpr double MOST_RUNS = 1e9;
+constexpr double MAX_RUNS = 1e9;
 constexpr double LARGE = 1e6;  // of any value of a waveform
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
@@ -109,7 +109,7 @@ Plan::Plan(const std::string& path, ParameterMap base)
   const PlanValues values;
   name_ = values.text(root_, "name");
   seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }));
-  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MOST_RUNS }));
+  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }));
   visitTables(required(root_, "duty", Kind::LIST),
               [this](const PlanNode& csv)
               {
@@ -180,9 +180,9 @@ void Plan::makeBlocks()
         block.size *= variable->gridSize();
       }
       total += size;
-      if (total > MOST_RUNS)
+      if (total > MAX_RUNS)
       {
-        root_.refuse("has more than " + numberText(MOST_RUNS) + " runs");
+        root_.refuse("has more than " + numberText(MAX_RUNS) + " runs");
       }
       runs_ += block.size;
       blocks_.push_back(block);
@@ -279,11 +279,11 @@ RunDuty Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
   {
     cycle.temperature = waveform(duty, "temperature", "degC", values);
     const Range reached = cycle.temperature->range();
-    if (reached.min < LOWEST_TEMPERATURE || reached.max > HIGHEST_TEMPERATURE)
+    if (reached.min < MIN_TEMPERATURE || reached.max > MAX_TEMPERATURE)
     {
       required(duty, "temperature")
           .refuse("reaches " + rangeText(reached) +
-                  " [degC], allowed: " + rangeText({ LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE }) + " [degC]");
+                  " [degC], allowed: " + rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }) + " [degC]");
     }
   }
   return cycle;

@@ -13,7 +13,7 @@ namespace
 {
 // An alias can stand for itself, or for ever more copies of others.
 constexpr int DEEPEST = 32;
-constexpr std::size_t MOST_NODES = 100'000;
+constexpr std::size_t MAX_NODES = 100'000;
 
 PlanNode convert(const YAML::Node& from, const std::string& file, const std::string& path, int depth,
                  std::size_t& nodes)
@@ -21,10 +21,10 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
   PlanNode node;
   node.path = path;
   node.origin = file + ":" + std::to_string(from.Mark().line + 1);
-  if (depth > DEEPEST || ++nodes > MOST_NODES)
+  if (depth > DEEPEST || ++nodes > MAX_NODES)
   {
     node.refuse("makes the plan too large: at most " + std::to_string(DEEPEST) + " levels and " +
-                std::to_string(MOST_NODES) + " values, aliases counted each time");
+                std::to_string(MAX_NODES) + " values, aliases counted each time");
   }
   const auto below = [&](const YAML::Node& entry, const std::string& key)
   { return convert(entry, file, path.empty() ? key : path + "." + key, depth + 1, nodes); };

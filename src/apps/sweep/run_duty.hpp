@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What a run asks of the joint: a motor torque, or a speed that a drive's control holds; its load and its temperature.
+/// Duty of a run: a motor torque, or a speed that a drive's control holds; load and temperature.
 struct RunDuty
 {
   std::shared_ptr<const Waveform> torque;       ///< of the motor [N.m]; none: speed is controlled
@@ -27,7 +27,7 @@ struct RunDuty
 ///        J_m  of the motor alone: above the drive's resonance the joint stands still, and a gain for both would be
 ///             too high there                                     [kg.m^2]
 ///        w    2 pi times the bandwidth                           [rad/s]
-///        a, v_r, x_r   acceleration, speed, angle asked for; v, x as read   [rad/s^2], [rad/s], [rad], motor side
+///        a, v_r, x_r   references of acceleration, speed, angle; v, x as read   [rad/s^2], [rad/s], [rad], motor side
 class DutyFeeder
 {
 public:

@@ -89,7 +89,7 @@ void printExpectation(const Plan& plan, const SweepArguments& arguments)
                 { "simulated, together", shortTime(simulated), "" },
                 { "expected time, " + std::to_string(arguments.jobs) + " jobs", shortTime(time / arguments.jobs), "" },
                 { "numbers of all files", bytes > 0.0 ? shortNumber(bytes / 1e6) : "-", "MB" } });
-  std::cout << "The time is told from the first run of each line, its first 0.2 s.\n";
+  std::cout << "The time is estimated from the first 0.2 s of the first run of each line.\n";
 }
 }  // namespace
 
@@ -137,7 +137,7 @@ int sweep(const SweepArguments& arguments)
   }
   if (interruptSignal() != 0)
   {
-    std::cerr << "joint_twin: interrupted; the same command goes on\n";
+    std::cerr << "joint_twin: interrupted; the same command resumes\n";
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// What a sweep is told on the command line.
+/// Options of a sweep on the command line.
 struct SweepArguments : CommonOptions
 {
   std::string plan;

@@ -24,8 +24,8 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
-constexpr double LEAST_SHARE = 1e-3;    // of a normal distribution between its limits: values beyond are drawn again
-constexpr double LARGEST_WHOLE = 1e15;  // which a double holds exactly
+constexpr double MIN_SHARE = 1e-3;  // of a normal distribution between its limits: values beyond are drawn again
+constexpr double MAX_WHOLE = 1e15;  // which a double holds exactly
 
 /// Of a normal distribution {mean, standard deviation, lowest, highest}, what lies between its limits.
 double shareWithin(const std::array<double, 4>& normal)
@@ -83,9 +83,9 @@ Variable::Variable(const PlanNode& node) : node_(&node)
       {
         list.refuse("must be [mean, standard deviation >= 0, lowest <= mean, highest >= mean]");
       }
-      if (shareWithin(numbers_) < LEAST_SHARE)
+      if (shareWithin(numbers_) < MIN_SHARE)
       {
-        list.refuse("must leave at least " + numberText(LEAST_SHARE) +
+        list.refuse("must leave at least " + numberText(MIN_SHARE) +
                     " of the distribution between lowest and highest; for one value, write it");
       }
       break;
@@ -102,9 +102,9 @@ Variable::Variable(const PlanNode& node) : node_(&node)
   }
   if (distribution_ == Distribution::INTEGER &&
       (std::floor(numbers_[0]) != numbers_[0] || std::floor(numbers_[1]) != numbers_[1] ||
-       std::max(-numbers_[0], numbers_[1]) > LARGEST_WHOLE))
+       std::max(-numbers_[0], numbers_[1]) > MAX_WHOLE))
   {
-    list.refuse("must be two whole numbers, -" + numberText(LARGEST_WHOLE) + " ... " + numberText(LARGEST_WHOLE));
+    list.refuse("must be two whole numbers, -" + numberText(MAX_WHOLE) + " ... " + numberText(MAX_WHOLE));
   }
 }
 

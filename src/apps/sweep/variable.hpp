@@ -35,7 +35,7 @@ private:
     GRID,
     UNIFORM,      // lowest, highest
     LOG_UNIFORM,  // lowest, highest, > 0
-    NORMAL,       // mean, standard deviation, lowest, highest: drawn again until it lies between
+    NORMAL,       // mean, standard deviation, lowest, highest: truncated to that range
     INTEGER,      // lowest, highest
     CHOICE
   };

@@ -46,7 +46,7 @@ private:
   double mean_, amplitude_, angular_frequency_, phase_;
 };
 
-/// To and fro for ever: up to the peak at an even slope, there for `hold`, down to zero, there for `pause`; then the same
+/// Periodic: up to the peak at a constant slope, there for `hold`, down to zero, there for `pause`; then the same
 /// with the opposite sign.
 class TrapezoidWaveform : public Waveform
 {

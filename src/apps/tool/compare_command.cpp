@@ -129,7 +129,7 @@ int compare(const CompareOptions& options)
   RecordingComparison comparison(parameters, sound.baseline,
                                  [&](const JudgedWindow& window) { windows.write(window); });
   const MotionFindings found =
-      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.take(sample); });
+      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.update(sample); });
   windows.close();
   if (interruptSignal() != 0)
   {
@@ -163,14 +163,14 @@ void declare(Command& command, CompareOptions& options)
 {
   addMotionOptions(command, options);
   command.add("--report", options.report, "directory of the page, its figures and data").required().type("DIR");
-  command
-      .add("--reference", options.reference,
-           "the report of this joint when it was sound: what it is held against, beside the twin")
+  command.add("--reference", options.reference, "an earlier report of this joint in sound condition, for comparison")
       .type("DIR")
       .existingDirectory();
 }
 
 const Subcommand COMPARE{ Subject::RECORDING, "compare",
-                          "a recorded joint beside the twin: verdict, figures and data as a page", declare, compare };
+                          "compares a recorded joint with the twin: verdict, figures and data as a "
+                          "page",
+                          declare, compare };
 }  // namespace
 }  // namespace hjt

@@ -248,7 +248,7 @@ void declareDynamics(Command& command, DynamicsOptions& options)
 
 const Subcommand DYNAMICS{
   Subject::STUDY, "dynamics",
-  "turning with a mass at every tooth, held against the ring in equilibrium; wave generator at "
+  "turning with a mass at every tooth, compared with the ring in equilibrium; wave generator at "
   "constant speed, constant load, dry friction left out",
   declareDynamics, dynamics
 };

@@ -39,8 +39,7 @@ int faults(const CommonOptions& options)
   return EXIT_DONE;
 }
 
-const Subcommand FAULTS{ Subject::JOINT, "faults",
-                         "list the kinds of faults: what severity 1 is, places, where they show", addCommonOptions,
-                         faults };
+const Subcommand FAULTS{ Subject::JOINT, "faults", "list the kinds of faults: size of severity 1, places, symptoms",
+                         addCommonOptions, faults };
 }  // namespace
 }  // namespace hjt

@@ -17,7 +17,7 @@
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
 
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
@@ -51,7 +51,7 @@ const std::vector<Column<Comparison>> COLUMNS{
   { "joint_torque", &Comparison::joint_torque },
   { "friction_torque", &Comparison::friction_torque },
   { "load_torque", &Comparison::load_torque },
-  { "load_told", &Comparison::load_told },
+  { "load_told", &Comparison::load_provided },
   { "sticking", &Comparison::sticking },
   { "after_gap", &Comparison::after_gap },
   { "outside_band", &Comparison::isOutside }
@@ -76,7 +76,7 @@ private:
 struct FollowSummary
 {
   MotionCount count;
-  CompanionCounters counters;
+  TrackerCounters counters;
   StreamTimingReport timing;
   std::optional<double> lag;
   Rms current;
@@ -84,7 +84,7 @@ struct FollowSummary
   Rms position;
 };
 
-FollowSummary compare(const FollowOptions& options, Companion& companion,
+FollowSummary compare(const FollowOptions& options, Tracker& tracker,
                       const std::function<void(const Comparison&)>& visit)
 {
   const MotionSource source = motionSource(options);
@@ -93,7 +93,7 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
   FollowSummary summary;
   const auto take_all = [&](bool at_end)
   {
-    while (const std::optional<Comparison> now = companion.take(at_end))
+    while (const std::optional<Comparison> now = tracker.pop(at_end))
     {
       summary.current.add(now->current.residual());
       summary.velocity.add(now->velocity.residual());
@@ -107,17 +107,17 @@ FollowSummary compare(const FollowOptions& options, Companion& companion,
       {
         if (has_load)
         {
-          companion.giveLoad(row.time, row.load);
+          tracker.pushLoad(row.time, row.load);
         }
-        companion.give(row);
+        tracker.push(row);
         take_all(false);
         return interruptSignal() == 0;
       },
       [&](double done) { progress.update(done); });
   take_all(true);
-  summary.counters = companion.counters();
-  summary.timing = companion.timing();
-  summary.lag = companion.lag();
+  summary.counters = tracker.counters();
+  summary.timing = tracker.timing();
+  summary.lag = tracker.lag();
   return summary;
 }
 
@@ -127,16 +127,16 @@ void print(const FollowSummary& summary, bool json)
       json, { { "rows", "rows", summary.count.rows },
               { "duration", "duration", summary.count.duration, "s" },
               { "unreadable", "messages unreadable", summary.count.corrupt },
-              { "refused", "rows refused: repeated, out of order, beyond what can be", summary.counters.refused },
+              { "refused", "rows refused: repeated, out of order, impossible values", summary.counters.refused },
               { "missing", "rows missing, at a period of " + shortNumber(summary.timing.period) + " s",
                 summary.timing.missing },
               { "period", "", summary.timing.period },
               { "gaps", "gaps that cut the recording", summary.counters.gaps },
-              { "reception_offset", "reception less stamp", summary.timing.offset, "s" },
+              { "reception_offset", "reception minus stamp", summary.timing.offset, "s" },
               { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
               { "lag", "", summary.lag },
-              { "", "measured after predicted", summary.lag ? Json(*summary.lag) : "not told", summary.lag ? "s" : "" },
-              { "without_load", "rows without a told load", summary.counters.without_load },
+              { "", "delay of the measurement", summary.lag ? Json(*summary.lag) : "unknown", summary.lag ? "s" : "" },
+              { "without_load", "rows without a received load", summary.counters.without_load },
               { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
               { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
               { "position_residual_rms", "measured less predicted position, rms", summary.position.value(), "rad" },
@@ -160,8 +160,8 @@ int follow(const FollowOptions& options)
               << "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give --config "
                  "recorded_load.yaml after the joint's own file\n";
   }
-  Companion companion(parameters, MODES.at(options.mode), surfaceSource());
-  const FollowSummary summary = compare(options, companion,
+  Tracker tracker(parameters, MODES.at(options.mode), surfaceSource());
+  const FollowSummary summary = compare(options, tracker,
                                         [&](const Comparison& now)
                                         {
                                           if (csv)
@@ -182,13 +182,13 @@ void declare(Command& command, FollowOptions& options)
 {
   addMotionOptions(command, options);
   options.mode = "motion";
-  command.add("--mode", options.mode, "what drives the twin: the recorded current, motion, or both")
+  command.add("--mode", options.mode, "input of the twin: the recorded current, motion, or both")
       .choice({ "motion", "observer", "torque" });
-  command.add("--out", options.out, "every row, measured beside predicted").type("FILE.csv");
+  command.add("--out", options.out, "every row, measured and predicted").type("FILE.csv");
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",
-                         "a healthy joint beside a recorded one: measured and predicted motion and current", declare,
+                         "runs a healthy joint on a recording: measured and predicted motion and current", declare,
                          follow };
 }  // namespace
 }  // namespace hjt

@@ -61,11 +61,11 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
                                    shortNumber(line.half_width) + ". Identified." :
                                "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
   }
-  add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Of what the joint carries [Hz].");
+  add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
   add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
   std::string text =
-      "# Overlay: what `joint_twin identify` found for joint " + options.joint + " in\n# " + options.recording + "\n";
+      "# Overlay: results of `joint_twin identify` for joint  " + options.joint + " in\n# " + options.recording + "\n";
   for (const auto& [section, entries] : sections)
   {
     text += "\n" + section + ":\n" + entries;
@@ -242,11 +242,11 @@ void declare(Command& command, IdentifyOptions& options)
 {
   addMotionOptions(command, options);
   command.add("--out", options.out, "the overlay").type("FILE.yaml");
-  command.add("--train", options.train, "from,to: what to identify on; default: the first third [s]").pair();
-  command.add("--judge", options.judge, "from,to: what to judge on; default: the rest [s]").pair();
+  command.add("--train", options.train, "from,to: part to identify on; default: the first third [s]").pair();
+  command.add("--judge", options.judge, "from,to: part to test on; default: the rest [s]").pair();
   command
       .add("--folds", options.folds,
-           "cuts the part to identify on into so many pieces and tells how each is predicted by the others")
+           "cuts the part to identify on into this many pieces and predicts each from the others")
       .range(2, 100);
 }
 

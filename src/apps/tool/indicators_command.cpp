@@ -281,7 +281,7 @@ int run(const IndicatorsOptions& given)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.give(readBaseline(options.baseline, parameters));
+    assessor.setReference(readBaseline(options.baseline, parameters));
   }
   std::vector<WindowResult> windows;
   for (const std::string& recording : options.recordings)
@@ -297,7 +297,7 @@ int run(const IndicatorsOptions& given)
     }
     for (const SignalIndicators& indicators : measured)
     {
-      const Assessment assessment = assessor.take(indicators);
+      const Assessment assessment = assessor.update(indicators);
       windows.push_back({ recording, indicators, assessor.deviations(), assessment });
     }
   }
@@ -357,7 +357,7 @@ void declare(Command& command, IndicatorsOptions& options)
   column("--load-torque", source.load_torque, "CSV: load torque at the output, > 0 resists positive motion [N.m]");
   column("--temperature", source.temperature, "CSV: temperature [degC]");
   command.add("--torque-scale", options.torque_scale,
-              "motor torque per unit of what is recorded for it [N.m]; default: 1, and with --joint "
+              "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
               "telemetry.torque_per_current / ratio [N.m/A]");
   command
       .add("--states-topic", options.states_topic,

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-const Subcommand INVARIANTS{ Subject::STUDY, "invariants", "what must hold whatever the parameters, as numbers" };
+const Subcommand INVARIANTS{ Subject::STUDY, "invariants", "properties that hold for any parameters, as numbers" };
 
 struct StateOptions : CommonOptions
 {

@@ -59,16 +59,16 @@ struct LifeBench
   {
   }
 
-  static ExposureMap measure(const Parameters& parameters, const DutyCycle& duty, int positions)
+  static RevolutionLoadMap measure(const Parameters& parameters, const DutyCycle& duty, int positions)
   {
-    ExposureMap exposures(parameters, positions);
+    RevolutionLoadMap exposures(parameters, positions);
     exposures.cover(duty, showProgress("measuring wear"));
     return exposures;
   }
 
   Parameters parameters;
   DutyCycle duty;
-  ExposureMap exposures;
+  RevolutionLoadMap exposures;
   DriveAgeing ageing;
 };
 
@@ -98,7 +98,7 @@ const std::vector<Column<AgeRow>> AGE_COLUMNS{ { "hours", &AgeRow::hours },
 struct FreshPhase
 {
   DutyPhase phase;
-  Exposure exposure;
+  RevolutionLoad exposure;
 };
 const std::vector<Column<FreshPhase>> PHASE_COLUMNS{
   { "load_torque", [](const FreshPhase& fresh) { return fresh.phase.load_torque; } },
@@ -115,13 +115,13 @@ int age(const AgeOptions& options)
     requireWritable(options.csv, options.force, options.duty);
   }
   const LifeBench bench(options);
-  const DriveNature nature = nominalDrive(bench.parameters.life);
+  const UnitVariation variation = nominalDrive(bench.parameters.life);
   const BearingLife bearing(bench.parameters.life);
   std::vector<AgeRow> rows;
   const DriveAgeing::Life life = bench.ageing.live(
-      nature, options.hours, options.every, options.grease_changes,
+      variation, options.hours, options.every, options.grease_changes,
       [&](double hours, const DriveAge& then) {
-        rows.push_back({ hours, then, bearing.failedBy(then.bearing_turns), spallSize(nature, then.bearing_turns) });
+        rows.push_back({ hours, then, bearing.failedBy(then.bearing_turns), spallSize(variation, then.bearing_turns) });
       });
   if (!options.csv.empty())
   {
@@ -210,7 +210,7 @@ void declareLife(Command& command, LifeOptions& options)
 {
   command
       .add("DUTY", options.duty,
-           "CSV file of what the joint does over and over: duration [s], motor_speed [rad/s], load_torque [N.m], "
+           "CSV file of a duty cycle, repeated: duration [s], motor_speed [rad/s], load_torque [N.m], "
            "temperature [degC]")
       .required()
       .existingFile();

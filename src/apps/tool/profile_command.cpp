@@ -78,7 +78,7 @@ int profile(const CommonOptions& options)
 }
 
 const Subcommand PROFILE{ Subject::GEAR, "profile",
-                          "half clearance of the tooth flanks over the drop from full engagement, beside the path of a "
+                          "half clearance of the tooth flanks over the drop from full engagement, and the path of a "
                           "tooth on the ideal ring; with --json also the shapes of tooth and space",
                           addCommonOptions, profile };
 }  // namespace

@@ -11,7 +11,7 @@ namespace hjt
 /// Where in a recording the signals of the joint lie.
 struct SignalSource
 {
-  // Columns of a CSV file; those of `joint_twin simulate` unless told otherwise.
+  // Columns of a CSV file; by default those of `joint_twin simulate`.
   std::string time{ "time" };
   std::string motor_torque{ "motor_torque" };
   std::string motor_angle{ "motor_angle_encoder" };
@@ -23,7 +23,7 @@ struct SignalSource
   std::string states_topic;
   std::string load_topic;
   std::string joint;           ///< its name in both
-  double torque_scale{ 1.0 };  ///< motor torque per unit of what is recorded for it
+  double torque_scale{ 1.0 };  ///< motor torque per unit of the recorded signal
 };
 
 /// Gives every sample of a CSV file or a bag to `take`, in order of time, until that returns false.

@@ -24,7 +24,7 @@ namespace hjt
 namespace
 {
 /// Of a recording; more is a damaged time of recording, and the twin would simulate years [s].
-constexpr double LONGEST_RECORDING = 1e6;
+constexpr double MAX_RECORDING = 1e6;
 
 struct ReplayOptions : CommonOptions
 {
@@ -44,7 +44,7 @@ std::string joined(const std::vector<std::string>& texts)
   return all;
 }
 
-/// An original message under an output's name could not be told from a simulated one.
+/// An original message under an output's name would look like a simulated one.
 void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
 {
   rosbag::View view(bag, rosbag::TopicQuery(outputTopics(options.joint_namespace)));
@@ -90,10 +90,10 @@ void checkSpan(const rosbag::Bag& bag, const std::string& path)
 {
   rosbag::View view(bag);
   const double span = toSeconds(fromRosTime(view.getEndTime()) - fromRosTime(view.getBeginTime()));
-  if (span > LONGEST_RECORDING)
+  if (span > MAX_RECORDING)
   {
     throw InputError(path + ": the times of recording span " + shortNumber(span) + " s, allowed: at most " +
-                     shortNumber(LONGEST_RECORDING) + " s; one of them is damaged");
+                     shortNumber(MAX_RECORDING) + " s; one of them is damaged");
   }
 }
 
@@ -182,7 +182,7 @@ private:
     const Stamp instant = twin_.stamp() + twin_.stepLength();
     for (; next_ < inputs_.size() && inputs_[next_].stamp <= instant; ++next_)
     {
-      twin_.give(inputs_[next_]);
+      twin_.push(inputs_[next_]);
     }
   }
 

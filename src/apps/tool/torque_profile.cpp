@@ -75,13 +75,13 @@ Stamp TorqueProfile::duration() const
 void TorqueProfile::feed(Twin& twin, Stamp begin)
 {
   const Stamp instant = twin.stamp() + twin.stepLength();
-  // A profile holds its torque however long; said anew at every instant, the command does not time out.
+  // A profile holds its torque for any time; the command is repeated at every instant, so it does not time out.
   twin.commandMotorTorque(instant, motor_torque_);
   for (; next_ < inputs_.size() && begin + inputs_[next_].stamp <= instant; ++next_)
   {
     const Input& input = inputs_[next_];
     motor_torque_ = input.kind == InputKind::MOTOR_TORQUE ? input.value : motor_torque_;
-    twin.give({ instant, input.kind, input.value, input.fault });
+    twin.push({ instant, input.kind, input.value, input.fault });
   }
 }
 }  // namespace hjt

@@ -75,7 +75,7 @@ int trial(const TrialOptions& options)
                 { "residual_max", "", result.residual_max },
                 { "energy_residual_max", "energy residual, largest", result.energy_residual_max, "J" },
                 { "throughput", "work of motor and load", result.throughput, "J" },
-                { "swing_phase_max", "swing of the joint a step, largest", result.swing_phase_max, "rad" },
+                { "phase_advance_max", "swing of the joint a step, largest", result.phase_advance_max, "rad" },
                 { "wave_generator_turn_max", "turn of the wave generator a step, largest",
                   result.wave_generator_turn_max, "rad" },
                 { "samples", "", Table(SAMPLE_COLUMNS, result.samples).columns() } });
@@ -102,6 +102,6 @@ void declare(Command& command, TrialOptions& options)
 }
 
 const Subcommand TRIAL{ Subject::STUDY, "trial",
-                        "run the twin under a profile and tell what its solver said, step by step", declare, trial };
+                        "run the twin under a profile and print the solver's messages, step by step", declare, trial };
 }  // namespace
 }  // namespace hjt

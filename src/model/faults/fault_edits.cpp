@@ -67,10 +67,10 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   const int waves = scale.buckling_waves;
   const double radius = parameters.gear.flexspline_inner_radius;
   const double amplitude = fault.severity * scale.buckling_out_of_round * (waves * waves - 1.0) / radius;
-  Eigen::VectorXd& preset = joint.ring.edit<RimBending>().preset();
+  Eigen::VectorXd& natural_angle = joint.ring.edit<RimBending>().natural_angle();
   for (int i = 0; i < teeth; ++i)
   {
-    preset[i] += amplitude * TWO_PI / teeth * std::cos(TWO_PI * waves * i / teeth);
+    natural_angle[i] += amplitude * TWO_PI / teeth * std::cos(TWO_PI * waves * i / teeth);
   }
   joint.ring.edit<CupTorsion>().scaleStiffness(1.0 - fault.severity * scale.buckling_stiffness_loss);
 }
@@ -186,7 +186,7 @@ void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointMo
   const double lobe = fault.place == WHOLE_MEMBER || fault.place == 0 ? depth : 0.0;
   const double other_lobe = fault.place == WHOLE_MEMBER || fault.place == 1 ? depth : 0.0;
   joint.ring.edit<WaveGeneratorContact>().wear(lobe, other_lobe);
-  joint.bearing.loosen(0.25 * (lobe + other_lobe) * scale.race_fit_stiffness, scale.race_bending_preload);
+  joint.bearing.reducePreload(0.25 * (lobe + other_lobe) * scale.race_fit_stiffness, scale.race_bending_preload);
 }
 
 double placeOnRace(const Fault& fault, const Parameters& parameters) noexcept
@@ -199,7 +199,7 @@ double spallDepth(const Fault& fault, const Parameters& parameters) noexcept
   return fault.severity * parameters.fault_scale.spall_depth;
 }
 
-BearingSag& bearingOf(JointModel& joint) noexcept
+RaceDeflection& bearingOf(JointModel& joint) noexcept
 {
   return joint.ring.edit<WaveGeneratorContact>().bearing();
 }
@@ -223,7 +223,7 @@ void spallBall(const Fault& fault, const Parameters& parameters, JointModel& joi
 
 void breakCage(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
-  bearingOf(joint).addIdleBall(fault.place, fault.severity * parameters.fault_scale.cage_sag);
+  bearingOf(joint).addIdleBall(fault.place, fault.severity * parameters.fault_scale.cage_deflection);
 }
 
 struct Edit

@@ -35,7 +35,7 @@ public:
   std::uint64_t version() const noexcept { return version_; }  ///< another one whenever the list has changed
 
 private:
-  std::array<ActiveFault, MOST_FAULTS> faults_{};
+  std::array<ActiveFault, MAX_FAULTS> faults_{};
   std::size_t size_{};
   std::uint64_t version_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tracking/lag_estimate.hpp"
+#include "tracking/delay_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,13 @@ namespace hjt
 {
 namespace
 {
-constexpr double LONGEST_GAP = 0.1;    // beyond it the stream begins anew [s]
-constexpr double LEAST_SECONDS = 2.0;  // of signal before anything is told
+constexpr double MAX_GAP = 0.1;      // beyond it the stream restarts [s]
+constexpr double MIN_SECONDS = 2.0;  // of signal before a delay is given
 }  // namespace
 
-void LagEstimate::add(double time, double leading, double lagging) noexcept
+void DelayEstimate::add(double time, double leading, double lagging) noexcept
 {
-  const bool first = end_ == begin_ || time > at(end_ - 1).time + LONGEST_GAP;
+  const bool first = end_ == begin_ || time > at(end_ - 1).time + MAX_GAP;
   const double step = first ? 0.0 : time - at(end_ - 1).time;
   if (first)
   {
@@ -59,13 +59,13 @@ void LagEstimate::add(double time, double leading, double lagging) noexcept
   }
 }
 
-double LagEstimate::correlation(std::size_t lag) const noexcept
+double DelayEstimate::correlation(std::size_t lag) const noexcept
 {
   const double power = leading_power_[lag] * lagging_power_;
   return power > 0.0 ? products_[lag] / std::sqrt(power) : 0.0;
 }
 
-std::optional<double> LagEstimate::lag() const noexcept
+std::optional<double> DelayEstimate::lag() const noexcept
 {
   std::size_t best = 0;
   for (std::size_t i = 1; i < LAGS; ++i)
@@ -73,7 +73,7 @@ std::optional<double> LagEstimate::lag() const noexcept
     best = correlation(i) > correlation(best) ? i : best;
   }
   const double peak = correlation(best);
-  if (seconds_ < LEAST_SECONDS || best == 0 || best + 1 == LAGS || peak < LEAST_CORRELATION)
+  if (seconds_ < MIN_SECONDS || best == 0 || best + 1 == LAGS || peak < MIN_CORRELATION)
   {
     return std::nullopt;
   }

@@ -12,7 +12,7 @@
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
@@ -36,10 +36,10 @@ MotionRow rowAt(double time)
   return row;
 }
 
-std::vector<Comparison> takeAll(Companion& companion, bool at_end = false)
+std::vector<Comparison> takeAll(Tracker& tracker, bool at_end = false)
 {
   std::vector<Comparison> taken;
-  while (const std::optional<Comparison> now = companion.take(at_end))
+  while (const std::optional<Comparison> now = tracker.pop(at_end))
   {
     taken.push_back(*now);
   }
@@ -62,19 +62,19 @@ Parameters parametersWith(std::vector<std::string> assignments, const std::vecto
   return shippedParameters(assignments, overlays);
 }
 
-class CompanionInMode : public testing::TestWithParam<InputMode>
+class TrackerInMode : public testing::TestWithParam<InputMode>
 {
 };
 
-TEST_P(CompanionInMode, StaysFiniteThroughWhateverComesAndCountsIt)
+TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
 {
-  Companion companion(parametersWith({}), GetParam());
+  Tracker tracker(parametersWith({}), GetParam());
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> even(0.0, 1.0);
   std::vector<Comparison> taken;
   const auto keep = [&]
   {
-    for (const Comparison& now : takeAll(companion))
+    for (const Comparison& now : takeAll(tracker))
     {
       taken.push_back(now);
     }
@@ -83,8 +83,8 @@ TEST_P(CompanionInMode, StaysFiniteThroughWhateverComesAndCountsIt)
   for (int i = 0; i < 1500; ++i)
   {
     MotionRow row = rowAt(PERIOD * i + 0.002 * even(engine));
-    companion.give(row);
-    companion.give(row);  // its stamp again
+    tracker.push(row);
+    tracker.push(row);  // its stamp again
     const std::vector<double> bad{ NONE, std::numeric_limits<double>::infinity(), -1e300 };
     if (i % 50 == 7)
     {
@@ -92,15 +92,15 @@ TEST_P(CompanionInMode, StaysFiniteThroughWhateverComesAndCountsIt)
       {
         row = rowAt(PERIOD * i + 0.003);
         (even(engine) < 0.5 ? row.position : row.current) = value;
-        companion.give(row);
-        companion.giveLoad(value, value);
+        tracker.push(row);
+        tracker.pushLoad(value, value);
         ++damaged;
       }
     }
     if (i % 50 == 20)
     {
-      companion.give(rowAt(PERIOD * (i - 3)));  // an earlier one
-      i += 4;                                   // and some that never come
+      tracker.push(rowAt(PERIOD * (i - 3)));  // an earlier one
+      i += 4;                                 // and some that never come
     }
     if (i == 700)
     {
@@ -112,72 +112,72 @@ TEST_P(CompanionInMode, StaysFiniteThroughWhateverComesAndCountsIt)
   {
     ASSERT_TRUE(isFinite(now)) << now.time;
   }
-  const CompanionCounters counters = companion.counters();
+  const TrackerCounters counters = tracker.counters();
   EXPECT_EQ(counters.compared, taken.size());
   EXPECT_GT(taken.size(), 1000u);
   EXPECT_GE(counters.refused, static_cast<std::uint64_t>(damaged) + 1200);
   EXPECT_EQ(counters.gaps, 1u);
   EXPECT_EQ(counters.restarts, 0u);
-  const StreamTimingReport timing = companion.timing();
+  const StreamTimingReport timing = tracker.timing();
   EXPECT_NEAR(timing.period, PERIOD, 0.0015);
   EXPECT_GT(timing.repeated, 1200u);
   EXPECT_EQ(timing.backward, 28u);
   EXPECT_NEAR(static_cast<double>(timing.missing), 28.0 * 4.0 + 100.0, 30.0);
 }
 
-TEST_P(CompanionInMode, BeginsAnewWhenStampsJumpBack)
+TEST_P(TrackerInMode, BeginsAnewWhenStampsJumpBack)
 {
-  Companion companion(parametersWith({}), GetParam());
+  Tracker tracker(parametersWith({}), GetParam());
   for (int i = 0; i < 400; ++i)
   {
-    companion.give(rowAt(100.0 + PERIOD * i));
-    takeAll(companion);
+    tracker.push(rowAt(100.0 + PERIOD * i));
+    takeAll(tracker);
   }
   for (int i = 0; i < 400; ++i)
   {
-    companion.give(rowAt(PERIOD * i));
+    tracker.push(rowAt(PERIOD * i));
   }
-  const std::vector<Comparison> taken = takeAll(companion);
+  const std::vector<Comparison> taken = takeAll(tracker);
   EXPECT_THAT(taken, SizeIs(Gt(390u)));
   EXPECT_TRUE(taken.front().after_gap);
   EXPECT_TRUE(isFinite(taken.back()));
-  EXPECT_EQ(companion.counters().restarts, 1u);
+  EXPECT_EQ(tracker.counters().restarts, 1u);
 }
 
-TEST_P(CompanionInMode, AllocatesNothing)
+TEST_P(TrackerInMode, AllocatesNothing)
 {
-  Companion companion(parametersWith({}), GetParam());
+  Tracker tracker(parametersWith({}), GetParam());
   const std::uint64_t before = allocationCount();
   for (int i = 0; i < 300; ++i)
   {
-    companion.giveLoad(PERIOD * i, 3.0);
-    companion.give(rowAt(PERIOD * i));
-    while (companion.take())
+    tracker.pushLoad(PERIOD * i, 3.0);
+    tracker.push(rowAt(PERIOD * i));
+    while (tracker.pop())
     {
     }
   }
-  companion.timing();
+  tracker.timing();
   EXPECT_EQ(allocationCount(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, CompanionInMode,
+INSTANTIATE_TEST_SUITE_P(Modes, TrackerInMode,
                          testing::Values(InputMode::TORQUE, InputMode::MOTION, InputMode::OBSERVER));
 
 /// Comparisons of a joint that stands at an angle under a load of 12 N.m.
 Comparison standing(const Parameters& parameters, bool told)
 {
-  Companion companion(parameters, InputMode::MOTION);
+  Tracker tracker(parameters, InputMode::MOTION);
   Comparison last;
   for (int i = 0; i < 100; ++i)
   {
     if (told)
     {
-      companion.giveLoad(PERIOD * i, 12.0);
+      tracker.pushLoad(PERIOD * i, 12.0);
     }
     MotionRow row = rowAt(PERIOD * i);
     row.position = 0.5;
-    companion.give(row);
-    for (const Comparison& now : takeAll(companion))
+    tracker.push(row);
+    for (const Comparison& now : takeAll(tracker))
     {
       last = now;
     }
@@ -185,36 +185,36 @@ Comparison standing(const Parameters& parameters, bool told)
   return last;
 }
 
-TEST(Companion, TakesTheLoadFromWhereItIsTold)
+TEST(Tracker, TakesTheLoadFromWhereItIsTold)
 {
   const double weight = 20.0 * std::sin(0.5);
   const auto with = [](const char* source) {
     return parametersWith({ "output.gravity_torque=20.0", std::string("telemetry.load=") + source });
   };
   EXPECT_NEAR(standing(with("model"), true).load_torque, weight, 1e-6);
-  EXPECT_FALSE(standing(with("model"), true).load_told);
+  EXPECT_FALSE(standing(with("model"), true).load_provided);
   EXPECT_NEAR(standing(with("load_torque"), true).load_torque, weight + 12.0, 1e-6);
   EXPECT_NEAR(standing(with("target_moment"), true).load_torque, 12.0, 1e-6);
-  EXPECT_TRUE(standing(with("target_moment"), true).load_told);
+  EXPECT_TRUE(standing(with("target_moment"), true).load_provided);
   EXPECT_NEAR(standing(with("target_moment"), false).load_torque, weight, 1e-6);
 }
 
-TEST(Companion, TakesTheLoadByItsStampHoweverLateItComes)
+TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
 {
   const Parameters parameters = parametersWith({ "telemetry.load=target_moment" });
   std::vector<double> loads[2];
   for (const int late : { 0, 1 })
   {
-    Companion companion(parameters, InputMode::MOTION);
+    Tracker tracker(parameters, InputMode::MOTION);
     for (int i = 0; i < 200; ++i)
     {
       const int told = i - 5 * late;  // 40 ms
       if (told >= 0)
       {
-        companion.giveLoad(PERIOD * told, told);
+        tracker.pushLoad(PERIOD * told, told);
       }
-      companion.give(rowAt(PERIOD * i));
-      for (const Comparison& now : takeAll(companion))
+      tracker.push(rowAt(PERIOD * i));
+      for (const Comparison& now : takeAll(tracker))
       {
         loads[late].push_back(now.load_torque);
       }
@@ -224,14 +224,14 @@ TEST(Companion, TakesTheLoadByItsStampHoweverLateItComes)
   EXPECT_EQ(loads[0].back(), static_cast<double>(loads[0].size() - 1));
 }
 
-TEST(Companion, RefusesAWeightThatTheLoadHoldsAlready)
+TEST(Tracker, RefusesAWeightThatTheLoadHoldsAlready)
 {
   const Parameters parameters = parametersWith({ "output.gravity_torque=20.0", "telemetry.load=target_moment" });
   for (const InputMode mode : { InputMode::TORQUE, InputMode::OBSERVER })
   {
     try
     {
-      Companion companion(parameters, mode);
+      Tracker tracker(parameters, mode);
       ADD_FAILURE() << "the weight counts twice";
     }
     catch (const ParameterError& error)
@@ -241,45 +241,45 @@ TEST(Companion, RefusesAWeightThatTheLoadHoldsAlready)
   }
 }
 
-TEST(Companion, TellsHowManyOfTheLastRowsDepart)
+TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
 {
   const auto shareWith = [](double offset, int rows)
   {
-    Companion companion(parametersWith({ "output.load_inertia=0.02" }), InputMode::MOTION);
+    Tracker tracker(parametersWith({ "output.load_inertia=0.02" }), InputMode::MOTION);
     for (int i = 0; i < rows; ++i)
     {
       MotionRow row = rowAt(PERIOD * i);
       row.position = 0.5 * PERIOD * i;
       row.current = offset;
-      companion.give(row);
-      takeAll(companion);
+      tracker.push(row);
+      takeAll(tracker);
     }
-    return companion.outsideShare();
+    return tracker.outsideShare();
   };
   EXPECT_LT(shareWith(0.8, 1000), 0.05);
   EXPECT_GT(shareWith(5.0, 1000), 0.95);
   EXPECT_LT(shareWith(5.0, 50), 0.3);
 }
 
-TEST(Companion, SeesTheMeasuredJointWithTheHealthMonitor)
+TEST(Tracker, SeesTheMeasuredJointWithTheHealthMonitor)
 {
-  Companion companion(parametersWith({ "indicators.window_turns=20" }), InputMode::MOTION);
+  Tracker tracker(parametersWith({ "indicators.window_turns=20" }), InputMode::MOTION);
   for (int i = 0; i < 2000; ++i)
   {
     MotionRow row = rowAt(PERIOD * i);
     row.position = PERIOD * i * 0.5;
-    companion.give(row);
-    takeAll(companion);
+    tracker.push(row);
+    takeAll(tracker);
   }
-  EXPECT_GT(companion.signalIndicators().windows, 2u);
-  EXPECT_NEAR(companion.signalIndicators().point.speed, 101.0 * 0.5, 1.0);
+  EXPECT_GT(tracker.signalIndicators().windows, 2u);
+  EXPECT_NEAR(tracker.signalIndicators().point.speed, 101.0 * 0.5, 1.0);
 }
 
-TEST(LagEstimate, FindsALagFromUnevenRows)
+TEST(DelayEstimate, FindsALagFromUnevenRows)
 {
   for (const double lag : { -0.05, 0.0, 0.013, 0.06 })
   {
-    LagEstimate estimate;
+    DelayEstimate estimate;
     std::mt19937 engine(2);
     std::uniform_real_distribution<double> even(0.0, 1.0);
     std::normal_distribution<double> unit;
@@ -298,9 +298,9 @@ TEST(LagEstimate, FindsALagFromUnevenRows)
   }
 }
 
-TEST(LagEstimate, TellsNothingOfSignalsThatAreUnlike)
+TEST(DelayEstimate, TellsNothingOfSignalsThatAreUnlike)
 {
-  LagEstimate estimate;
+  DelayEstimate estimate;
   for (int i = 0; i < 2000; ++i)
   {
     estimate.add(PERIOD * i, std::sin(2.1 * PERIOD * i), std::sin(9.0 * PERIOD * i));

@@ -9,7 +9,7 @@ namespace hjt
 {
 /// Every so-manieth of a stream of any length, at least MOST / 2 of it once there are as many, never more than MOST.
 template <class Row>
-class Thinned
+class Decimated
 {
 public:
   static constexpr std::size_t MOST = 16000;

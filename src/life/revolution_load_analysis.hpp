@@ -9,16 +9,16 @@
 namespace hjt
 {
 /// Measures on the tooth model what turning does to the drive. One drive, any number of loads.
-class ExposureAnalysis
+class RevolutionLoadAnalysis
 {
 public:
   /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no equilibrium.
-  ExposureAnalysis(const Parameters& parameters, int positions);
-  ~ExposureAnalysis();
+  RevolutionLoadAnalysis(const Parameters& parameters, int positions);
+  ~RevolutionLoadAnalysis();
 
   /// One turn of the wave generator under `load_torque` [N.m].
   /// @throws ParameterError if the ring finds no equilibrium under it.
-  Exposure under(double load_torque);
+  RevolutionLoad under(double load_torque);
 
 private:
   struct Impl;

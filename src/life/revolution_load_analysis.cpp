@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "life/exposure_analysis.hpp"
+#include "life/revolution_load_analysis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-struct ExposureAnalysis::Impl
+struct RevolutionLoadAnalysis::Impl
 {
   Impl(const Parameters& p, int positions)
     : parameters(p)
@@ -46,7 +46,7 @@ struct ExposureAnalysis::Impl
   Eigen::VectorXd running;
 };
 
-ExposureAnalysis::ExposureAnalysis(const Parameters& parameters, int positions)
+RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int positions)
   : impl_(std::make_unique<Impl>(parameters, positions))
 {
   if (!impl_->walk.status().ok())
@@ -55,14 +55,14 @@ ExposureAnalysis::ExposureAnalysis(const Parameters& parameters, int positions)
   }
 }
 
-ExposureAnalysis::~ExposureAnalysis() = default;
+RevolutionLoadAnalysis::~RevolutionLoadAnalysis() = default;
 
-Exposure ExposureAnalysis::under(double load_torque)
+RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
   Impl& impl = *impl_;
   const int teeth = impl.parameters.gear.teeth_flexspline;
   const double step = TWO_PI / teeth / impl.positions;  // of the wave generator [rad]
-  Exposure exposure;
+  RevolutionLoad exposure;
   double highest = std::numeric_limits<double>::lowest();
   double lowest = std::numeric_limits<double>::max();
   impl.walk.under(

@@ -12,15 +12,15 @@ namespace hjt
 ///
 /// Both pass the same high-pass; products are summed for lags on a grid up to LONGEST to either side and forgotten over
 /// MEMORY; a parabola through the largest three gives what lies between. Fixed memory; nothing allocates.
-class LagEstimate
+class DelayEstimate
 {
 public:
-  static constexpr double LONGEST = 0.1;            ///< [s]
-  static constexpr double GRID = 0.004;             ///< between lags tried [s]
-  static constexpr double MEMORY = 20.0;            ///< [s]
-  static constexpr double LEAST_CORRELATION = 0.7;  ///< below it nothing is told [-]
+  static constexpr double LONGEST = 0.1;          ///< [s]
+  static constexpr double GRID = 0.004;           ///< between lags tried [s]
+  static constexpr double MEMORY = 20.0;          ///< [s]
+  static constexpr double MIN_CORRELATION = 0.7;  ///< below it no delay is given [-]
 
-  void reset() noexcept { *this = LagEstimate(); }
+  void reset() noexcept { *this = DelayEstimate(); }
 
   /// A row of both, later than the one before [s].
   void add(double time, double leading, double lagging) noexcept;

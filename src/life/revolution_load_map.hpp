@@ -16,18 +16,18 @@ Parameters wornDrive(const Parameters& parameters, const DriveAge& age);
 
 /// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at some
 /// stages of wear, bilinear between them.
-class ExposureMap
+class RevolutionLoadMap
 {
 public:
   /// `positions`: wave generator angles per tooth pitch.
-  ExposureMap(const Parameters& parameters, int positions);
+  RevolutionLoadMap(const Parameters& parameters, int positions);
 
   /// Solves the tooth model at every stage for the loads it does not know yet (some seconds).
   /// @throws ParameterError where the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
   /// Under a load that is covered [N.m], at a stage of wear [m]; beyond the limits of wear that at the limits.
-  Exposure at(double load_torque, double flank_wear, double interface_wear) const;
+  RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
   /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same quantity
   /// under any load [-]. Slow.
@@ -35,7 +35,7 @@ public:
 
 private:
   static constexpr int STAGES = 4;  // of each kind of wear, the new drive and the limit included
-  using Stages = std::array<std::array<Exposure, STAGES>, STAGES>;  // by flank, by interface
+  using Stages = std::array<std::array<RevolutionLoad, STAGES>, STAGES>;  // by flank, by interface
 
   Parameters parameters_;
   int positions_;

@@ -15,17 +15,17 @@ namespace hjt
 /// The nodes lie every sixteenth of the rated torque up to four times it, and every 10 K. A stretch of use is shared among
 /// the four nodes around it so that time, turns, and mean load and temperature of both stay as they were. Which way
 /// the load acts makes no difference to what it wears.
-class UseRecord
+class UsageHistory
 {
 public:
-  explicit UseRecord(const LifeParameters& life);
+  explicit UsageHistory(const LifeParameters& life);
 
   /// From a file that holds `text`, or any other duty cycle. @throws InputError.
-  UseRecord(const LifeParameters& life, const std::string& path);
+  UsageHistory(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
   void add(const DutyPhase& use) noexcept;  ///< what lies beyond the nodes counts as the outermost ones
-  void add(const UseRecord& other) noexcept;
+  void add(const UsageHistory& other) noexcept;
 
   double hours() const noexcept;
   double turns() const noexcept;  ///< of the wave generator, both ways

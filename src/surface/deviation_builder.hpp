@@ -10,12 +10,12 @@
 
 namespace hjt
 {
-/// Departures of a gear from one of equal teeth, or why there are none.
-struct DepartureBuild
+/// SurfaceDeviations of a gear from one of equal teeth, or why there are none.
+struct DeviationBuild
 {
-  DepartureTable table;
-  std::string obstacle;  ///< empty: the table is good
-  int solves{};          ///< equilibria of the ring that were found for it
+  DeviationTable table;
+  std::string failure_reason;  ///< empty: the table is good
+  int solves{};                ///< equilibria of the ring that were found for it
 };
 
 /// Tabulates by how much the ring of `actual` differs from that of `equal`, whose surface has the range `lowest` ... `highest`
@@ -23,7 +23,7 @@ struct DepartureBuild
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
 /// size of the departures: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
-DepartureBuild buildDepartures(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
+DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress);
 }  // namespace hjt

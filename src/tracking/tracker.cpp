@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace
 {
 /// Half width of a band, in deviations.
 constexpr double DEVIATIONS = 3.0;
-class TorqueFollower : public Companion::Follower
+class TorqueFollower : public Tracker::Follower
 {
 public:
   TorqueFollower(const Parameters& parameters, const SurfaceSource& source) : twin_(parameters, source) {}
@@ -37,7 +37,7 @@ private:
   TorqueDriven twin_;
 };
 
-class MotionFollower : public Companion::Follower
+class MotionFollower : public Tracker::Follower
 {
 public:
   explicit MotionFollower(const Parameters& parameters) : twin_(parameters), telemetry_(parameters.telemetry) {}
@@ -57,7 +57,7 @@ private:
   TelemetryParameters telemetry_;
 };
 
-class ObserverFollower : public Companion::Follower
+class ObserverFollower : public Tracker::Follower
 {
 public:
   explicit ObserverFollower(const Parameters& parameters)
@@ -87,8 +87,8 @@ private:
   double ratio_;
 };
 
-std::unique_ptr<Companion::Follower> makeFollower(const Parameters& parameters, InputMode mode,
-                                                  const SurfaceSource& source)
+std::unique_ptr<Tracker::Follower> makeFollower(const Parameters& parameters, InputMode mode,
+                                                const SurfaceSource& source)
 {
   if (mode == InputMode::MOTION)
   {
@@ -110,7 +110,7 @@ std::unique_ptr<Companion::Follower> makeFollower(const Parameters& parameters, 
 }
 }  // namespace
 
-Companion::Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source)
+Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source)
   : mode_(mode)
   , load_source_(parameters.telemetry.load)
   , load_(parameters.output)
@@ -121,13 +121,13 @@ Companion::Companion(const Parameters& parameters, InputMode mode, const Surface
 {
 }
 
-Companion::~Companion() = default;
+Tracker::~Tracker() = default;
 
-void Companion::reset() noexcept
+void Tracker::reset() noexcept
 {
   earlier_.refused += smoother_.refused();
   earlier_.gaps += smoother_.gaps();
-  smoother_ = MotionSmoother();
+  smoother_ = MotionDifferentiator();
   restarted_ = true;
   loads_end_ = 0;
   outside_share_ = 0.0;
@@ -136,7 +136,7 @@ void Companion::reset() noexcept
   watch_.reset();
 }
 
-void Companion::giveLoad(double time, double torque) noexcept
+void Tracker::pushLoad(double time, double torque) noexcept
 {
   if (std::isfinite(time) && std::isfinite(torque))
   {
@@ -146,7 +146,7 @@ void Companion::giveLoad(double time, double torque) noexcept
 }
 
 /// The load given last of those not later than `time`.
-std::optional<double> Companion::loadAt(double time) const noexcept
+std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   if (load_source_ == LoadSource::MODEL)
   {
@@ -163,7 +163,7 @@ std::optional<double> Companion::loadAt(double time) const noexcept
   return std::nullopt;
 }
 
-void Companion::give(const MotionRow& row) noexcept
+void Tracker::push(const MotionRow& row) noexcept
 {
   if (!isPlausible(row))
   {
@@ -182,7 +182,7 @@ void Companion::give(const MotionRow& row) noexcept
   }
 }
 
-std::optional<Comparison> Companion::take(bool at_end) noexcept
+std::optional<Comparison> Tracker::pop(bool at_end) noexcept
 {
   std::optional<MotionSample> sample = smoother_.pop(at_end);
   if (!sample)
@@ -205,12 +205,12 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
   now.velocity = { sample->velocity, sample->velocity, 0.0 };
   now.current = { sample->current, sample->current, 0.0 };
   now.load_torque = sample->load;
-  now.load_told = told.has_value();
+  now.load_provided = told.has_value();
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  watch_.take(*sample);
+  watch_.update(*sample);
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
@@ -225,9 +225,9 @@ std::optional<Comparison> Companion::take(bool at_end) noexcept
   return now;
 }
 
-CompanionCounters Companion::counters() const noexcept
+TrackerCounters Tracker::counters() const noexcept
 {
-  CompanionCounters counters = counters_;
+  TrackerCounters counters = counters_;
   counters.refused = earlier_.refused + smoother_.refused();
   counters.gaps = earlier_.gaps + smoother_.gaps();
   counters.solver_failures = follower_->solverFailures();

@@ -22,17 +22,17 @@
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/recent_events.hpp"
 #include "ros_io/telemetry_messages.hpp"
-#include "tracking/companion.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
-/// The twin beside a robot, live: wires a `Companion` to topics, diagnostics and a service. Whatever a message brings is worked
+/// The twin beside a robot, live: wires a `Tracker` to topics, diagnostics and a service. Whatever a message brings is worked
 /// off in its callback: nothing here waits for a clock.
-class CompanionNode
+class TrackerNode
 {
 public:
   /// @param parameters with input.mode other than commands. @throws ParameterError.
-  CompanionNode(ros::NodeHandle& node, const Parameters& parameters);
+  TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
 private:
   using JointStateEvent = ros::MessageEvent<const sensor_msgs::JointState>;
@@ -57,7 +57,7 @@ private:
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
   void receiveLoadNow(double torque);
-  void giveLoad(const LoadAt& load);
+  void pushLoad(const LoadAt& load);
   void passLoad(const LoadAt& load);
   bool start(Stamp stamp);
   double secondsFromStart(Stamp stamp) const { return toSeconds(stamp - *start_); }
@@ -76,15 +76,15 @@ private:
   std::mutex mutex_;  // of everything below: callbacks run in several threads
   const JointNames names_;
   const Parameters parameters_;
-  Companion companion_;
+  Tracker tracker_;
   LifePublisher life_;
-  std::optional<Stamp> start_;           // stamp of the first row: the companion's zero [ns]
+  std::optional<Stamp> start_;           // stamp of the first row: the tracker's zero [ns]
   Stamp last_received_{};                // [ns]
   Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
   std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
-  std::uint64_t clock_changes_{};        // starts anew because all stamps had moved far
+  std::uint64_t clock_changes_{};        // restarts because all stamps had moved far
   std::optional<LoadAt> last_load_;
-  std::deque<LoadAt> early_loads_;  // told before there was a zero
+  std::deque<LoadAt> early_loads_;  // received before the start
   std::string found_names_;         // in the last message without this joint
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/departure_builder.hpp"
+#include "surface/deviation_builder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,8 +24,8 @@ constexpr double SHARE = 1e-2;    // of the largest departure on a line, that th
 constexpr double SMALLEST = 0.1;  // a line's largest departure counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
-constexpr int LEAST_COLUMNS = 4;
-constexpr int MOST_COLUMNS = 16;
+constexpr int MIN_COLUMNS = 4;
+constexpr int MAX_COLUMNS = 16;
 
 struct Line
 {
@@ -33,22 +33,22 @@ struct Line
   Torques tolerance{ Torques::Zero() };
 };
 
-class DepartureBuilder
+class DeviationBuilder
 {
 public:
-  DepartureBuilder(const Parameters& parameters, const JointModel& equal, const JointModel& actual, int repetition,
+  DeviationBuilder(const Parameters& parameters, const JointModel& equal, const JointModel& actual, int repetition,
                    const std::function<void(double)>& progress)
     : progress_(progress)
     , equal_(parameters, equal)
     , actual_(parameters, actual)
     , pitches_(static_cast<std::size_t>(repetition))
-    , columns_(pitches_, 2 * MOST_COLUMNS)
+    , columns_(pitches_, 2 * MAX_COLUMNS)
   {
   }
 
-  DepartureBuild build(double lowest, double highest)
+  DeviationBuild build(double lowest, double highest)
   {
-    DepartureBuild result;
+    DeviationBuild result;
     longest_way_ = (highest - lowest) / (4.0 * COARSE_LINES);
     if (equal_.insert() && actual_.insert() && chooseColumns(lowest, highest) && coverRange(lowest, highest) &&
         refine())
@@ -57,7 +57,7 @@ public:
     }
     else
     {
-      result.obstacle = "the ring finds no equilibrium at some angles within a turn";
+      result.failure_reason = "the ring finds no equilibrium at some angles within a turn";
     }
     result.solves = equal_.solves() + actual_.solves();
     return result;
@@ -99,7 +99,7 @@ private:
     return nodes;
   }
 
-  /// Departures on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
+  /// SurfaceDeviations on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
   /// beside which, there are any. False: no equilibrium.
   bool measureLine(double v, const Set& wanted, Line& line)
   {
@@ -191,7 +191,7 @@ private:
   /// For each pitch the fewest columns that give the departures half way between them.
   bool chooseColumns(double lowest, double highest)
   {
-    std::vector<int> enough(pitches_, LEAST_COLUMNS);
+    std::vector<int> enough(pitches_, MIN_COLUMNS);
     const Set all(pitches_, 1);
     for (const double v : { 0.02 * lowest, 0.1 * lowest, 0.3 * lowest, 0.3 * highest, 0.1 * highest, 0.02 * highest })
     {
@@ -203,7 +203,7 @@ private:
       for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
       {
         int& columns = enough[pitch];
-        while (columns < MOST_COLUMNS && !columnsSuffice(line.strips[pitch], columns, line.tolerance))
+        while (columns < MAX_COLUMNS && !columnsSuffice(line.strips[pitch], columns, line.tolerance))
         {
           columns *= 2;
         }
@@ -309,14 +309,14 @@ private:
     return true;
   }
 
-  DepartureTable table() const
+  DeviationTable table() const
   {
-    DepartureTable table;
+    DeviationTable table;
     table.swaps_lobes = static_cast<int>(pitches_) <= actual_.model().ring.rest.teeth() / 2 + 1;
     table.pitches.resize(pitches_);
     for (std::size_t number = 0; number < pitches_; ++number)
     {
-      DepartureTable::Pitch& pitch = table.pitches[number];
+      DeviationTable::Pitch& pitch = table.pitches[number];
       pitch.columns = columns_[number];
       for (const auto& [v, line] : lines_)
       {
@@ -341,7 +341,7 @@ private:
 
   /// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
   /// what lies between those that both have.
-  static void join(DepartureTable::Pitch& before, DepartureTable::Pitch& after)
+  static void join(DeviationTable::Pitch& before, DeviationTable::Pitch& after)
   {
     std::vector<double> common;
     std::set_intersection(before.lines.begin(), before.lines.end(), after.lines.begin(), after.lines.end(),
@@ -354,7 +354,7 @@ private:
     levelEdge(after, 0, common);
   }
 
-  static void levelEdge(DepartureTable::Pitch& pitch, std::size_t column, const std::vector<double>& common)
+  static void levelEdge(DeviationTable::Pitch& pitch, std::size_t column, const std::vector<double>& common)
   {
     const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
     std::size_t kept = 0;  // the last line in common
@@ -408,10 +408,10 @@ private:
 };
 }  // namespace
 
-DepartureBuild buildDepartures(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
+DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress)
 {
-  return DepartureBuilder(parameters, equal, actual, repetition, progress).build(lowest, highest);
+  return DeviationBuilder(parameters, equal, actual, repetition, progress).build(lowest, highest);
 }
 }  // namespace hjt

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "life/exposure_map.hpp"
+#include "life/revolution_load_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "life/exposure_analysis.hpp"
+#include "life/revolution_load_analysis.hpp"
 
 namespace hjt
 {
 namespace
 {
-Exposure blend(const Exposure& a, const Exposure& b, double share)
+RevolutionLoad blend(const RevolutionLoad& a, const RevolutionLoad& b, double share)
 {
   const auto mix = [share](double from, double to) { return from + share * (to - from); };
   return { mix(a.flank_sliding, b.flank_sliding), mix(a.interface_sliding, b.interface_sliding),
@@ -31,7 +31,7 @@ Cell cellOf(double value, double step, int stages)
 }
 
 /// Entry by entry.
-Exposure larger(const Exposure& a, const Exposure& b)
+RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 {
   return { std::max(a.flank_sliding, b.flank_sliding), std::max(a.interface_sliding, b.interface_sliding),
            std::max(a.rim_stress_range, b.rim_stress_range) };
@@ -46,7 +46,7 @@ Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
   return worn;
 }
 
-ExposureMap::ExposureMap(const Parameters& parameters, int positions)
+RevolutionLoadMap::RevolutionLoadMap(const Parameters& parameters, int positions)
   : parameters_(parameters)
   , positions_(positions)
   , flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
@@ -54,7 +54,7 @@ ExposureMap::ExposureMap(const Parameters& parameters, int positions)
 {
 }
 
-void ExposureMap::cover(const DutyCycle& duty, const std::function<void(double)>& progress)
+void RevolutionLoadMap::cover(const DutyCycle& duty, const std::function<void(double)>& progress)
 {
   std::map<double, Stages> added;
   for (const DutyPhase& phase : duty.phases)
@@ -75,7 +75,7 @@ void ExposureMap::cover(const DutyCycle& duty, const std::function<void(double)>
       DriveAge age;
       age.flank_wear = flank * flank_step_;
       age.interface_wear = interface * interface_step_;
-      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
       for (auto& [load, stages] : added)
       {
         stages[static_cast<std::size_t>(flank)][static_cast<std::size_t>(interface)] = analysis.under(load);
@@ -89,7 +89,7 @@ void ExposureMap::cover(const DutyCycle& duty, const std::function<void(double)>
   nodes_.merge(added);
 }
 
-Exposure ExposureMap::at(double load_torque, double flank_wear, double interface_wear) const
+RevolutionLoad RevolutionLoadMap::at(double load_torque, double flank_wear, double interface_wear) const
 {
   const Cell flank = cellOf(flank_wear, flank_step_, STAGES);
   const Cell interface = cellOf(interface_wear, interface_step_, STAGES);
@@ -99,10 +99,10 @@ Exposure ExposureMap::at(double load_torque, double flank_wear, double interface
   return blend(along(flank.index), along(flank.index + 1), flank.share);
 }
 
-double ExposureMap::largestError() const
+double RevolutionLoadMap::largestError() const
 {
-  Exposure miss;
-  Exposure largest;
+  RevolutionLoad miss;
+  RevolutionLoad largest;
   for (int flank = 0; flank < STAGES - 1; ++flank)
   {
     for (int interface = 0; interface < STAGES - 1; ++interface)
@@ -110,11 +110,11 @@ double ExposureMap::largestError() const
       DriveAge age;
       age.flank_wear = (flank + 0.5) * flank_step_;
       age.interface_wear = (interface + 0.5) * interface_step_;
-      ExposureAnalysis analysis(wornDrive(parameters_, age), positions_);
+      RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
       for (const auto& [load, stages] : nodes_)
       {
-        const Exposure measured = analysis.under(load);
-        const Exposure mapped = at(load, age.flank_wear, age.interface_wear);
+        const RevolutionLoad measured = analysis.under(load);
+        const RevolutionLoad mapped = at(load, age.flank_wear, age.interface_wear);
         largest = larger(largest, measured);
         miss = larger(miss, { std::abs(mapped.flank_sliding - measured.flank_sliding),
                               std::abs(mapped.interface_sliding - measured.interface_sliding),

@@ -10,8 +10,8 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
-#include "tracking/lag_estimate.hpp"
-#include "tracking/motion_smoother.hpp"
+#include "tracking/delay_estimate.hpp"
+#include "tracking/motion_differentiator.hpp"
 #include "tracking/signal_watch.hpp"
 #include "tracking/stream_timing.hpp"
 
@@ -37,7 +37,7 @@ struct Comparison
   double joint_torque{};     ///< what the joint gives to the arm: measured, less friction and the rotor's inertia [N.m]
   double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
-  bool load_told{};          ///< it was told; else it is weight and inertia as configured
+  bool load_provided{};      ///< a load was received; else weight and inertia as configured
   bool sticking{};           ///< friction holds the joint: any current within the band fits
   bool after_gap{};          ///< first after a gap in the telemetry
 
@@ -47,21 +47,21 @@ struct Comparison
 };
 
 /// What came of the rows that were given.
-struct CompanionCounters
+struct TrackerCounters
 {
   std::uint64_t compared{};         ///< rows beside which there is a comparison
   std::uint64_t refused{};          ///< repeated, out of order, not finite or beyond what can be
-  std::uint64_t gaps{};             ///< longer than MotionSmoother::LONGEST_GAP
-  std::uint64_t restarts{};         ///< stamps went back by more than Companion::RESTART
+  std::uint64_t gaps{};             ///< longer than MotionDifferentiator::MAX_GAP
+  std::uint64_t restarts{};         ///< stamps went back by more than Tracker::RESTART
   std::uint64_t outside{};          ///< comparisons whose current lies outside its band
-  std::uint64_t without_load{};     ///< comparisons with a load that was not told, though input is to tell it
+  std::uint64_t without_load{};     ///< comparisons without a received load, though telemetry.load expects one
   std::uint64_t solver_failures{};  ///< steps of the twin in torque mode that did not converge
 };
 
 /// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion` and
 /// `observer`. Live and offline alike: the same rows and loads give the same numbers, if a load comes before the rows that
-/// are MotionSmoother::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or allocates.
-class Companion
+/// are MotionDifferentiator::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or allocates.
+class Tracker
 {
 public:
   /// Stamps that go back by more are a new recording or a clock that was set [s].
@@ -71,28 +71,28 @@ public:
   static constexpr std::size_t LOADS = 512;
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
-  Companion(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
-  ~Companion();
+  Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
+  ~Tracker();
 
   void reset() noexcept;
 
   /// The load at the output from `time` on; as telemetry.load says, external or all in all [N.m]. Not finite: refused.
-  void giveLoad(double time, double torque) noexcept;
+  void pushLoad(double time, double torque) noexcept;
 
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
-  void give(const MotionRow& row) noexcept;
+  void push(const MotionRow& row) noexcept;
 
-  /// The next comparison that is ready, at most MotionSmoother::HALF_WIDTH after its row. Call it until there is none.
-  std::optional<Comparison> take(bool at_end = false) noexcept;
+  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until there is none.
+  std::optional<Comparison> pop(bool at_end = false) noexcept;
 
-  CompanionCounters counters() const noexcept;
+  TrackerCounters counters() const noexcept;
   StreamTimingReport timing() const noexcept { return timing_.report(); }
 
   /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// By how much what was measured comes after what is predicted from the other signals: current (motion) or speed (torque);
-  /// the observer tells nothing of it [s].
+  /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
+  /// [s].
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Health of the measured joint, from its own signals.
@@ -123,7 +123,7 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   std::unique_ptr<Follower> follower_;
-  MotionSmoother smoother_;
+  MotionDifferentiator smoother_;
   bool restarted_{};
   double last_time_{};
   std::array<LoadAt, LOADS> loads_{};
@@ -131,9 +131,9 @@ private:
   double outside_share_{};
   double last_compared_{};  // [s]
   StreamTiming timing_;
-  LagEstimate lag_;
+  DelayEstimate lag_;
   SignalWatch watch_;
-  CompanionCounters counters_;
-  CompanionCounters earlier_;  // refused before the smoother, and by it before the last restart
+  TrackerCounters counters_;
+  TrackerCounters earlier_;  // refused before the smoother, and by it before the last restart
 };
 }  // namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "elements/bearing_sag.hpp"
+#include "elements/race_deflection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,11 +33,11 @@ Bump bump(double angle, double rate, double half) noexcept
 }
 }  // namespace
 
-struct BearingSag::Drop : Bump
+struct RaceDeflection::Drop : Bump
 {
 };
 
-BearingSag::BearingSag(const BearingParameters& bearing)
+RaceDeflection::RaceDeflection(const BearingParameters& bearing)
   : balls_(bearing.balls)
   , ball_diameter_(bearing.ball_diameter)
   , pitch_diameter_(bearing.pitch_diameter)
@@ -46,7 +46,7 @@ BearingSag::BearingSag(const BearingParameters& bearing)
 {
 }
 
-void BearingSag::add(const Spall& spall) noexcept
+void RaceDeflection::add(const Spall& spall) noexcept
 {
   if (size_ < spalls_.size())
   {
@@ -55,38 +55,38 @@ void BearingSag::add(const Spall& spall) noexcept
 }
 
 /// How far a ball drops into a spall.
-double BearingSag::dropInto(double depth, double length) const noexcept
+double RaceDeflection::dropInto(double depth, double length) const noexcept
 {
   return std::min(depth, length * length / (4.0 * ball_diameter_));
 }
 
-void BearingSag::addInnerSpall(double place, double depth, double length) noexcept
+void RaceDeflection::addInnerSpall(double place, double depth, double length) noexcept
 {
   add({ Where::INNER_RACE, 0, place, dropInto(depth, length), length / (pitch_diameter_ - ball_diameter_) });
 }
 
-void BearingSag::addOuterSpall(double place, double depth, double length) noexcept
+void RaceDeflection::addOuterSpall(double place, double depth, double length) noexcept
 {
   add({ Where::OUTER_RACE, 0, place, dropInto(depth, length), length / (pitch_diameter_ + ball_diameter_) });
 }
 
-void BearingSag::addBallSpall(int ball, double depth, double length) noexcept
+void RaceDeflection::addBallSpall(int ball, double depth, double length) noexcept
 {
   add({ Where::BALL, ball, 0.0, dropInto(depth, length), length / ball_diameter_ });
 }
 
-void BearingSag::addIdleBall(int ball, double depth) noexcept
+void RaceDeflection::addIdleBall(int ball, double depth) noexcept
 {
   add({ Where::UNDER_BALL, ball, 0.0, depth, 0.0 });
 }
 
-double BearingSag::ballPlace(int ball, double angle) const noexcept
+double RaceDeflection::ballPlace(int ball, double angle) const noexcept
 {
   return TWO_PI * ball / balls_ + cage_rate_ * angle;
 }
 
 /// How far a ball drops through one spall.
-BearingSag::Drop BearingSag::drop(const Spall& spall, int ball, double angle) const noexcept
+RaceDeflection::Drop RaceDeflection::drop(const Spall& spall, int ball, double angle) const noexcept
 {
   constexpr double GOLDEN = 2.399963229728653;  // rad; the balls are turned one against the other, without a pattern
   Bump at;
@@ -114,8 +114,8 @@ BearingSag::Drop BearingSag::drop(const Spall& spall, int ball, double angle) co
   return { { spall.depth * at.value, spall.depth * at.rate, spall.depth * at.second } };
 }
 
-void BearingSag::at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen::VectorXd& rate,
-                    Eigen::VectorXd& second) const noexcept
+void RaceDeflection::at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen::VectorXd& rate,
+                        Eigen::VectorXd& second) const noexcept
 {
   sag.setZero();
   rate.setZero();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "life/use_record.hpp"
+#include "life/usage_history.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +32,9 @@ struct Share
 };
 }  // namespace
 
-UseRecord::UseRecord(const LifeParameters& life) : load_step_(life.rated_torque / LOAD_STEPS) {}
+UsageHistory::UsageHistory(const LifeParameters& life) : load_step_(life.rated_torque / LOAD_STEPS) {}
 
-UseRecord::UseRecord(const LifeParameters& life, const std::string& path) : UseRecord(life)
+UsageHistory::UsageHistory(const LifeParameters& life, const std::string& path) : UsageHistory(life)
 {
   for (const DutyPhase& phase : DutyCycle::fromFile(path).phases)
   {
@@ -42,15 +42,15 @@ UseRecord::UseRecord(const LifeParameters& life, const std::string& path) : UseR
   }
 }
 
-void UseRecord::clear() noexcept
+void UsageHistory::clear() noexcept
 {
   nodes_ = {};
 }
 
-void UseRecord::add(const DutyPhase& use) noexcept
+void UsageHistory::add(const DutyPhase& use) noexcept
 {
   const Share load(std::abs(use.load_torque) / load_step_, LOADS);
-  const Share temperature((use.temperature - LOWEST_TEMPERATURE) / TEMPERATURE_STEP, TEMPERATURES);
+  const Share temperature((use.temperature - MIN_TEMPERATURE) / TEMPERATURE_STEP, TEMPERATURES);
   const double travel = use.duration * use.motor_speed;
   for (std::size_t i = 0; i < 2; ++i)
   {
@@ -65,7 +65,7 @@ void UseRecord::add(const DutyPhase& use) noexcept
   }
 }
 
-void UseRecord::add(const UseRecord& other) noexcept
+void UsageHistory::add(const UsageHistory& other) noexcept
 {
   for (std::size_t i = 0; i < LOADS; ++i)
   {
@@ -77,7 +77,7 @@ void UseRecord::add(const UseRecord& other) noexcept
   }
 }
 
-double UseRecord::hours() const noexcept
+double UsageHistory::hours() const noexcept
 {
   double time = 0.0;
   for (const auto& row : nodes_)
@@ -90,7 +90,7 @@ double UseRecord::hours() const noexcept
   return time / 3600.0;
 }
 
-double UseRecord::turns() const noexcept
+double UsageHistory::turns() const noexcept
 {
   double travel = 0.0;
   for (const auto& row : nodes_)
@@ -103,7 +103,7 @@ double UseRecord::turns() const noexcept
   return travel / TWO_PI;
 }
 
-DutyCycle UseRecord::duty() const
+DutyCycle UsageHistory::duty() const
 {
   DutyCycle duty;
   for (std::size_t i = 0; i < LOADS; ++i)
@@ -114,14 +114,14 @@ DutyCycle UseRecord::duty() const
       if (node.time > 0.0)
       {
         duty.phases.push_back({ node.time, node.travel / node.time, static_cast<double>(i) * load_step_,
-                                LOWEST_TEMPERATURE + static_cast<double>(k) * TEMPERATURE_STEP });
+                                MIN_TEMPERATURE + static_cast<double>(k) * TEMPERATURE_STEP });
       }
     }
   }
   return duty;
 }
 
-std::string UseRecord::text() const
+std::string UsageHistory::text() const
 {
   std::string text = "duration,motor_speed,load_torque,temperature\n";
   for (const DutyPhase& phase : duty().phases)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tracking/motion_smoother.hpp"
+#include "tracking/motion_differentiator.hpp"
 
 #include <cmath>
 
@@ -8,16 +8,16 @@
 
 namespace hjt
 {
-bool MotionSmoother::push(const MotionRow& row) noexcept
+bool MotionDifferentiator::push(const MotionRow& row) noexcept
 {
   const bool finite =
       std::isfinite(row.time) && std::isfinite(row.position) && std::isfinite(row.current) && std::isfinite(row.load);
-  if (!finite || (end_ > 0 && row.time < at(end_ - 1).row.time + SMALLEST_STEP))
+  if (!finite || (end_ > 0 && row.time < at(end_ - 1).row.time + MIN_STEP))
   {
     ++refused_;
     return false;
   }
-  if (end_ > 0 && row.time > at(end_ - 1).row.time + LONGEST_GAP)
+  if (end_ > 0 && row.time > at(end_ - 1).row.time + MAX_GAP)
   {
     ++segment_;
   }
@@ -26,7 +26,7 @@ bool MotionSmoother::push(const MotionRow& row) noexcept
   return true;
 }
 
-std::optional<MotionSample> MotionSmoother::pop(bool at_end) noexcept
+std::optional<MotionSample> MotionDifferentiator::pop(bool at_end) noexcept
 {
   if (next_ == end_)
   {
@@ -41,7 +41,7 @@ std::optional<MotionSample> MotionSmoother::pop(bool at_end) noexcept
   return fit(next_++);
 }
 
-MotionSample MotionSmoother::fit(std::uint64_t index) const noexcept
+MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
 {
   const Held& centre = at(index);
   MotionSample sample;

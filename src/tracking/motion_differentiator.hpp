@@ -25,19 +25,19 @@ struct MotionSample : MotionRow
 {
   double velocity{};      ///< [rad/s]
   double acceleration{};  ///< [rad/s^2]
-  bool after_gap{};       ///< first after a gap: what was before is forgotten
+  bool after_gap{};       ///< first after a gap: the state before is discarded
 };
 
 /// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
 ///
 /// A parabola is laid through the rows within HALF_WIDTH of each by least squares, their own stamps counting. A sample comes
 /// out when the rows after it are known, so at most HALF_WIDTH late. Memory is fixed; nothing allocates.
-class MotionSmoother
+class MotionDifferentiator
 {
 public:
-  static constexpr double HALF_WIDTH = 0.05;       ///< [s]
-  static constexpr double LONGEST_GAP = 0.1;       ///< longer ones cut the stream [s]
-  static constexpr double SMALLEST_STEP = 0.5e-3;  ///< rows that follow sooner tell nothing new [s]
+  static constexpr double HALF_WIDTH = 0.05;  ///< [s]
+  static constexpr double MAX_GAP = 0.1;      ///< longer ones cut the stream [s]
+  static constexpr double MIN_STEP = 0.5e-3;  ///< rows that follow sooner tell nothing new [s]
 
   /// False: the row is not later than the one before, or not finite, and is left out.
   bool push(const MotionRow& row) noexcept;
@@ -54,7 +54,7 @@ private:
     MotionRow row;
     std::uint64_t segment;  // number of gaps before it
   };
-  static constexpr std::size_t ROOM = 512;  // more than two windows of rows at SMALLEST_STEP
+  static constexpr std::size_t ROOM = 512;  // more than two windows of rows at MIN_STEP
   static constexpr int FEWEST = 4;          // rows for a parabola that does not only pass through them
 
   const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }

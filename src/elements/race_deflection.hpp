@@ -22,15 +22,15 @@ namespace hjt
 ///           Z, d, D  number and diameter of the balls, their pitch diameter; no slip of the cage
 ///
 /// A sound bearing is the rigid ellipse that the contact knows.
-class BearingSag
+class RaceDeflection
 {
 public:
-  explicit BearingSag(const BearingParameters& bearing);
+  explicit RaceDeflection(const BearingParameters& bearing);
 
   bool sound() const noexcept { return size_ == 0; }
 
   /// A spall `depth` deep and `length` long [m]; `place`: angle along the inner race from the wave generator's angle,
-  /// along the outer race from tooth 0 [rad]; ball from 0 on. No more than MOST_FAULTS in all.
+  /// along the outer race from tooth 0 [rad]; ball from 0 on. No more than MAX_FAULTS in all.
   void addInnerSpall(double place, double depth, double length) noexcept;
   void addOuterSpall(double place, double depth, double length) noexcept;
   void addBallSpall(int ball, double depth, double length) noexcept;
@@ -70,7 +70,7 @@ private:
   double pitch_diameter_;
   double cage_rate_;
   double spin_rate_;
-  std::array<Spall, MOST_FAULTS> spalls_{};
+  std::array<Spall, MAX_FAULTS> spalls_{};
   std::size_t size_{};
 };
 }  // namespace hjt

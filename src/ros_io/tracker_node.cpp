@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_io/companion_node.hpp"
+#include "ros_io/tracker_node.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -21,13 +21,13 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-/// Telemetry that brings nothing for so long has stopped [s].
+/// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
 /// Of the names in a message without this joint that are shown [bytes].
-constexpr std::size_t LONGEST_NAMES = 500;
-/// Share of the last seconds' rows outside their band beyond which the joint is said to depart [-].
+constexpr std::size_t MAX_NAMES = 500;
+/// Warn when a larger share of the last seconds' rows is outside the band [-].
 constexpr double OUTSIDE_WARNING = 0.1;
-/// Stamps further off the clock are said to be [s].
+/// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
 
 /// Whether two rows can be of the same clock: their receptions less stamps [ns].
@@ -47,10 +47,10 @@ SurfaceSource surfaceSource()
 }
 }  // namespace
 
-CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters)
+TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
   : names_(parameters.joint.name)
   , parameters_(parameters)
-  , companion_(parameters, parameters.input.mode, surfaceSource())
+  , tracker_(parameters, parameters.input.mode, surfaceSource())
   , life_(node, parameters)
   , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
   , indicators_(makeIndicators(parameters))
@@ -60,7 +60,7 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
   , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
   , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
   , tasks_(parameters.joint.hardware_id)
-  , reset_service_(node.advertiseService("reset", &CompanionNode::reset, this))
+  , reset_service_(node.advertiseService("reset", &TrackerNode::reset, this))
 {
   tasks_.add(
       "Input", [this] { return judgeTelemetry(); }, [this](auto& status) { reportTelemetry(status); });
@@ -79,7 +79,7 @@ CompanionNode::CompanionNode(ros::NodeHandle& node, const Parameters& parameters
       topics::LOAD_TORQUE, [this](const auto& event) { receiveLoadNow(event.getMessage()->data); });
 }
 
-void CompanionNode::receiveTelemetry(const JointStateEvent& event)
+void TrackerNode::receiveTelemetry(const JointStateEvent& event)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const sensor_msgs::JointState& message = *event.getMessage();
@@ -95,7 +95,7 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
       {
         found_names_ += (found_names_.empty() ? "" : ", ") + name;
       }
-      found_names_ = printable(found_names_, LONGEST_NAMES);
+      found_names_ = printable(found_names_, MAX_NAMES);
       ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "No " << names_.joint << " on " << telemetry_subscriber_.getTopic()
                                                      << ", which names " << found_names_);
       return;
@@ -117,13 +117,13 @@ void CompanionNode::receiveTelemetry(const JointStateEvent& event)
   }
   row.time = secondsFromStart(stamp);
   row.received = secondsFromStart(last_received_);
-  companion_.give(row);
+  tracker_.push(row);
   publish();
 }
 
-/// Sets the companion's zero with the first row. False: the stamp is far from where those of the rows before lead to; if the
-/// next row agrees with this one, the clock of the robot or this machine's was set, and all starts anew.
-bool CompanionNode::start(Stamp stamp)
+/// Sets the tracker's zero with the first row. False: the stamp is far from where those of the rows before lead to; if the
+/// next row agrees with this one, the clock of the robot or this machine's was set, and everything restarts.
+bool TrackerNode::start(Stamp stamp)
 {
   const Stamp offset = last_received_ - stamp;
   const bool moved = start_ && !agree(offset, offset_);
@@ -136,7 +136,7 @@ bool CompanionNode::start(Stamp stamp)
   offset_ = offset;
   if (moved)
   {
-    companion_.reset();
+    tracker_.reset();
     ++clock_changes_;
     start_.reset();
   }
@@ -152,7 +152,7 @@ bool CompanionNode::start(Stamp stamp)
   return true;
 }
 
-void CompanionNode::receiveLoad(const JointStateEvent& event)
+void TrackerNode::receiveLoad(const JointStateEvent& event)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const sensor_msgs::JointState& message = *event.getMessage();
@@ -162,10 +162,10 @@ void CompanionNode::receiveLoad(const JointStateEvent& event)
     ++refusals_.load;
     return;
   }
-  giveLoad({ stampOr(message.header.stamp, event.getReceiptTime()), fromRosTime(event.getReceiptTime()), torque });
+  pushLoad({ stampOr(message.header.stamp, event.getReceiptTime()), fromRosTime(event.getReceiptTime()), torque });
 }
 
-void CompanionNode::receiveLoadNow(double torque)
+void TrackerNode::receiveLoadNow(double torque)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!std::isfinite(torque))
@@ -174,10 +174,10 @@ void CompanionNode::receiveLoadNow(double torque)
     return;
   }
   const Stamp now = fromRosTime(ros::Time::now());
-  giveLoad({ now, now, torque });
+  pushLoad({ now, now, torque });
 }
 
-void CompanionNode::giveLoad(const LoadAt& load)
+void TrackerNode::pushLoad(const LoadAt& load)
 {
   if (start_)
   {
@@ -185,14 +185,14 @@ void CompanionNode::giveLoad(const LoadAt& load)
     return;
   }
   early_loads_.push_back(load);
-  if (early_loads_.size() > Companion::LOADS)
+  if (early_loads_.size() > Tracker::LOADS)
   {
     early_loads_.pop_front();
   }
 }
 
 /// Once there is a zero: a load by another clock than the rows is refused.
-void CompanionNode::passLoad(const LoadAt& load)
+void TrackerNode::passLoad(const LoadAt& load)
 {
   if (!agree(load.received - load.stamp, offset_))
   {
@@ -200,12 +200,12 @@ void CompanionNode::passLoad(const LoadAt& load)
     return;
   }
   last_load_ = load;
-  companion_.giveLoad(secondsFromStart(load.stamp), load.torque);
+  tracker_.pushLoad(secondsFromStart(load.stamp), load.torque);
 }
 
-void CompanionNode::publish()
+void TrackerNode::publish()
 {
-  while (const std::optional<Comparison> comparison = companion_.take())
+  while (const std::optional<Comparison> comparison = tracker_.pop())
   {
     const Stamp stamp = *start_ + std::llround(1e9 * comparison->time);
     fillComparison(stamp, *comparison, comparison_);
@@ -216,29 +216,29 @@ void CompanionNode::publish()
     if (due != indicators_due_)
     {
       indicators_due_ = due;
-      fillIndicators(stamp, companion_.signalIndicators(), indicators_);
-      fillAssessment(stamp, companion_.assessment(), assessment_);
+      fillIndicators(stamp, tracker_.signalIndicators(), indicators_);
+      fillAssessment(stamp, tracker_.assessment(), assessment_);
       indicators_publisher_.publish(indicators_);
       assessment_publisher_.publish(assessment_);
     }
   }
 }
 
-bool CompanionNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+bool TrackerNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
-  companion_.reset();
+  tracker_.reset();
   response.success = true;
-  response.message = "the twin starts anew with the next row";
+  response.message = "the twin restarts with the next row";
   return true;
 }
 
-void CompanionNode::look()
+void TrackerNode::look()
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
-  const StreamTimingReport timing = companion_.timing();
-  const CompanionCounters counters = companion_.counters();
+  const StreamTimingReport timing = tracker_.timing();
+  const TrackerCounters counters = tracker_.counters();
   recent_refusals_.update(refusals_.unknown_joint + refusals_.incomplete + refusals_.not_finite + refusals_.load +
                               refusals_.far_stamp + too_large_,
                           now);
@@ -249,14 +249,14 @@ void CompanionNode::look()
   tasks_.look();
 }
 
-bool CompanionNode::hasStopped() const
+bool TrackerNode::hasStopped() const
 {
   return toSeconds(fromRosTime(ros::Time::now()) - last_received_) > STOPPED_AFTER;
 }
 
-DiagnosticVerdict CompanionNode::judgeTelemetry() const
+DiagnosticVerdict TrackerNode::judgeTelemetry() const
 {
-  const StreamTimingReport timing = companion_.timing();
+  const StreamTimingReport timing = tracker_.timing();
   const bool refused = recent_refusals_.areRecent();
   if (timing.rows == 0)
   {
@@ -269,7 +269,7 @@ DiagnosticVerdict CompanionNode::judgeTelemetry() const
   }
   if (recent_restarts_.areRecent())
   {
-    return { DiagnosticStatus::WARN, "Stamps jumped back: started anew" };
+    return { DiagnosticStatus::WARN, "Stamps jumped back: restarted" };
   }
   if (refused)
   {
@@ -290,12 +290,12 @@ DiagnosticVerdict CompanionNode::judgeTelemetry() const
   }
   if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_)
   {
-    return { DiagnosticStatus::WARN, "No load has been told: weight and inertia as configured" };
+    return { DiagnosticStatus::WARN, "No load received: weight and inertia as configured" };
   }
   return { DiagnosticStatus::OK, "Telemetry arrives" };
 }
 
-DiagnosticVerdict CompanionNode::judgeComparison() const
+DiagnosticVerdict TrackerNode::judgeComparison() const
 {
   if (recent_failures_.areRecent())
   {
@@ -305,16 +305,16 @@ DiagnosticVerdict CompanionNode::judgeComparison() const
   {
     return { DiagnosticStatus::STALE, "Nothing to compare with" };
   }
-  if (companion_.outsideShare() > OUTSIDE_WARNING)
+  if (tracker_.outsideShare() > OUTSIDE_WARNING)
   {
     return { DiagnosticStatus::WARN, "The current departs from a healthy joint's" };
   }
   return { DiagnosticStatus::OK, "Within the band of a healthy joint" };
 }
 
-DiagnosticVerdict CompanionNode::judgeHealth() const
+DiagnosticVerdict TrackerNode::judgeHealth() const
 {
-  const Assessment& assessment = companion_.assessment();
+  const Assessment& assessment = tracker_.assessment();
   if (hasStopped())
   {
     return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
@@ -322,10 +322,10 @@ DiagnosticVerdict CompanionNode::judgeHealth() const
   return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
 }
 
-void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
+void TrackerNode::reportTelemetry(DiagnosticStatusWrapper& status) const
 {
-  const StreamTimingReport timing = companion_.timing();
-  const CompanionCounters counters = companion_.counters();
+  const StreamTimingReport timing = tracker_.timing();
+  const TrackerCounters counters = tracker_.counters();
   status.add("Topic", telemetry_subscriber_.getTopic());
   status.add("Joint", names_.joint);
   status.add("Rows", timing.rows);
@@ -335,7 +335,7 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Gaps that cut the stream", counters.gaps);
   status.add("Stamps repeated", timing.repeated);
   status.add("Stamps going back", timing.backward);
-  status.add("Starts anew", counters.restarts + clock_changes_);
+  status.add("Restarts", counters.restarts + clock_changes_);
   status.add("Reception less stamp [s]", timing.offset);
   status.add("Jitter of reception, 95 % [s]", timing.jitter);
   status.add("Unknown joint, refused", refusals_.unknown_joint);
@@ -345,17 +345,17 @@ void CompanionNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Too large, refused", too_large_.load());
   status.add("Stamp far from the clock, refused", refusals_.far_stamp);
   status.add("Loads refused", refusals_.load);
-  status.add("Rows without a told load", counters.without_load);
+  status.add("Rows without a received load", counters.without_load);
   if (last_load_)
   {
     status.add("Load's stamp before the newest row's reception [s]", toSeconds(last_received_ - last_load_->stamp));
   }
 }
 
-void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
+void TrackerNode::reportComparison(DiagnosticStatusWrapper& status) const
 {
-  const CompanionCounters counters = companion_.counters();
-  const std::optional<double> lag = companion_.lag();
+  const TrackerCounters counters = tracker_.counters();
+  const std::optional<double> lag = tracker_.lag();
   status.add("Residual of the current [A]", comparison_.current_residual);
   status.add("Its band [A]", comparison_.current_band);
   status.add("Residual of the position [rad]", comparison_.position_residual);
@@ -364,7 +364,7 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
-  status.add("Share of the last ones outside [-]", companion_.outsideShare());
+  status.add("Share of the last ones outside [-]", tracker_.outsideShare());
   status.add("Steps failed", counters.solver_failures);
   if (lag)
   {
@@ -372,12 +372,12 @@ void CompanionNode::reportComparison(DiagnosticStatusWrapper& status) const
   }
   else
   {
-    status.add("Measured after predicted [s]", "not told");
+    status.add("Measured after predicted [s]", "unknown");
   }
 }
 
-void CompanionNode::reportHealth(DiagnosticStatusWrapper& status) const
+void TrackerNode::reportHealth(DiagnosticStatusWrapper& status) const
 {
-  addAssessment(companion_.assessment(), status);
+  addAssessment(tracker_.assessment(), status);
 }
 }  // namespace hjt
