@@ -119,7 +119,8 @@ TEST_F(Ring, IsSolvedAgainOnceItsModelHasChanged)
   ASSERT_TRUE(fresh.insert({ 0.0, 0.0, parameters_.gear.wave_amplitude }).ok());
   ASSERT_TRUE(fresh.moveTo(ring_.position()).ok());
   EXPECT_NEAR(ring_.forces().energy, fresh.forces().energy, 1e-9 * energy);
-  EXPECT_NEAR(ring_.stiffness()(1, 1), fresh.stiffness()(1, 1), 1e-6 * fresh.stiffness()(1, 1));
+  // Of a tangent at most a Newton step away (see RingEquilibrium::byWaveGenerator); that of the old model is off by 2e-2.
+  EXPECT_NEAR(ring_.stiffness()(1, 1), fresh.stiffness()(1, 1), 1e-4 * fresh.stiffness()(1, 1));
 }
 
 TEST_F(Ring, IsTwoFoldSymmetric)
