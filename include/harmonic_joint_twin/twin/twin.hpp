@@ -40,7 +40,7 @@ struct JointOutputs
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
   double residual{};           ///< largest out-of-balance force [N]
-  double phase_advance{};      ///< of the joint's fastest swing, in one step [rad]
+  double phase_advance{};      ///< of the joint's fastest natural mode in one step [rad]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.

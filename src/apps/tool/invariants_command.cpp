@@ -9,6 +9,7 @@
 #include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "studies/energy_ledger.hpp"
 #include "studies/small_wave.hpp"

@@ -7,6 +7,7 @@
 #include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"

@@ -7,6 +7,7 @@
 #include "apps/common/not_converged.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
 
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 
