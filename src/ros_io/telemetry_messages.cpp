@@ -49,7 +49,7 @@ void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_tw
   message.joint_torque = comparison.joint_torque;
   message.friction_torque = comparison.friction_torque;
   message.load_torque = comparison.load_torque;
-  message.load_provided = comparison.load_provided;
+  message.load_told = comparison.load_provided;
   message.sticking = comparison.sticking;
   message.after_gap = comparison.after_gap;
   message.outside_band = comparison.isOutside();

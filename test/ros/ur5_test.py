@@ -158,7 +158,7 @@ class UR5(unittest.TestCase):
             with open(out) as file:
                 offline = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
             live = self.wait_for_rows(twin)
-            self.assertEqual(all(message.load_provided for message in live), name in LOADS)
+            self.assertEqual(all(message.load_told for message in live), name in LOADS)
             self.assertIn(len(offline) - len(live), range(9))
             for message, row in zip(live, offline):
                 for field in FIELDS:

@@ -48,7 +48,7 @@ class FullDisk(tool.ToolTest):
     def test_a_simulation_keeps_what_was_recorded(self):
         said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.bag")
         self.check_active("out.bag", said)
-        said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.csv")
+        said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 10, "--out", "out.csv")
         self.assertIn("out.csv cannot be written", said)
 
     def test_a_replay_keeps_what_was_recorded(self):

@@ -118,7 +118,7 @@ class Sweep(tool.ToolTest):
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, errors)
-        self.assertIn(b"interrupted; the same command goes on", errors)
+        self.assertIn(b"interrupted; the same command resumes", errors)
         rows = self.index("a")
         self.assertGreaterEqual(len(rows), 2)
         self.assertEqual(sorted(os.path.basename(row["file"]) for row in rows), sorted(os.listdir(self.path("a/runs"))))
@@ -288,7 +288,7 @@ record:
         rows = self.index("a")
         self.assertEqual([row["status"] for row in rows], ["ok", "failed", "ok", "failed"])
         self.assertIn("the solver found no equilibrium at 0.0", rows[1]["error"])
-        self.assertIn("the insertion of the wave generator failed", rows[3]["error"])
+        self.assertIn("the insertion of the wave generator did not converge", rows[3]["error"])
         with h5py.File(self.path("a/" + rows[1]["file"]), "r") as file:
             self.assertLess(len(file["signals/motor_torque_reading"]), 25)
             self.assertEqual(file.attrs["status"], b"failed")

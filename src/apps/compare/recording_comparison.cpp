@@ -47,6 +47,7 @@ void RecordingComparison::update(const MotionSample& sample)
   current_squares_ += sample.current * sample.current;
   predicted_squares_ += row.predicted.current * row.predicted.current;
   residual_squares_ += row.residual() * row.residual();
+  residual_sum_ += row.residual();
   ++loads_[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   if (reach_.rows++ == 0)
   {
@@ -128,6 +129,13 @@ double RecordingComparison::predictedRms() const
 double RecordingComparison::residualRms() const
 {
   return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
+}
+
+double RecordingComparison::residualSpread() const
+{
+  const double rows = std::max(static_cast<double>(reach_.rows), 1.0);
+  const double mean = residual_sum_ / rows;
+  return std::sqrt(std::max(residual_squares_ / rows - mean * mean, 0.0));
 }
 
 double RecordingComparison::loadQuantile(double share) const

@@ -71,6 +71,8 @@ public:
   double currentRms() const;    ///< of the measured current [A]
   double predictedRms() const;  ///< of the predicted current [A]
   double residualRms() const;   ///< [A]
+  /// Standard deviation of the residual about its mean: an unknown constant load does not count [A].
+  double residualSpread() const;
   double typicalLoad() const;   ///< median of its magnitude [N.m]
   double largestLoad() const;   ///< that all but one in a thousand rows stay below [N.m]
 
@@ -100,6 +102,7 @@ private:
   double current_squares_{};
   double predicted_squares_{};
   double residual_squares_{};
+  double residual_sum_{};
 
   SignalWatch health_;
   const bool baseline_given_;

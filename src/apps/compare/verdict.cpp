@@ -109,6 +109,7 @@ std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parame
 {
   constexpr double LEAST = 0.02;  // of the predicted current, rms
   constexpr double MOST = 4.0;
+  constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = comparison.currentRms();
   const double predicted = comparison.predictedRms();
@@ -117,7 +118,7 @@ std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parame
     return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
            rounded(predicted, 2) + " A: it is not the motor's current.";
   }
-  if (measured > noticeable && measured > MOST * predicted)
+  if (measured > noticeable && measured > MOST * predicted && comparison.residualSpread() > SPREAD * predicted)
   {
     return "The recorded effort is " + rounded(measured / predicted, 1) +
            " times the current that this motion takes: it is expected in A, not in N.m; or "
