@@ -74,7 +74,8 @@ def key(entry, common, root):
     compile."""
     arguments = [word for word in entry["arguments"] if word != "-c"]
     if "-o" in arguments:
-        del arguments[arguments.index("-o"):][:2]
+        place = arguments.index("-o")
+        del arguments[place:place + 2]
     options = [word.replace(root, "") for word in arguments]
     rule = output(arguments + ["-M"], entry["directory"]).decode()
     files = re.sub(r"\\\n", " ", rule).split()[1:]

@@ -283,7 +283,8 @@ class ClangTidy(Tree):
 
     def problems(self, content, options=()):
         path = self.write("src/one.cpp", content)
-        entry = {"directory": self.root, "file": path, "arguments": ["c++", "-std=c++17", *options, "-c", path]}
+        entry = {"directory": self.root, "file": path,
+                 "arguments": ["c++", "-std=c++17", *options, "-o", "one.o", "-c", path]}
         self.write("build/compile_commands.json", json.dumps([entry]))
         self.said = io.StringIO()
         with contextlib.redirect_stdout(self.said):
@@ -319,6 +320,7 @@ class ClangTidy(Tree):
                 self.assert_checked(True, content)
                 self.assert_checked(False, content)
         self.assert_checked(True, content + "// longer\n")
+        self.assertFalse(os.path.exists(os.path.join(self.root, "one.o")))  # the build's own files stay as they are
         self.assert_checked(True, content, ["-DANOTHER=1"])
 
     def test_finding_is_never_remembered(self):
