@@ -180,7 +180,7 @@ Twin runningTwin()
 
 void toothForces(benchmark::State& state)
 {
-  const Twin twin = runningTwin();
+  Twin twin = runningTwin();
   ToothForces forces = twin.makeToothForces();
   for (auto _ : state)
   {
@@ -192,7 +192,7 @@ BENCHMARK(toothForces);
 
 void encoders(benchmark::State& state)
 {
-  const Twin twin = runningTwin();
+  Twin twin = runningTwin();
   for (auto _ : state)
   {
     benchmark::DoNotOptimize(twin.encoders());

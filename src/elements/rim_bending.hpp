@@ -42,7 +42,7 @@ public:
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }          ///< N, editable per tooth [N.m/rad]
-  Eigen::VectorXd& natural_angle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
+  Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
 
 private:
   void addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept;

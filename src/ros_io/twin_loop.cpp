@@ -99,8 +99,9 @@ void TwinLoop::run()
     const auto end = steady_clock::now();
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
-    wake_up = std::max(wake_up + CYCLE_PERIOD, end);
-    if (wake_up > end && status_.lag < MAX_CATCH_UP)
+    // Without a sleep while it catches up, however short those cycles: they add nothing to the sleep after them.
+    wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + CYCLE_PERIOD, end) : end;
+    if (wake_up > end)
     {
       std::this_thread::sleep_until(wake_up);
       status_.timing.wake_up.add(nanoseconds(steady_clock::now() - wake_up));

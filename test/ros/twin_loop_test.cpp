@@ -184,6 +184,17 @@ TEST_F(LoopFixture, ResetStartsAnewAtTheCurrentInstantAndGivesUpALag)
   EXPECT_EQ(loop_->status().resets, 1U);
 }
 
+/// While it catches up it does not sleep, and it does not sleep longer afterwards either.
+TEST_F(LoopFixture, AnswersAtOnceAfterItHasCaughtUp)
+{
+  start(false);
+  setClock(100 * SECOND);
+  clock_ = 100000 * SECOND;
+  waitForCycles(5000);  // at rest each takes far less than 1 ms
+  ASSERT_TRUE(loop_->reset());
+  EXPECT_TRUE(loop_->reset());
+}
+
 TEST_F(LoopFixture, CountsNoMissedDeadlineHoweverFarASimulatedClockSteps)
 {
   start(false);

@@ -23,7 +23,7 @@ std::unique_lock<std::mutex> lockLibrary()
   static std::mutex mutex;
   std::unique_lock<std::mutex> lock(mutex);
   // The library's own end of the process closes what a full disk left open, and crashes there; we close what we opened.
-  [[maybe_unused]] static const herr_t ends_by_itself = H5dont_atexit();
+  [[maybe_unused]] static const herr_t ENDS_BY_ITSELF = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by exceptions
   return lock;
 }

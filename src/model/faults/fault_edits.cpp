@@ -67,7 +67,7 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   const int waves = scale.buckling_waves;
   const double radius = parameters.gear.flexspline_inner_radius;
   const double amplitude = fault.severity * scale.buckling_out_of_round * (waves * waves - 1.0) / radius;
-  Eigen::VectorXd& natural_angle = joint.ring.edit<RimBending>().natural_angle();
+  Eigen::VectorXd& natural_angle = joint.ring.edit<RimBending>().naturalAngle();
   for (int i = 0; i < teeth; ++i)
   {
     natural_angle[i] += amplitude * TWO_PI / teeth * std::cos(TWO_PI * waves * i / teeth);
