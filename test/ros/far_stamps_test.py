@@ -66,7 +66,7 @@ class FarStamps(unittest.TestCase):
                 self.clock.publish(far)
                 time.sleep(0.02)
             wait_until(lambda: self.check_alive(f"/clock at {far.secs} s") or has_seen(far.to_sec()),
-                       f"the clock at {far.to_sec()} s; it shows {self.diagnostics.number('Timing', 'Clock [s]')} s")
+                       f"the clock at {far.to_sec()} s")
             self.tick(START)
             wait_until(lambda: self.check_alive(f"/clock back from {far.secs} s") or has_seen(START), "the clock back")
 
