@@ -41,7 +41,7 @@ public:
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }          ///< N, editable per tooth [N.m/rad]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }         ///< N, editable per tooth [N.m/rad]
   Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
 
 private:

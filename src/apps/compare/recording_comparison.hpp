@@ -73,8 +73,8 @@ public:
   double residualRms() const;   ///< [A]
   /// Standard deviation of the residual about its mean: an unknown constant load does not count [A].
   double residualSpread() const;
-  double typicalLoad() const;   ///< median of its magnitude [N.m]
-  double largestLoad() const;   ///< that all but one in a thousand rows stay below [N.m]
+  double typicalLoad() const;  ///< median of its magnitude [N.m]
+  double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return assessed_; }
