@@ -25,9 +25,9 @@ using Value = decltype(ParameterValue::value);
 /// PyYAML reads these as numbers, though hardly the ones that were meant: octal, hexadecimal, binary, 1_000, 1:30.
 bool isTreacherous(const std::string& text)
 {
-  static const std::regex number(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
+  static const std::regex NUMBER(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
                                  R"(|[0-9]+_[0-9_]*(\.[0-9_]*([eE][-+][0-9]+)?)?))");
-  return std::regex_match(text, number);
+  return std::regex_match(text, NUMBER);
 }
 
 bool isOneOf(const std::string& text, std::initializer_list<const char*> spellings)

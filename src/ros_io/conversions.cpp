@@ -112,7 +112,7 @@ bool fillContactForces(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Contact
   message.output_angle = outputs.output_angle;
   // The twin writes into the message's own arrays.
   ToothForces forces;
-  const auto swapArrays = [&forces, &message]
+  const auto swap_arrays = [&forces, &message]
   {
     forces.wave_generator_force.swap(message.wave_generator_force);
     forces.rim_tension.swap(message.rim_tension);
@@ -121,9 +121,9 @@ bool fillContactForces(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Contact
     forces.tooth_x.swap(message.tooth_x);
     forces.tooth_y.swap(message.tooth_y);
   };
-  swapArrays();
+  swap_arrays();
   const bool found = twin.toothForces(forces);
-  swapArrays();
+  swap_arrays();
   return found;
 }
 

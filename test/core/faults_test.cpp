@@ -22,9 +22,6 @@ namespace hjt
 {
 namespace
 {
-using testing::AllOf;
-using testing::HasSubstr;
-
 const std::vector<std::string> RUN{ "input.command_timeout=10.0" };
 
 /// A place in the loaded lobe, where every kind shows.
@@ -446,7 +443,7 @@ TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
 {
   const Parameters parameters = shippedParameters();
   const int teeth = parameters.gear.teeth_flexspline;
-  const auto eventsPerTurn = [&](const std::function<void(RaceDeflection&)>& damage)
+  const auto events_per_turn = [&](const std::function<void(RaceDeflection&)>& damage)
   {
     RaceDeflection bearing(parameters.bearing);
     damage(bearing);
@@ -467,9 +464,9 @@ TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
     return static_cast<double>(events) / TURNS;
   };
   const double length = 1e-3;
-  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.6793, 0.006);
-  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
-  EXPECT_NEAR(eventsPerTurn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.6793, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
   EXPECT_NEAR(RaceDeflection(parameters.bearing).cageRate(), 0.4487, 5e-5);
 }
 

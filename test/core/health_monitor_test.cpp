@@ -199,7 +199,7 @@ TEST_F(KinematicError, ForgetsAfterExactlyOneTurnWhereverTheStoreBegins)
     monitor_.reset();
     sample_ = {};
     // Samples between the marks: a spike of one sample raises the marks before and behind it.
-    const auto stepTo = [&](int mark)
+    const auto step_to = [&](int mark)
     {
       sample_.motor_angle = (mark + 0.5) * MARK;
       sample_.output_angle = perfect(sample_.motor_angle) + (mark == spike ? 1e-5 : 0.0);
@@ -207,10 +207,10 @@ TEST_F(KinematicError, ForgetsAfterExactlyOneTurnWhereverTheStoreBegins)
     };
     for (int mark = 0; mark <= spike + 1 + TURN; ++mark)
     {
-      stepTo(mark);
+      step_to(mark);
     }
     EXPECT_GT(indicators().kinematic_error.value, 1e-6) << "spike at mark " << spike;
-    stepTo(spike + 2 + TURN);
+    step_to(spike + 2 + TURN);
     EXPECT_NEAR(indicators().kinematic_error.value, 0.0, 1e-12) << "spike at mark " << spike;
   }
 }

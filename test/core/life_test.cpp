@@ -56,8 +56,8 @@ struct RatedUse
 
 const RatedUse& ratedUse()
 {
-  static const RatedUse use;
-  return use;
+  static const RatedUse USE;
+  return USE;
 }
 
 TEST(AgeingLaws, BearingMeetsTheCatalogueAtBothLives)
@@ -289,12 +289,12 @@ TEST(UsageHistory, AgesTheDriveAsItsMotionDoes)
   const DriveAge age = ageing.live(nominalDrive(parameters.life), 10.0, 10.0, true, {}).age;
   const LifeEstimate estimate = LifeEstimator(parameters).estimate(record);
   EXPECT_NEAR(estimate.hours, 10.0, 1e-9);
-  const auto expectShare = [&](EndOfLife limit, double of)
+  const auto expect_share = [&](EndOfLife limit, double of)
   { EXPECT_NEAR(estimate.usedOf(limit) / of, 1.0, 0.01) << nameOf(limit); };
-  expectShare(EndOfLife::FLANK_WEAR, age.flank_wear / parameters.life.flank_wear_limit);
-  expectShare(EndOfLife::INTERFACE_WEAR, age.interface_wear / parameters.life.interface_wear_limit);
+  expect_share(EndOfLife::FLANK_WEAR, age.flank_wear / parameters.life.flank_wear_limit);
+  expect_share(EndOfLife::INTERFACE_WEAR, age.interface_wear / parameters.life.interface_wear_limit);
   const UnitVariation nominal = nominalDrive(parameters.life);
-  expectShare(EndOfLife::BEARING, age.bearing_turns / nominal.bearing_life / (1.0 + nominal.spall_growth));
+  expect_share(EndOfLife::BEARING, age.bearing_turns / nominal.bearing_life / (1.0 + nominal.spall_growth));
   EXPECT_NEAR(estimate.grease_used, age.grease, 1e-9);
 }
 

@@ -191,7 +191,7 @@ TEST_F(FaultyGear, EccentricMemberIsTheCentredOneMoved)
   const RingModel perfect(shippedParameters());
   const RingModel spline = with("manufacture.circular_spline_eccentricity=[10.0e-6, -6.0e-6]");
   const RingModel generator = with("manufacture.wave_generator_eccentricity=[10.0e-6, -6.0e-6]");
-  const auto movedBack = [&](double angle)
+  const auto moved_back = [&](double angle)
   {
     RingShape moved = shape_;
     for (int i = 0; i < shape_.teeth(); ++i)
@@ -212,7 +212,7 @@ TEST_F(FaultyGear, EccentricMemberIsTheCentredOneMoved)
                            position_.wave_generator_angle) })
     {
       const RingForces forces = faulty.forces(shape_, position_);
-      const RingForces expected = centred.forces(movedBack(angle), position_);
+      const RingForces expected = centred.forces(moved_back(angle), position_);
       // Rounding of the coordinates, 4e-18 m, against depths of 1e-6 ... 1e-4 m.
       EXPECT_NEAR(forces.energy, expected.energy, 1e-9 * expected.energy);
       EXPECT_LT(relativeError(forces.teeth, expected.teeth), 1e-9);

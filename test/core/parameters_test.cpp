@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 const fs::path CONFIG(HJT_TEST_CONFIG_DIR);
 const ParameterMap& defaultMap()
 {
-  static const ParameterMap map = []
+  static const ParameterMap MAP = []
   {
     ParameterMap read;
     readDefaultConfiguration(CONFIG, read);
     return read;
   }();
-  return map;
+  return MAP;
 }
 
 /// What is said about the defaults with these `section.key=value` over them; empty if they are accepted.
@@ -344,7 +344,7 @@ struct Contradiction
 
 const std::vector<Contradiction>& contradictionTable()
 {
-  static const std::vector<Contradiction> table{
+  static const std::vector<Contradiction> TABLE{
     { { "gear.teeth_flexspline=201", "gear.teeth_circular_spline=203" },
       "gear.teeth_flexspline = 201 [-] must be even",
       { "gear.teeth_flexspline=202", "gear.teeth_circular_spline=204" } },
@@ -401,7 +401,7 @@ const std::vector<Contradiction>& contradictionTable()
     { { "publish.health_rate=300" }, "publish.health_rate = 300.0 [Hz] must divide", { "publish.health_rate=0.1" } },
     { { "publish.indicators_rate=300" }, "publish.indicators_rate = 300.0 [Hz] must divide", {} },
   };
-  return table;
+  return TABLE;
 }
 
 TEST(Contradictions, EachCheckRefusesWhatBreaksItAndNothingElse)
@@ -418,7 +418,7 @@ TEST(Contradictions, EachCheckRefusesWhatBreaksItAndNothingElse)
 /// Faults are a list, which no assignment gives.
 TEST(Contradictions, FaultsMustBeValidAndNotTooMany)
 {
-  const auto listOf = [](std::size_t count, const std::string& fault)
+  const auto list_of = [](std::size_t count, const std::string& fault)
   {
     std::string text = "faults:\n";
     for (std::size_t i = 0; i < count; ++i)
@@ -428,12 +428,12 @@ TEST(Contradictions, FaultsMustBeValidAndNotTooMany)
     return YamlFile(text).complaint();
   };
   const std::string wear = "{kind: tooth_wear, severity: 0.1, place: -1, onset: 0.0}";
-  EXPECT_EQ(listOf(MAX_FAULTS, wear), "");
-  const std::string many = listOf(MAX_FAULTS + 1, wear);
+  EXPECT_EQ(list_of(MAX_FAULTS, wear), "");
+  const std::string many = list_of(MAX_FAULTS + 1, wear);
   EXPECT_THAT(many, HasSubstr("more than " + std::to_string(MAX_FAULTS) + " faults"));
   EXPECT_EQ(many.find('\n'), std::string::npos) << many;
-  EXPECT_EQ(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 199, onset: 0.0}"), "");
-  EXPECT_THAT(listOf(1, "{kind: tooth_wear, severity: 0.1, place: 200, onset: 0.0}"), HasSubstr("place = 200"));
+  EXPECT_EQ(list_of(1, "{kind: tooth_wear, severity: 0.1, place: 199, onset: 0.0}"), "");
+  EXPECT_THAT(list_of(1, "{kind: tooth_wear, severity: 0.1, place: 200, onset: 0.0}"), HasSubstr("place = 200"));
 }
 
 TEST(Parameters, AllThatIsWrongIsSaidAtOnce)

@@ -78,9 +78,9 @@ SurfaceSource cached()
 
 const ResponseSurface& surface()
 {
-  static const ResponseSurface shipped(
+  static const ResponseSurface SHIPPED(
       obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", cached())->table);
-  return shipped;
+  return SHIPPED;
 }
 
 RingResponse at(double motor_angle, double output_angle)
@@ -631,11 +631,11 @@ struct Building : std::exception
 };
 
 /// Whether the surface of the shipped gear is taken from this file in place of its own.
-bool isTaken(const std::function<void(const std::string&)>& makeFile)
+bool isTaken(const std::function<void(const std::string&)>& make_file)
 {
   const std::string folder = cacheDirectory() + "/other";
   fs::create_directories(folder);
-  makeFile(surfaceCacheFile(surfaceParameters(), folder));
+  make_file(surfaceCacheFile(surfaceParameters(), folder));
   const auto refuse = [](double) { throw Building(); };
   bool taken = true;
   try
@@ -680,14 +680,14 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
   surface();
   std::ifstream file(surfaceCacheFile(surfaceParameters(), cacheDirectory()), std::ios::binary);
   const std::string good((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const auto bytesOf = [](double number)
+  const auto bytes_of = [](double number)
   { return std::string(reinterpret_cast<const char*>(&number), sizeof(number)); };
-  const std::size_t body = good.find(bytesOf(TWO_PI / 200) + bytesOf(101.0));  // pitch, ratio, columns, lines, values
+  const std::size_t body = good.find(bytes_of(TWO_PI / 200) + bytes_of(101.0));  // pitch, ratio, columns, lines, values
   ASSERT_NE(body, std::string::npos);
-  const auto isTakenWith = [&](std::size_t place, double number)
+  const auto is_taken_with = [&](std::size_t place, double number)
   {
     std::string bytes = good.substr(0, good.size() - sizeof(std::uint64_t));
-    bytes.replace(body + place * sizeof(number), sizeof(number), bytesOf(number));
+    bytes.replace(body + place * sizeof(number), sizeof(number), bytes_of(number));
     const std::uint64_t sum = textHash(bytes);
     bytes.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
     return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << bytes; });
@@ -695,7 +695,7 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
   constexpr std::size_t FIRST_LINE = 4;
   double first_line = 0.0;
   std::memcpy(&first_line, good.data() + body + FIRST_LINE * sizeof(double), sizeof(double));
-  EXPECT_TRUE(isTakenWith(FIRST_LINE, first_line));
+  EXPECT_TRUE(is_taken_with(FIRST_LINE, first_line));
   for (const auto& [place, number] : std::vector<std::pair<std::size_t, double>>{ { 0, -TWO_PI / 200 },
                                                                                   { 1, 0.0 },
                                                                                   { 2, 1e18 },
@@ -705,7 +705,7 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
                                                                                   { FIRST_LINE + 1, std::nan("") },
                                                                                   { 20000, HUGE_VAL } })
   {
-    EXPECT_FALSE(isTakenWith(place, number)) << place << ": " << number;
+    EXPECT_FALSE(is_taken_with(place, number)) << place << ": " << number;
   }
 }
 

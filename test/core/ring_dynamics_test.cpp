@@ -438,16 +438,16 @@ TEST(RingStepper, EnergyBalancesButForWhatTheMethodDamps)
   bench.ring->evaluate(bench.start.q, bench.start.v, 0.0);
   const double stored = bench.ring->storedEnergy();
   const double kinetic = bench.ring->kineticEnergy(bench.start.v);
-  const auto lossOf = [&](RingMethod method, int steps)
+  const auto loss_of = [&](RingMethod method, int steps)
   {
     const RingMotion motion = bench.after(method, DURATION, steps);
     EXPECT_GT(motion.dissipated, 0.01 * kinetic);
     return lost(*bench.ring, motion, stored, kinetic) / kinetic;
   };
-  EXPECT_LT(std::abs(lossOf(RingMethod::RUNGE_KUTTA4, 4000)), 1e-7);
-  EXPECT_LT(std::abs(lossOf(RingMethod::DORMAND_PRINCE8, 200)), 1e-7);
-  EXPECT_LT(std::abs(lossOf(RingMethod::ESDIRK4, 1000)), 1e-5);
-  EXPECT_GT(lossOf(RingMethod::IMPLICIT_EULER, 1000), 0.05);  // its own damping
+  EXPECT_LT(std::abs(loss_of(RingMethod::RUNGE_KUTTA4, 4000)), 1e-7);
+  EXPECT_LT(std::abs(loss_of(RingMethod::DORMAND_PRINCE8, 200)), 1e-7);
+  EXPECT_LT(std::abs(loss_of(RingMethod::ESDIRK4, 1000)), 1e-5);
+  EXPECT_GT(loss_of(RingMethod::IMPLICIT_EULER, 1000), 0.05);  // its own damping
 }
 
 TEST(RingStepper, EnergyBalancesWhileTheWaveGrows)

@@ -241,7 +241,7 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
     speeds[k] = ring.uniform(-1.0, 1.0);
   }
   const double output_speed = 7.0;
-  const auto placeAfter = [&](double time, int i)
+  const auto place_after = [&](double time, int i)
   {
     RingShape moved = shape_;
     moved.points += time * speeds;
@@ -261,7 +261,7 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
     for (const FlankContact& contact : forces.of<ToothMesh>().flanks)
     {
       const int i = contact.tooth;
-      const Eigen::Vector2d speed = (placeAfter(TIME, i) - placeAfter(-TIME, i)) / (2.0 * TIME);
+      const Eigen::Vector2d speed = (place_after(TIME, i) - place_after(-TIME, i)) / (2.0 * TIME);
       const bool on_leading = forces.of<ToothMesh>().flank_force[i] > 0.0;
       (on_leading ? leading : trailing) += 1;
       // The leading flank's normal leans inwards: along it zeta grows as xi falls by tan(beta).

@@ -117,7 +117,7 @@ TEST(InvoluteProfile, TouchesAtTheTipOfTheCircularSpline)
   // The circular spline's tip scrapes along the involute of the tooth: its half thickness by the textbook, thickness
   // s = r (s0 / r0 + 2 (inv alpha0 - inv alpha)), a quarter of a pitch at the reference.
   const double reference = gear.flexspline_inner_radius + gear.toothMidHeight();
-  const auto halfThickness = [&](double radius)
+  const auto half_thickness = [&](double radius)
   {
     const double angle = std::acos(reference * std::cos(parameters.mesh.flank_angle) / radius);
     const auto inv = [](double a) { return std::tan(a) - a; };
@@ -130,7 +130,7 @@ TEST(InvoluteProfile, TouchesAtTheTipOfTheCircularSpline)
   const double there = profile.at(fullEngagement(gear) - first).value;
   for (double drop = first; drop < gear.wave_amplitude; drop += 10e-6)
   {
-    const double expected = halfThickness(full + first) - halfThickness(full + drop);
+    const double expected = half_thickness(full + first) - half_thickness(full + drop);
     EXPECT_NEAR(profile.at(fullEngagement(gear) - drop).value - there, expected, 0.02e-6) << drop;
   }
   EXPECT_GT(there, parameters.mesh.flank_clearance);

@@ -243,7 +243,7 @@ TEST(Tracker, RefusesAWeightThatTheLoadHoldsAlready)
 
 TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
 {
-  const auto shareWith = [](double offset, int rows)
+  const auto share_with = [](double offset, int rows)
   {
     Tracker tracker(parametersWith({ "output.load_inertia=0.02" }), InputMode::MOTION);
     for (int i = 0; i < rows; ++i)
@@ -256,9 +256,9 @@ TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
     }
     return tracker.outsideShare();
   };
-  EXPECT_LT(shareWith(0.8, 1000), 0.05);
-  EXPECT_GT(shareWith(5.0, 1000), 0.95);
-  EXPECT_LT(shareWith(5.0, 50), 0.3);
+  EXPECT_LT(share_with(0.8, 1000), 0.05);
+  EXPECT_GT(share_with(5.0, 1000), 0.95);
+  EXPECT_LT(share_with(5.0, 50), 0.3);
 }
 
 TEST(Tracker, SeesTheMeasuredJointWithTheHealthMonitor)

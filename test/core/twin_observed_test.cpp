@@ -25,8 +25,8 @@ constexpr Stamp LOOK_PERIOD = 10 * MILLISECOND;
 SurfaceSource surfaces()
 {
   SurfaceSource source;
-  static const auto pool = std::make_shared<SurfacePool>(1);
-  source.pool = pool;
+  static const auto POOL = std::make_shared<SurfacePool>(1);
+  source.pool = POOL;
   return source;
 }
 

@@ -52,8 +52,8 @@ private:
 
 const Parameters& parameters()
 {
-  static const Parameters shipped = shippedParameters();
-  return shipped;
+  static const Parameters SHIPPED = shippedParameters();
+  return SHIPPED;
 }
 
 /// Bytes of a small bag with several chunks: commands, telemetry and unstamped torques.
