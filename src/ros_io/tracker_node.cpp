@@ -8,6 +8,7 @@
 
 #include "gear/ratio.hpp"
 #include "ros_io/input_topics.hpp"
+#include "ros_io/node_surface_source.hpp"
 #include "ros_io/printable.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
@@ -35,22 +36,13 @@ bool agree(Stamp a, Stamp b)
 {
   return std::abs(a - b) <= FAR_STAMP;
 }
-
-/// Surfaces for torque mode: built before the first row is taken, so that the same rows give the same numbers.
-SurfaceSource surfaceSource()
-{
-  return { surfaceCacheDirectory(),
-           [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
-           [](const std::string& what) { ROS_WARN_STREAM(what); },
-           {},
-           false };
-}
 }  // namespace
 
 TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
   : names_(parameters.joint.name)
   , parameters_(parameters)
-  , tracker_(parameters, parameters.input.mode, surfaceSource())
+  // Built before the first row is read, so that the same rows give the same numbers.
+  , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
   , life_(node, parameters)
   , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
   , indicators_(makeIndicators(parameters))

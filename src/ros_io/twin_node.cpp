@@ -5,6 +5,7 @@
 
 #include <ros/console.h>
 
+#include "ros_io/node_surface_source.hpp"
 #include "ros_io/time.hpp"
 
 namespace hjt
@@ -32,21 +33,10 @@ RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& lo
   return state;
 }
 
-/// Response surfaces from the user's cache; building prints its progress. With the wall clock it runs in parallel to
-/// the loop; in
-/// simulated time the twin waits for it, so that a replay gives the same bits every time.
-SurfaceSource surfaceSource()
-{
-  return { surfaceCacheDirectory(),
-           [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
-           [](const std::string& what) { ROS_WARN_STREAM(what); },
-           {},
-           !ros::Time::isSimTime() };
-}
-
 Twin watchedTwin(const Parameters& parameters)
 {
-  Twin twin(parameters, surfaceSource());
+  // In simulated time the twin waits for its surface, so that a replay gives the same bits every time.
+  Twin twin(parameters, nodeSurfaceSource(!ros::Time::isSimTime()));
   twin.watchSignals(true);
   return twin;
 }
