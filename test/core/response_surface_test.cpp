@@ -37,6 +37,7 @@
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
 #include "params/field_table.hpp"
+#include "solver/arc_elimination.hpp"
 #include "solver/joint_dynamics.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
@@ -728,6 +729,28 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
   {
     EXPECT_FALSE(is_taken_with(place, number)) << place << ": " << number;
   }
+}
+
+/// The bits of a table are those of one kind of processor (see cyclic_solver_test): another one builds its own.
+TEST(SurfaceCache, IsOfOneKindOfProcessor)
+{
+  surface();
+  std::ifstream file(surfaceCacheFile(surfaceParameters(), cacheDirectory()), std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string kind = std::string(" ") + arcs::fastest().name + "\n";
+  const std::size_t place = bytes.find(kind);
+  ASSERT_LT(place, bytes.find('\n'));
+  bytes.resize(bytes.size() - sizeof(std::uint64_t));
+  const auto is_taken = [&](const std::string& other)
+  {
+    std::string changed = bytes;
+    changed.replace(place, kind.size(), other);
+    const std::uint64_t sum = textHash(changed);
+    changed.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
+    return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << changed; });
+  };
+  EXPECT_TRUE(is_taken(kind));
+  EXPECT_FALSE(is_taken(" another\n"));
 }
 
 /// A parameter is in the key unless the table of fields says that it shapes no surface.
