@@ -15,6 +15,7 @@
 #include <topic_tools/shape_shifter.h>
 #include <CLI/CLI.hpp>
 
+#include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
 #include "ros_io/bag_inputs.hpp"
@@ -78,13 +79,9 @@ public:
     writer_.close();
     if (!lost_.empty())
     {
-      std::string text;
-      for (const auto& [topic, count] : lost_)
-      {
-        text += (text.empty() ? "" : ", ") + std::to_string(count) + " of " + topic;
-      }
-      throw hjt::InputError("more came than could be written; lost messages: " + text + ". " + writer_.path() +
-                            " has all others");
+      const auto text = [](const auto& lost) { return std::to_string(lost.second) + " of " + lost.first; };
+      throw hjt::InputError("more came than could be written; lost messages: " + hjt::joined(lost_, ", ", text) + ". " +
+                            writer_.path() + " has all others");
     }
   }
 

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <string>
+
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
@@ -11,8 +19,23 @@ class FileLock
 {
 public:
   /// Makes the file if it is not there. @throws InputError if that fails, or another holds it.
-  explicit FileLock(const std::string& path);
-  ~FileLock();
+  explicit FileLock(const std::string& path) : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666))
+  {
+    if (descriptor_ < 0)
+    {
+      throw InputError(path + " cannot be written: " + std::strerror(errno));
+    }
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+    {
+      const int reason = errno;
+      close(descriptor_);
+      throw InputError(path + (reason == EWOULDBLOCK ? " is being written by another program" :
+                                                       std::string(" cannot be locked: ") + std::strerror(reason)));
+    }
+  }
+
+  ~FileLock() { close(descriptor_); }
+
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 

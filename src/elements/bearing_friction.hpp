@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -25,7 +29,10 @@ public:
   /// Grease of another viscosity, by this factor at any temperature [-].
   void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
   /// Reduces the preload of the race by `loss`, not below min(`least`, present preload) [N].
-  void reducePreload(double loss, double least) noexcept;
+  void reducePreload(double loss, double least) noexcept
+  {
+    preload_ = std::max(preload_ - loss, std::min(least, preload_));
+  }
 
   /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept
@@ -34,10 +41,27 @@ public:
   }
 
   /// The same where the viscosity [m^2/s] is known: it is the costly part, and the temperature hardly changes.
-  double torqueAtViscosity(double speed, double load, double viscosity) const noexcept;
+  double torqueAtViscosity(double speed, double load, double viscosity) const noexcept
+  {
+    constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
+    const double product = 1e6 * viscosity * std::abs(speed) * 60.0 / TWO_PI;
+    const double diameter = 1e3 * parameters_.pitch_diameter;
+    const double root = std::cbrt(std::max(product, LOW_SPEED));
+    const double rolling = product < LOW_SPEED ? 160.0 : root * root;
+    const double speed_part = parameters_.lubricant_factor * rolling * diameter * diameter * diameter * 1e-7;
+    const double load_part = parameters_.load_factor * (load + preload_) * diameter;
+    return 1e-3 * (speed_part + load_part);
+  }
 
   /// Kinematic viscosity of the base oil [m^2/s] at a temperature [degC].
-  double viscosity(double temperature) const noexcept;
+  double viscosity(double temperature) const noexcept
+  {
+    constexpr double ZERO_CELSIUS = 273.15;  // K
+    constexpr double OFFSET = 0.7;           // mm^2/s
+    const double known = std::log10(1e6 * parameters_.viscosity + OFFSET);
+    const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
+    return viscosity_factor_ * 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
+  }
 
 private:
   BearingParameters parameters_;

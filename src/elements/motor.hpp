@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -21,7 +24,23 @@ public:
     bool held;      ///< the speed limit held torque back
     double slope;   ///< how fast the torque falls with speed there, else 0 [N.m.s/rad]
   };
-  Drive drive(double command, double speed) const noexcept;
+
+  Drive drive(double command, double speed) const noexcept
+  {
+    constexpr double FADE = 0.02;  // share of the speed limit over which torque fades out
+    Drive drive;
+    drive.torque = std::clamp(command, -parameters_.torque_limit, parameters_.torque_limit);
+    drive.clamped = drive.torque != command;
+    const double room = (1.0 - std::abs(speed) / parameters_.speed_limit) / FADE;
+    drive.held = room < 1.0 && drive.torque * speed > 0.0;
+    drive.slope = 0.0;
+    if (drive.held)
+    {
+      drive.slope = std::abs(drive.torque) / (FADE * parameters_.speed_limit);
+      drive.torque *= std::max(room, 0.0);
+    }
+    return drive;
+  }
 
   double inertia() const noexcept { return parameters_.rotor_inertia + parameters_.wave_generator_inertia; }
   double coulombTorque() const noexcept { return parameters_.coulomb_torque; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "elements/wave_generator_contact.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "elements/contact_ramp.hpp"

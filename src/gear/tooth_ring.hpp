@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -12,7 +15,22 @@ namespace hjt
 class ToothRing
 {
 public:
-  explicit ToothRing(const GearParameters& gear);
+  explicit ToothRing(const GearParameters& gear)
+    : pitch_angle_(TWO_PI / gear.teeth_flexspline)
+    , segment_length_(2.0 * gear.flexspline_inner_radius * std::sin(0.5 * pitch_angle_))
+    , points_(2 * gear.teeth_flexspline)
+    , radial_(2 * gear.teeth_flexspline)
+    , segments_(2 * gear.teeth_flexspline)
+  {
+    for (int i = 0; i < gear.teeth_flexspline; ++i)
+    {
+      const double angle = i * pitch_angle_;
+      const double middle = angle + 0.5 * pitch_angle_;
+      radial_.segment<2>(2 * i) << std::cos(angle), std::sin(angle);
+      segments_.segment<2>(2 * i) << -std::sin(middle), std::cos(middle);
+    }
+    points_ = gear.flexspline_inner_radius * radial_;
+  }
 
   int teeth() const noexcept { return static_cast<int>(points_.size()) / 2; }
   double pitchAngle() const noexcept { return pitch_angle_; }             ///< [rad]

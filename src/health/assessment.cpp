@@ -2,22 +2,15 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hjt
 {
 const char* levelName(HealthLevel level) noexcept
 {
-  switch (level)
-  {
-    case HealthLevel::WARN:
-      return "WARN";
-    case HealthLevel::ERROR:
-      return "ERROR";
-    case HealthLevel::OK:
-      break;
-  }
-  return "OK";
+  constexpr std::array NAMES{ "OK", "WARN", "ERROR" };
+  return NAMES[static_cast<std::size_t>(level)];
 }
 
 Assessor::Assessor(const Parameters& parameters)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "harmonic_joint_twin/health/indicator.hpp"
@@ -25,19 +26,63 @@ namespace hjt
 class EfficiencyEstimate
 {
 public:
-  explicit EfficiencyEstimate(const HealthParameters& parameters);
+  explicit EfficiencyEstimate(const HealthParameters& parameters)
+    : window_(std::llround(1e9 * parameters.averaging_time)), forgetting_(parameters.averaging_time)
+  {
+  }
 
-  void reset() noexcept;
-  void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept;  ///< [ns], [W], [W]
-  Indicator efficiency() const noexcept;                                               ///< [-]
+  void reset() noexcept
+  {
+    age_ = 0;
+    motor_ = {};
+    joint_ = {};
+  }
+
+  /// [ns], [W], [W]
+  void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept
+  {
+    age_ += elapsed;
+    const double kept = forgetting_.kept(elapsed);
+    motor_.update(kept, motor_power);
+    joint_.update(kept, joint_power);
+  }
+
+  /// [-]
+  Indicator efficiency() const noexcept
+  {
+    const bool driving = motor_.mean() > 0.0;
+    if (age_ < window_ || !motor_.steady() || !joint_.steady() || driving != (joint_.mean() > 0.0))
+    {
+      return {};
+    }
+    const double efficiency = driving ? joint_.mean() / motor_.mean() : motor_.mean() / joint_.mean();
+    if (efficiency > MAX_EFFICIENCY)
+    {
+      return {};
+    }
+    return { true, efficiency };
+  }
 
 private:
+  static constexpr double MIN_POWER = 0.1;     // [W]
+  static constexpr double STEADY_SHARE = 0.9;  // of the mean magnitude [-]
+  static constexpr double MAX_EFFICIENCY = 1.01;
+
   /// Mean of a power and of its magnitude.
   class PowerMean
   {
   public:
-    void update(double kept, double power) noexcept;
-    bool steady() const noexcept;
+    void update(double kept, double power) noexcept
+    {
+      mean_ = kept * mean_ + (1.0 - kept) * power;
+      magnitude_ = kept * magnitude_ + (1.0 - kept) * std::abs(power);
+    }
+
+    bool steady() const noexcept
+    {
+      return std::abs(mean_) >= MIN_POWER && std::abs(mean_) >= STEADY_SHARE * magnitude_;
+    }
+
     double mean() const noexcept { return mean_; }  // [W]
 
   private:

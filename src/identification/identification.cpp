@@ -223,13 +223,9 @@ public:
                            "" };
     if (trial.half_width > WIDEST_SHARE || trial.share <= 0.0)
     {
-      share = { share.name,
-                share.key,
-                share.unit,
-                share.configured,
-                share.configured,
-                0.0,
-                trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it" };
+      share.value = share.configured;
+      share.half_width = 0.0;
+      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it";
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;

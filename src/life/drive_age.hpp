@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -44,7 +45,11 @@ enum class EndOfLife
 constexpr std::size_t ENDS_OF_LIFE = 4;
 
 /// In words: flank wear, interface wear, root crack, bearing; still in use.
-const char* nameOf(const std::optional<EndOfLife>& end) noexcept;
+inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
+{
+  constexpr std::array<const char*, ENDS_OF_LIFE> NAMES{ "flank wear", "interface wear", "root crack", "bearing" };
+  return end ? NAMES[static_cast<std::size_t>(*end)] : "still in use";
+}
 
 /// One drive out of many: factors of wear log-normal, the bearing's life after the catalogue's Weibull distribution.
 template <class Engine>

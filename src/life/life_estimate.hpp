@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
+#include "life/drive_ageing.hpp"
+#include "life/nominal_use.hpp"
 #include "life/remaining_life.hpp"
 #include "life/revolution_load_map.hpp"
 #include "life/usage_history.hpp"
@@ -20,20 +24,59 @@ struct LifeEstimate
   double grease_used{};                     ///< share of the grease's life since the change that was due last [-]
 
   double usedOf(EndOfLife limit) const { return used[static_cast<std::size_t>(limit)]; }
-  EndOfLife nearest() const;  ///< limit of which most is used
+
+  /// Limit of which most is used
+  EndOfLife nearest() const
+  {
+    return static_cast<EndOfLife>(std::max_element(used.begin(), used.end()) - used.begin());
+  }
 };
 
 /// Ages a drive by its record of use. Its grease is taken to be changed when it is due.
 class LifeEstimator
 {
 public:
-  explicit LifeEstimator(const Parameters& parameters);
+  explicit LifeEstimator(const Parameters& parameters) : parameters_(parameters), exposures_(parameters, POSITIONS) {}
 
   /// `record`: with turns in it. Takes seconds where it holds loads that were not met before.
   /// @throws ParameterError if the ring finds no equilibrium under one of its loads.
-  LifeEstimate estimate(const UsageHistory& record);
+  LifeEstimate estimate(const UsageHistory& record)
+  {
+    const LifeParameters& life = parameters_.life;
+    const DutyCycle duty = record.duty();
+    exposures_.cover(duty, {});
+    const DriveAgeing ageing(life, parameters_.gear, duty, exposures_);
+    const UnitVariation nominal = nominalDrive(life);
+    LifeEstimate estimate;
+    estimate.hours = record.hours();
+    estimate.turns = record.turns();
+
+    const DriveAge age = ageing.live(nominal, estimate.hours, estimate.hours, GREASE_IS_CHANGED, {}).age;
+    const auto used = [&](EndOfLife limit) -> double& { return estimate.used[static_cast<std::size_t>(limit)]; };
+    used(EndOfLife::FLANK_WEAR) = age.flank_wear / life.flank_wear_limit;
+    used(EndOfLife::INTERFACE_WEAR) = age.interface_wear / life.interface_wear_limit;
+    used(EndOfLife::ROOT_CRACK) =
+        (age.flaw_depth - life.flaw_depth) / (parameters_.gear.rim_thickness - life.flaw_depth);
+    used(EndOfLife::BEARING) = age.bearing_turns / (nominal.bearing_life * (1.0 + nominal.spall_growth));
+    estimate.grease_used = age.grease;
+
+    const NominalUse use(ageing, life, GREASE_IS_CHANGED);
+    RemainingLife drives(life, PARTICLES, SEED);
+    drives.use(use.until(estimate.hours));
+    drives.survive();
+    estimate.remaining =
+        drives.remaining(use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES));
+    return estimate;
+  }
 
 private:
+  static constexpr int POSITIONS = 8;  // of the wave generator in a tooth pitch
+  static constexpr int PARTICLES = 4000;
+  static constexpr std::uint32_t SEED = 1;
+  static constexpr int STRETCHES = 400;
+  static constexpr double GREASE_CHANGES_AHEAD = 20.0;
+  static constexpr bool GREASE_IS_CHANGED = true;
+
   Parameters parameters_;
   RevolutionLoadMap exposures_;
 };

@@ -8,89 +8,70 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/variants.hpp"
-#include "statics/pitch_walk.hpp"
 
 namespace hjt
 {
-struct RevolutionLoadAnalysis::Impl
-{
-  Impl(const Parameters& p, int positions)
-    : parameters(p)
-    , positions(positions)
-    , walk(p, positions)
-    , interface(withUnitFriction(p).contact)
-    , running(2 * p.gear.teeth_flexspline)
-  {
-  }
-
-  /// Stress of the rim's outer fibre, where the teeth stand, at tooth i: bending by the change of its curvature, and the
-  /// tension of the segment behind it [Pa].
-  double rimStress(int i) const
-  {
-    const RingShape& shape = walk.ring().shape();
-    const RingModel& ring = walk.model().ring;
-    const int h = shape.previous(i);
-    const double turn = std::atan2(
-        shape.directions[2 * h] * shape.directions[2 * i + 1] - shape.directions[2 * h + 1] * shape.directions[2 * i],
-        shape.directions[2 * h] * shape.directions[2 * i] + shape.directions[2 * h + 1] * shape.directions[2 * i + 1]);
-    const double curvature = (turn - ring.rest.pitchAngle()) / ring.rest.segmentLength();
-    const double section = parameters.life.face_width * parameters.gear.rim_thickness;
-    return 0.5 * parameters.gear.rim_thickness * parameters.life.elastic_modulus * curvature +
-           ring.of<RimTension>().tension(shape, i) / section;
-  }
-
-  Parameters parameters;
-  int positions;
-  PitchWalk walk;
-  InterfaceFriction interface;
-  Eigen::VectorXd running;
-};
-
 RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int positions)
-  : impl_(std::make_unique<Impl>(parameters, positions))
+  : parameters_(parameters)
+  , positions_(positions)
+  , walk_(parameters, positions)
+  , interface_(withUnitFriction(parameters).contact)
+  , running_(2 * parameters.gear.teeth_flexspline)
 {
-  if (!impl_->walk.status().ok())
+  if (!walk_.status().ok())
   {
-    throw ParameterError(explanationOf(impl_->walk.status()));
+    throw ParameterError(explanationOf(walk_.status()));
   }
 }
 
-RevolutionLoadAnalysis::~RevolutionLoadAnalysis() = default;
+/// Stress of the rim's outer fibre, where the teeth stand, at tooth i: bending by the change of its curvature, and the
+/// tension of the segment behind it [Pa].
+double RevolutionLoadAnalysis::rimStress(int i) const
+{
+  const RingShape& shape = walk_.ring().shape();
+  const RingModel& ring = walk_.model().ring;
+  const int h = shape.previous(i);
+  const double turn = std::atan2(
+      shape.directions[2 * h] * shape.directions[2 * i + 1] - shape.directions[2 * h + 1] * shape.directions[2 * i],
+      shape.directions[2 * h] * shape.directions[2 * i] + shape.directions[2 * h + 1] * shape.directions[2 * i + 1]);
+  const double curvature = (turn - ring.rest.pitchAngle()) / ring.rest.segmentLength();
+  const double section = parameters_.life.face_width * parameters_.gear.rim_thickness;
+  return 0.5 * parameters_.gear.rim_thickness * parameters_.life.elastic_modulus * curvature +
+         ring.of<RimTension>().tension(shape, i) / section;
+}
 
 RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
-  Impl& impl = *impl_;
-  const int teeth = impl.parameters.gear.teeth_flexspline;
-  const double step = TWO_PI / teeth / impl.positions;  // of the wave generator [rad]
+  const int teeth = parameters_.gear.teeth_flexspline;
+  const double step = TWO_PI / teeth / positions_;  // of the wave generator [rad]
   RevolutionLoad exposure;
   double highest = std::numeric_limits<double>::lowest();
   double lowest = std::numeric_limits<double>::max();
-  impl.walk.under(
-      load_torque,
-      [&](double follow)
-      {
-        const JointModel& model = impl.walk.model();
-        const RingEquilibrium& ring = impl.walk.ring();
-        impl.running = ring.byWaveGenerator() + follow * ring.byOutput();
-        for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
-        {
-          exposure.flank_sliding +=
-              step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
-                              model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, impl.running, follow));
-        }
-        for (int i = 0; i < teeth; ++i)
-        {
-          const double stress = impl.rimStress(i);
-          highest = std::max(highest, stress);
-          lowest = std::min(lowest, stress);
-        }
-        exposure.interface_sliding +=
-            step * teeth * impl.interface.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), impl.running);
-      });
-  if (!impl.walk.status().ok())
+  walk_.under(load_torque,
+              [&](double follow)
+              {
+                const JointModel& model = walk_.model();
+                const RingEquilibrium& ring = walk_.ring();
+                running_ = ring.byWaveGenerator() + follow * ring.byOutput();
+                for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
+                {
+                  exposure.flank_sliding +=
+                      step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
+                                      model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, running_, follow));
+                }
+                for (int i = 0; i < teeth; ++i)
+                {
+                  const double stress = rimStress(i);
+                  highest = std::max(highest, stress);
+                  lowest = std::min(lowest, stress);
+                }
+                exposure.interface_sliding +=
+                    step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
+              });
+  if (!walk_.status().ok())
   {
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
-                         " N.m: " + explanationOf(impl.walk.status()));
+                         " N.m: " + explanationOf(walk_.status()));
   }
   exposure.rim_stress_range = highest - lowest;
   return exposure;

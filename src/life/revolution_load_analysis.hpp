@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <Eigen/Core>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "life/ageing_laws.hpp"
+#include "statics/pitch_walk.hpp"
 
 namespace hjt
 {
@@ -14,14 +15,18 @@ class RevolutionLoadAnalysis
 public:
   /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no equilibrium.
   RevolutionLoadAnalysis(const Parameters& parameters, int positions);
-  ~RevolutionLoadAnalysis();
 
   /// One turn of the wave generator under `load_torque` [N.m].
   /// @throws ParameterError if the ring finds no equilibrium under it.
   RevolutionLoad under(double load_torque);
 
 private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  double rimStress(int i) const;
+
+  Parameters parameters_;
+  int positions_;
+  PitchWalk walk_;
+  InterfaceFriction interface_;
+  Eigen::VectorXd running_;  // of the teeth, by the wave generator's angle
 };
 }  // namespace hjt

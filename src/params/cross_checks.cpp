@@ -6,6 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "params/field_table.hpp"
 
@@ -30,17 +31,15 @@ public:
 
   void require(bool holds, const std::vector<std::string>& keys, const std::string& what)
   {
-    if (holds)
-    {
-      return;
-    }
-    std::string places;
-    for (const std::string& key : keys)
+    const auto place = [this](const std::string& key)
     {
       const auto found = map_.find(key);
-      places += (places.empty() ? "" : ", ") + (found == map_.end() ? key : found->second.origin);
+      return found == map_.end() ? key : found->second.origin;
+    };
+    if (!holds)
+    {
+      texts_.push_back(joined(keys, ", ", place) + ": " + what);
     }
-    texts_.push_back(places + ": " + what);
   }
 
   std::vector<std::string> take() { return std::move(texts_); }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/params/faults.hpp"
+#include "base/joined.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -45,7 +47,6 @@ std::vector<std::string> split(const std::string& text)
   parts.push_back(text.substr(begin));
   return parts;
 }
-
 }  // namespace
 
 std::optional<FaultKind> faultNamed(const std::string& name)
@@ -57,34 +58,15 @@ std::optional<FaultKind> faultNamed(const std::string& name)
 
 std::string faultNames()
 {
-  std::string names;
-  for (const FaultDescription& description : FAULT_DESCRIPTIONS)
-  {
-    names += (names.empty() ? "" : ", ") + std::string(description.name);
-  }
-  return names;
+  return joined(FAULT_DESCRIPTIONS, ", ", [](const FaultDescription& description) { return description.name; });
 }
 
 const char* placeName(FaultPlace place) noexcept
 {
-  switch (place)
-  {
-    case FaultPlace::MEMBER:
-      return "-";
-    case FaultPlace::TOOTH:
-      return "tooth";
-    case FaultPlace::SEGMENT:
-      return "segment of the rim";
-    case FaultPlace::LOBE:
-      return "lobe";
-    case FaultPlace::INNER_RACE:
-      return "tooth pitch from lobe 0";
-    case FaultPlace::OUTER_RACE:
-      return "tooth pitch from tooth 0";
-    case FaultPlace::BALL:
-      return "ball";
-  }
-  return "-";
+  constexpr std::array NAMES{
+    "-", "tooth", "segment of the rim", "lobe", "tooth pitch from lobe 0", "tooth pitch from tooth 0", "ball"
+  };
+  return NAMES[static_cast<std::size_t>(place)];
 }
 
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept

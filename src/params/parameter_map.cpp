@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "base/joined.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 
@@ -121,11 +121,7 @@ public:
   std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice& field,
                                                            const Meaning& meaning)
   {
-    std::string names;
-    for (const auto& [name, choice] : choiceNames(Choice{}))
-    {
-      names += (names.empty() ? "" : " or ") + std::string(name);
-    }
+    const std::string names = joined(choiceNames(Choice{}), " or ", [](const auto& choice) { return choice.first; });
     std::string chosen;
     if (!readAs<std::string>(key, chosen, names, meaning))
     {
@@ -264,16 +260,10 @@ private:
 
 void throwIfAny(const std::vector<std::string>& errors)
 {
-  if (errors.empty())
+  if (!errors.empty())
   {
-    return;
+    throw ParameterError(joined(errors, "\n"));
   }
-  std::string text;
-  for (const std::string& error : errors)
-  {
-    text += (text.empty() ? "" : "\n") + error;
-  }
-  throw ParameterError(text);
 }
 }  // namespace
 
@@ -300,12 +290,7 @@ std::string valueText(const ParameterValue& configured)
     std::string operator()(const std::string& value) const { return "'" + value + "'"; }
     std::string operator()(const std::vector<double>& value) const
     {
-      std::string text;
-      for (const double number : value)
-      {
-        text += (text.empty() ? "" : ", ") + numberText(number);
-      }
-      return "[" + text + "]";
+      return "[" + joined(value, ", ", numberText) + "]";
     }
   } write;
   return std::visit(write, configured.value);

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/choices.hpp"
@@ -34,12 +35,7 @@ public:
   void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range&,
                   const Meaning& meaning)
   {
-    std::string list;
-    for (const double value : values)
-    {
-      list += (list.empty() ? "" : ", ") + numberText(value);
-    }
-    write(key, "[" + list + "]", unit, meaning);
+    write(key, "[" + joined(values, ", ", numberText) + "]", unit, meaning);
   }
 
   void operator()(const std::string& key, bool value, const Meaning& meaning)
@@ -115,12 +111,8 @@ public:
   template <class Choice>
   std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
   {
-    std::string names;
-    for (const auto& [name, choice] : choiceNames(Choice{}))
-    {
-      names += (names.empty() ? "" : ", ") + std::string(name);
-    }
-    row(key, "text", "-", names, meaning);
+    const auto name = [](const auto& choice) { return choice.first; };
+    row(key, "text", "-", joined(choiceNames(Choice{}), ", ", name), meaning);
   }
 
   std::string text() const { return table_.str(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "ros_io/bag_writer.hpp"
@@ -13,10 +14,25 @@ class BagRecorder
 {
 public:
   /// `joint_namespace`: of the node, e.g. "/joint_twin".
-  BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag);
+  BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag)
+    : context_{ bag, joint_namespace + "/" }
+    , names_(twin.parameters().joint.name)
+    , recorded_faults_(twin.activeFaults().empty() ? twin.activeFaults().version() :
+                                                     std::numeric_limits<std::uint64_t>::max())
+    , outputs_(context_, twin.parameters())
+  {
+  }
 
   /// To be called after every step of the twin.
-  void record(Twin& twin);
+  void record(Twin& twin)
+  {
+    if (const FaultList& faults = twin.activeFaults(); faults.version() != recorded_faults_)
+    {
+      recorded_faults_ = faults.version();
+      context_.bag.write(context_.prefix + topics::FAULTS, twin.stamp(), makeFaults(names_, twin.stamp(), faults));
+    }
+    outputs_.offer(twin);
+  }
 
 private:
   struct Context

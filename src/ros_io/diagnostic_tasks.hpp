@@ -4,11 +4,17 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/this_node.h>
 #include <ros/time.h>
+
+#include "ros_io/time.hpp"
 
 namespace hjt
 {
@@ -19,6 +25,20 @@ struct DiagnosticVerdict
   std::string text;
 };
 
+/// The verdict of the first condition that holds, else `otherwise`.
+inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVerdict>>& conditions,
+                                 DiagnosticVerdict otherwise)
+{
+  for (const auto& [holds, verdict] : conditions)
+  {
+    if (holds)
+    {
+      return verdict;
+    }
+  }
+  return otherwise;
+}
+
 /// Tasks of /diagnostics, each with a verdict and values: reported every `~diagnostic_period`, 1 s if that is not set, by the wall
 /// clock, since a simulated one may stand, and at once when a level changes. diagnostic_updater::Updater cannot serve: it adds
 /// to the time of the clock, and throws where that is near the last one.
@@ -27,13 +47,41 @@ class DiagnosticTasks
 public:
   static constexpr double LOOK_PERIOD = 0.05;  ///< between two calls of `look` [s]
 
-  explicit DiagnosticTasks(const std::string& hardware_id);
+  explicit DiagnosticTasks(const std::string& hardware_id)
+    : hardware_id_(hardware_id)
+    , period_(ros::NodeHandle("~").param("diagnostic_period", 1.0))
+    , publisher_(ros::NodeHandle().advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1))
+  {
+  }
 
-  void add(const std::string& name, std::function<DiagnosticVerdict()> judge,
-           std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)> report);
+  /// A task judged and reported by two members of its owner, which lives as long as this.
+  template <class Owner>
+  void add(const std::string& name, const Owner* owner, DiagnosticVerdict (Owner::*judge)() const,
+           void (Owner::*report)(diagnostic_updater::DiagnosticStatusWrapper&) const)
+  {
+    tasks_.push_back({ ros::this_node::getName().substr(1) + ": " + name,
+                       [=] { return (owner->*judge)(); },
+                       [=](auto& status) { (owner->*report)(status); },
+                       {} });
+  }
 
   /// Judges every task, and reports if it is time.
-  void look();
+  void look()
+  {
+    bool changed = false;
+    for (Task& task : tasks_)
+    {
+      DiagnosticVerdict verdict = task.judge();
+      changed = changed || verdict.level != task.verdict.level;
+      task.verdict = std::move(verdict);
+    }
+    const ros::WallTime now = ros::WallTime::now();
+    if (changed || (now - last_report_).toSec() >= period_)
+    {
+      last_report_ = now;
+      report();
+    }
+  }
 
 private:
   struct Task
@@ -43,7 +91,22 @@ private:
     std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)> report;
     DiagnosticVerdict verdict;
   };
-  void report() const;
+
+  void report() const
+  {
+    diagnostic_msgs::DiagnosticArray message;
+    message.header.stamp = toRosTime(fromRosTime(ros::Time::now()));
+    for (const Task& task : tasks_)
+    {
+      diagnostic_updater::DiagnosticStatusWrapper status;
+      status.name = task.name;
+      status.hardware_id = hardware_id_;
+      status.summary(task.verdict.level, task.verdict.text);
+      task.report(status);
+      message.status.push_back(status);
+    }
+    publisher_.publish(message);
+  }
 
   const std::string hardware_id_;
   double period_;  // [s]

@@ -24,16 +24,8 @@ constexpr double AHEAD_WARNING = 1.0;
 
 const char* stateText(LoopState state)
 {
-  switch (state)
-  {
-    case LoopState::WAITING_FOR_CLOCK:
-      return "at rest, waiting for the clock";
-    case LoopState::WAITING_FOR_INPUT:
-      return "at rest, waiting for the first input";
-    case LoopState::RUNNING:
-      return "running";
-  }
-  return "";
+  constexpr std::array TEXTS{ "at rest, waiting for the clock", "at rest, waiting for the first input", "running" };
+  return TEXTS[static_cast<std::size_t>(state)];
 }
 }  // namespace
 
@@ -46,18 +38,9 @@ std::string verdictText(const Assessment& assessment)
          << " %)";
     return text.str();
   }
-  switch (assessment.state)
-  {
-    case AssessmentState::WAITING:
-      return "No window of the indicators is complete yet";
-    case AssessmentState::LEARNING:
-      return "The healthy reference is being learned";
-    case AssessmentState::NO_REFERENCE:
-      return "No healthy reference for this operating point";
-    case AssessmentState::ASSESSED:
-      break;
-  }
-  return "Nothing out of the ordinary";
+  constexpr std::array TEXTS{ "No window of the indicators is complete yet", "The healthy reference is being learned",
+                              "Nothing out of the ordinary", "No healthy reference for this operating point" };
+  return TEXTS[static_cast<std::size_t>(assessment.state)];
 }
 
 void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status)
@@ -85,14 +68,10 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
   , clock_moved_(ros::WallTime::now())
   , tasks_(parameters.joint.hardware_id)
 {
-  tasks_.add(
-      "Drive", [this] { return judgeDrive(); }, [this](auto& status) { reportDrive(status); });
-  tasks_.add(
-      "Input", [this] { return judgeInput(); }, [this](auto& status) { reportInput(status); });
-  tasks_.add(
-      "Timing", [this] { return judgeTiming(); }, [this](auto& status) { reportTiming(status); });
-  tasks_.add(
-      "Health", [this] { return judgeHealth(); }, [this](auto& status) { reportHealth(status); });
+  tasks_.add("Drive", this, &Diagnostics::judgeDrive, &Diagnostics::reportDrive);
+  tasks_.add("Input", this, &Diagnostics::judgeInput, &Diagnostics::reportInput);
+  tasks_.add("Timing", this, &Diagnostics::judgeTiming, &Diagnostics::reportTiming);
+  tasks_.add("Health", this, &Diagnostics::judgeHealth, &Diagnostics::reportHealth);
   timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
                                 [this](const ros::WallTimerEvent&)
                                 {
@@ -147,98 +126,50 @@ void Diagnostics::logClockJumps()
 
 DiagnosticVerdict Diagnostics::judgeDrive() const
 {
-  if (!snapshot_.loop.outputs.converged || solver_failures_.areRecent())
-  {
-    return { DiagnosticStatus::ERROR, "The solver did not converge: the last good state is held" };
-  }
-  if (step_cuts_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Steps had to be cut to converge" };
-  }
-  if (jumps_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Teeth jumped to another space" };
-  }
-  if (coarse_steps_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Steps too long for how fast the joint swings: raise solver.rate" };
-  }
-  if (speed_limits_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Motor at its speed limit" };
-  }
-  return { DiagnosticStatus::OK, stateText(snapshot_.loop.state) };
+  using D = DiagnosticStatus;
+  return firstOf(
+      { { !snapshot_.loop.outputs.converged || solver_failures_.areRecent(),
+          { D::ERROR, "The solver did not converge: the last good state is held" } },
+        { step_cuts_.areRecent(), { D::WARN, "Steps had to be cut to converge" } },
+        { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
+        { coarse_steps_.areRecent(), { D::WARN, "Steps too long for how fast the joint swings: raise solver.rate" } },
+        { speed_limits_.areRecent(), { D::WARN, "Motor at its speed limit" } } },
+      { D::OK, stateText(snapshot_.loop.state) });
 }
 
 DiagnosticVerdict Diagnostics::judgeInput() const
 {
-  if (refusals_.areRecent())
-  {
-    return {
-      DiagnosticStatus::WARN,
-      "Inputs refused: not finite, not for this joint, no such fault, too large, or stamped far from the clock"
-    };
-  }
-  if (lost_inputs_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Inputs lost: more came than can be kept" };
-  }
-  if (clamps_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Torque beyond its limit, clamped" };
-  }
-  if (late_inputs_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Inputs came too late for their stamp: raise input.delay" };
-  }
-  if (!snapshot_.loop.command_seen)
-  {
-    return { DiagnosticStatus::WARN, "No motor torque command yet" };
-  }
+  using D = DiagnosticStatus;
   const double age = toSeconds(snapshot_.loop.clock - snapshot_.loop.last_command);
-  if (age > command_timeout_ || timeouts_.areRecent())
-  {
-    return { DiagnosticStatus::WARN,
-             "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" };
-  }
-  if (age < -AHEAD_WARNING)
-  {
-    return { DiagnosticStatus::WARN, "Command stamps are ahead of the clock" };
-  }
-  return { DiagnosticStatus::OK, "Commands arrive" };
+  return firstOf(
+      { { refusals_.areRecent(),
+          { D::WARN,
+            "Inputs refused: not finite, not for this joint, no such fault, too large, or stamped far from the "
+            "clock" } },
+        { lost_inputs_.areRecent(), { D::WARN, "Inputs lost: more came than can be kept" } },
+        { clamps_.areRecent(), { D::WARN, "Torque beyond its limit, clamped" } },
+        { late_inputs_.areRecent(), { D::WARN, "Inputs came too late for their stamp: raise input.delay" } },
+        { !snapshot_.loop.command_seen, { D::WARN, "No motor torque command yet" } },
+        { age > command_timeout_ || timeouts_.areRecent(),
+          { D::WARN, "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" } },
+        { age < -AHEAD_WARNING, { D::WARN, "Command stamps are ahead of the clock" } } },
+      { D::OK, "Commands arrive" });
 }
 
 DiagnosticVerdict Diagnostics::judgeTiming() const
 {
-  if (snapshot_.loop.clock == 0)
-  {
-    return { DiagnosticStatus::WARN, "No time on /clock yet" };
-  }
-  if (clock_jumps_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "The clock jumped back: restarted" };
-  }
-  if (drops_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Messages dropped: publishing cannot keep up" };
-  }
-  if (toSeconds(snapshot_.loop.lag) > LAG_WARNING)
-  {
-    return { DiagnosticStatus::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" };
-  }
-  if (missed_deadlines_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" };
-  }
-  if ((ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER)
-  {
-    return { DiagnosticStatus::WARN, "The clock stands" };
-  }
-  if (!realtime_.refusals.empty())
-  {
-    return { DiagnosticStatus::WARN, "In time, but a request of realtime was refused: see the log" };
-  }
-  return { DiagnosticStatus::OK, "In time" };
+  using D = DiagnosticStatus;
+  return firstOf(
+      { { snapshot_.loop.clock == 0, { D::WARN, "No time on /clock yet" } },
+        { clock_jumps_.areRecent(), { D::WARN, "The clock jumped back: restarted" } },
+        { drops_.areRecent(), { D::WARN, "Messages dropped: publishing cannot keep up" } },
+        { toSeconds(snapshot_.loop.lag) > LAG_WARNING,
+          { D::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" } },
+        { missed_deadlines_.areRecent(),
+          { D::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" } },
+        { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock stands" } },
+        { !realtime_.refusals.empty(), { D::WARN, "In time, but a request of realtime was refused: see the log" } } },
+      { D::OK, "In time" });
 }
 
 DiagnosticVerdict Diagnostics::judgeHealth() const

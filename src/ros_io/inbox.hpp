@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -17,17 +19,47 @@ class Inbox
 public:
   static constexpr std::size_t CAPACITY = InputQueue::CAPACITY;
 
-  Inbox();
+  Inbox() : inputs_(makeBuffer()) {}
 
   /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
-  void push(const Input& input);
+  void push(const Input& input)
+  {
+    if (!std::isfinite(input.value))
+    {
+      ++not_finite_;
+      return;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (inputs_.size() == CAPACITY)
+    {
+      ++overflow_;
+      return;
+    }
+    inputs_.push_back(input);
+  }
 
   /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`. What
   /// has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates nothing.
-  void take(std::vector<Input>& inputs) noexcept;
+  void take(std::vector<Input>& inputs) noexcept
+  {
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (!lock.owns_lock() || inputs_.empty())
+    {
+      return;
+    }
+    const auto taken =
+        inputs_.begin() + static_cast<std::ptrdiff_t>(std::min(inputs_.size(), CAPACITY - inputs.size()));
+    inputs.insert(inputs.end(), inputs_.begin(), taken);
+    inputs_.erase(inputs_.begin(), taken);
+  }
 
   /// An empty vector with room for a whole inbox.
-  static std::vector<Input> makeBuffer();
+  static std::vector<Input> makeBuffer()
+  {
+    std::vector<Input> buffer;
+    buffer.reserve(CAPACITY);
+    return buffer;
+  }
 
   std::uint64_t notFinite() const noexcept { return not_finite_; }
   std::uint64_t overflow() const noexcept { return overflow_; }

@@ -9,6 +9,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include "base/joined.hpp"
 #include "base/number_table.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
@@ -226,11 +227,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   rows.flush();
   if (rows.count().rows == 0)
   {
-    std::string found;
-    for (const std::string& name : rows.others())
-    {
-      found += (found.empty() ? "" : ", ") + name;
-    }
+    const std::string found = joined(rows.others());
     throw InputError(source.topic + " never contains angle and effort of joint '" + source.joint +
                      "'; joints found: " + (found.empty() ? "none" : found));
   }

@@ -6,6 +6,7 @@
 
 #include <ros/console.h>
 
+#include "base/joined.hpp"
 #include "gear/ratio.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/node_surface_source.hpp"
@@ -54,12 +55,9 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
   , tasks_(parameters.joint.hardware_id)
   , reset_service_(node.advertiseService("reset", &TrackerNode::reset, this))
 {
-  tasks_.add(
-      "Input", [this] { return judgeTelemetry(); }, [this](auto& status) { reportTelemetry(status); });
-  tasks_.add(
-      "Drive", [this] { return judgeComparison(); }, [this](auto& status) { reportComparison(status); });
-  tasks_.add(
-      "Health", [this] { return judgeHealth(); }, [this](auto& status) { reportHealth(status); });
+  tasks_.add("Input", this, &TrackerNode::judgeTelemetry, &TrackerNode::reportTelemetry);
+  tasks_.add("Drive", this, &TrackerNode::judgeComparison, &TrackerNode::reportComparison);
+  tasks_.add("Health", this, &TrackerNode::judgeHealth, &TrackerNode::reportHealth);
   timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
                                 [this](const ros::WallTimerEvent&) { look(); });
   const InputTopics inputs{ node, too_large_ };
@@ -82,12 +80,7 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
       break;
     case TelemetryStatus::UNKNOWN_JOINT:
       ++refusals_.unknown_joint;
-      found_names_.clear();
-      for (const std::string& name : message.name)
-      {
-        found_names_ += (found_names_.empty() ? "" : ", ") + name;
-      }
-      found_names_ = printable(found_names_, MAX_NAMES);
+      found_names_ = printable(joined(message.name), MAX_NAMES);
       ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "No " << names_.joint << " on " << telemetry_subscriber_.getTopic()
                                                      << ", which names " << found_names_);
       return;
@@ -252,60 +245,33 @@ bool TrackerNode::hasStopped() const
 
 DiagnosticVerdict TrackerNode::judgeTelemetry() const
 {
+  using D = DiagnosticStatus;
   const StreamTimingReport timing = tracker_.timing();
   const bool refused = recent_refusals_.areRecent();
-  if (timing.rows == 0)
-  {
-    return { DiagnosticStatus::WARN, refused ? "No usable row of " + names_.joint + " yet" :
-                                               "No telemetry yet on " + telemetry_subscriber_.getTopic() };
-  }
-  if (hasStopped())
-  {
-    return { DiagnosticStatus::WARN, "The telemetry has stopped" };
-  }
-  if (recent_restarts_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Stamps jumped back: restarted" };
-  }
-  if (refused)
-  {
-    return { DiagnosticStatus::WARN,
-             "Messages refused: not for this joint, incomplete, not finite, too large, or stamped far off" };
-  }
-  if (recent_disorder_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Stamps repeat or go back: those rows are left out" };
-  }
-  if (recent_missing_.areRecent())
-  {
-    return { DiagnosticStatus::WARN, "Rows are missing" };
-  }
-  if (std::abs(timing.offset) > OFFSET_WARNING)
-  {
-    return { DiagnosticStatus::WARN, "Stamps are off this machine's clock" };
-  }
-  if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_stamp_)
-  {
-    return { DiagnosticStatus::WARN, "No load received: weight and inertia as configured" };
-  }
-  return { DiagnosticStatus::OK, "Telemetry arrives" };
+  return firstOf(
+      { { timing.rows == 0,
+          { D::WARN, refused ? "No usable row of " + names_.joint + " yet" :
+                               "No telemetry yet on " + telemetry_subscriber_.getTopic() } },
+        { hasStopped(), { D::WARN, "The telemetry has stopped" } },
+        { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
+        { refused,
+          { D::WARN, "Messages refused: not for this joint, incomplete, not finite, too large, or stamped far off" } },
+        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
+        { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
+        { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
+        { parameters_.telemetry.load != LoadSource::MODEL && !last_load_stamp_,
+          { D::WARN, "No load received: weight and inertia as configured" } } },
+      { D::OK, "Telemetry arrives" });
 }
 
 DiagnosticVerdict TrackerNode::judgeComparison() const
 {
-  if (recent_failures_.areRecent())
-  {
-    return { DiagnosticStatus::ERROR, "The solver did not converge: the last good state is held" };
-  }
-  if (hasStopped())
-  {
-    return { DiagnosticStatus::STALE, "Nothing to compare with" };
-  }
-  if (tracker_.outsideShare() > OUTSIDE_WARNING)
-  {
-    return { DiagnosticStatus::WARN, "The current departs from a healthy joint's" };
-  }
-  return { DiagnosticStatus::OK, "Within the band of a healthy joint" };
+  using D = DiagnosticStatus;
+  return firstOf(
+      { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
+        { hasStopped(), { D::STALE, "Nothing to compare with" } },
+        { tracker_.outsideShare() > OUTSIDE_WARNING, { D::WARN, "The current departs from a healthy joint's" } } },
+      { D::OK, "Within the band of a healthy joint" });
 }
 
 DiagnosticVerdict TrackerNode::judgeHealth() const

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -16,12 +18,18 @@ namespace hjt
 class IncrementalEncoder
 {
 public:
-  explicit IncrementalEncoder(const SensorParameters& parameters);
+  explicit IncrementalEncoder(const SensorParameters& parameters)
+    : counts_per_radian_(parameters.motor_counts_per_turn / TWO_PI), quantum_(TWO_PI / parameters.motor_counts_per_turn)
+  {
+  }
 
-  std::int64_t count(double motor_angle) const noexcept;
+  std::int64_t count(double motor_angle) const noexcept
+  {
+    return static_cast<std::int64_t>(std::floor(motor_angle * counts_per_radian_));
+  }
 
   /// Angle at which the encoder changed to this count from below [rad].
-  double angle(std::int64_t count) const noexcept;
+  double angle(std::int64_t count) const noexcept { return static_cast<double>(count) * quantum_; }
 
 private:
   double counts_per_radian_;

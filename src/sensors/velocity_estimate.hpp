@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -16,11 +18,32 @@ class VelocityEstimate
 {
 public:
   /// `window`, `period`: over which the difference is taken, between two samples [s].
-  VelocityEstimate(double window, double period);
+  VelocityEstimate(double window, double period)
+    : period_(period), angles_(1 + std::max<std::size_t>(1, std::lround(window / period)))
+  {
+  }
 
-  void reset() noexcept;
-  void update(double angle) noexcept;  ///< once every period [rad]
-  double velocity() const noexcept;    ///< [rad/s]
+  void reset() noexcept { count_ = 0; }
+
+  /// Once every period [rad]
+  void update(double angle) noexcept
+  {
+    newest_ = newest_ + 1 == angles_.size() ? 0 : newest_ + 1;
+    angles_[newest_] = angle;
+    count_ = std::min(count_ + 1, angles_.size());
+  }
+
+  /// [rad/s]
+  double velocity() const noexcept
+  {
+    if (count_ < 2)
+    {
+      return 0.0;
+    }
+    const std::size_t intervals = count_ - 1;
+    const std::size_t oldest = newest_ >= intervals ? newest_ - intervals : newest_ + angles_.size() - intervals;
+    return (angles_[newest_] - angles_[oldest]) / (static_cast<double>(intervals) * period_);
+  }
 
 private:
   double period_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 
+#include <array>
+#include <cstddef>
 #include <sstream>
 
 namespace hjt
@@ -9,16 +11,9 @@ namespace
 {
 const char* failureOf(SolveStage stage) noexcept
 {
-  switch (stage)
-  {
-    case SolveStage::INSERTION:
-      return "the insertion of the wave generator failed";
-    case SolveStage::BALANCE:
-      return "no output angle balances the load";
-    case SolveStage::MOTION:
-      break;
-  }
-  return "the ring cannot be moved to the requested angles";
+  constexpr std::array TEXTS{ "the insertion of the wave generator failed",
+                              "the ring cannot be moved to the requested angles", "no output angle balances the load" };
+  return TEXTS[static_cast<std::size_t>(stage)];
 }
 
 /// solver.max_iterations of config/solver.yaml: all shipped gears are solved with it.
@@ -53,24 +48,9 @@ std::string adviceOf(const SolveStatus& status)
 
 const char* nameOf(SolveCode code) noexcept
 {
-  switch (code)
-  {
-    case SolveCode::CONVERGED:
-      return "CONVERGED";
-    case SolveCode::ITERATION_LIMIT:
-      return "ITERATION_LIMIT";
-    case SolveCode::NO_DESCENT:
-      return "NO_DESCENT";
-    case SolveCode::SINGULAR:
-      return "SINGULAR";
-    case SolveCode::NOT_FINITE:
-      return "NOT_FINITE";
-    case SolveCode::UNBALANCED:
-      return "UNBALANCED";
-    case SolveCode::DISENGAGED:
-      return "DISENGAGED";
-  }
-  return "unknown";
+  constexpr std::array NAMES{ "CONVERGED",  "ITERATION_LIMIT", "NO_DESCENT", "SINGULAR",
+                              "NOT_FINITE", "UNBALANCED",      "DISENGAGED" };
+  return NAMES[static_cast<std::size_t>(code)];
 }
 
 std::string explanationOf(const SolveStatus& status)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
@@ -45,16 +46,6 @@ double housingTorque(const RingEquilibrium& ring)
 {
   return -ring.model().of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);
 }
-
-double sum(const std::vector<double>& values)
-{
-  double total = 0.0;
-  for (const double value : values)
-  {
-    total += value;
-  }
-  return total;
-}
 }  // namespace
 
 InsertionResult analyseInsertion(const Parameters& parameters)
@@ -72,7 +63,8 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   const auto tension = std::minmax_element(teeth.rim_tension.begin(), teeth.rim_tension.end());
   result.wave_generator_force_min = *force.first;
   result.wave_generator_force_max = *force.second;
-  result.wave_generator_force_sum = sum(teeth.wave_generator_force);
+  result.wave_generator_force_sum =
+      std::accumulate(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end(), 0.0);
   result.teeth_in_contact = static_cast<int>(std::count_if(
       teeth.wave_generator_force.begin(), teeth.wave_generator_force.end(), [](double f) { return f > 0.0; }));
   result.tension_min = *tension.first;

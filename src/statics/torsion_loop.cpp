@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 
-#include <cmath>
-
 #include "model/joint_model.hpp"
 #include "solver/output_balance.hpp"
 #include "solver/ring_equilibrium.hpp"

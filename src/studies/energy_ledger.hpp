@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <random>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "model/joint_model.hpp"
+#include "solver/joint_stepper.hpp"
 
 namespace hjt
 {
@@ -22,10 +25,33 @@ struct RandomDriveSettings
 class RandomDrive
 {
 public:
-  RandomDrive(const RandomDriveSettings& settings, const Parameters& parameters);
+  RandomDrive(const RandomDriveSettings& settings, const Parameters& parameters)
+    : random_(settings.seed)
+    , load_(settings.load)
+    , brake_(settings.brake)
+    , rate_(parameters.solver.rate)
+    , torque_limit_(parameters.motor.torque_limit)
+  {
+    inputs_.temperature = parameters.input.temperature;
+  }
 
   /// For the next step, with the drive's limits at the present speed [rad/s].
-  JointInputs next(const Motor& motor, double motor_speed);
+  JointInputs next(const Motor& motor, double motor_speed)
+  {
+    constexpr double MILLISECOND = 1e-3;  // all changes fall on whole ones, so that every step meets them
+    constexpr double BRAKE_CHANCE = 0.2;
+    if (left_-- == 0)
+    {
+      std::uniform_real_distribution<double> chance(0.0, 1.0);
+      std::uniform_int_distribution<int> hold(10, 50);
+      left_ = std::max(1, static_cast<int>(std::lround(rate_ * MILLISECOND * hold(random_)))) - 1;
+      command_ = torque_limit_ * (2.0 * chance(random_) - 1.0);
+      inputs_.load_torque = chance(random_) < 0.5 ? load_ * (2.0 * chance(random_) - 1.0) : inputs_.load_torque;
+      inputs_.brake_engaged = brake_ && chance(random_) < BRAKE_CHANCE;
+    }
+    inputs_.motor_torque = motor.drive(command_, motor_speed).torque;
+    return inputs_;
+  }
 
 private:
   std::mt19937 random_;
@@ -50,6 +76,31 @@ struct LedgerResult
 };
 
 /// `duration` [s] from rest. `progress` gets the part done.
-LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& settings, double duration,
-                       const std::function<void(double)>& progress = {});
+inline LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& settings, double duration,
+                              const std::function<void(double)>& progress = {})
+{
+  const JointModel model(parameters);
+  JointStepper stepper(parameters, model);
+  RandomDrive drive(settings, parameters);
+  LedgerResult result;
+  const auto steps = static_cast<long>(std::lround(duration * parameters.solver.rate));
+  bool converged = true;
+  for (long i = 0; i < steps && converged; ++i)
+  {
+    const double angle = stepper.motorAngle();
+    const double speed = stepper.speeds()[0];
+    converged = stepper.step(drive.next(model.motor, speed));
+    result.residual = std::max(result.residual, std::abs(stepper.energyResidual()));
+    result.travel += std::abs(stepper.motorAngle() - angle);
+    result.top_speed = std::max(result.top_speed, std::abs(stepper.speeds()[0]));
+    result.reversals += speed * stepper.speeds()[0] < 0.0 ? 1 : 0;
+    if (progress)
+    {
+      progress(static_cast<double>(i + 1) / static_cast<double>(steps));
+    }
+  }
+  result.status = stepper.status();
+  result.throughput = stepper.energyThroughput();
+  return result;
+}
 }  // namespace hjt

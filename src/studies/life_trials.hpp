@@ -13,12 +13,12 @@ namespace hjt
 {
 struct LifeTrialOptions
 {
-  int lives{};
-  std::uint32_t seed{};
-  double every{};             ///< hours of use between two readings
-  int particles{};            ///< of the filter
-  double flank_wear_error{};  ///< of one reading, standard deviation [m]
-  double spall_error{};       ///< of one reading, standard deviation [-]
+  int lives{ 100 };
+  std::uint32_t seed{ 1 };
+  double every{ 250.0 };            ///< hours of use between two readings
+  int particles{ 2000 };            ///< of the filter
+  double flank_wear_error{ 1e-6 };  ///< of one reading, standard deviation [m]
+  double spall_error{ 0.05 };       ///< of one reading, standard deviation [-]
   bool grease_changes{};
 };
 

@@ -18,12 +18,12 @@ namespace hjt
 struct QuasiStaticSetup
 {
   RingMethod method{ RingMethod::TR_BDF2 };
-  double speed{};           ///< of the wave generator [rad/s]
-  double load{};            ///< on the circular spline [N.m]
-  double step{};            ///< [s]
-  double settle_time{};     ///< not compared [s]
-  double duration{};        ///< compared [s]
-  double compare_period{};  ///< between two comparisons [s]
+  double speed{ 317.0 };           ///< of the wave generator [rad/s]
+  double load{ 20.0 };             ///< on the circular spline [N.m]
+  double step{ 2e-6 };             ///< [s]
+  double settle_time{ 5e-3 };      ///< not compared [s]
+  double duration{ 5e-3 };         ///< compared [s]
+  double compare_period{ 37e-6 };  ///< between two comparisons [s]
   double tolerance{};  ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
 };
 

@@ -14,12 +14,12 @@ namespace hjt
 struct TransientSetup
 {
   RingMethod method{ RingMethod::ESDIRK4 };
-  double step{};           ///< [s]
-  double duration{};       ///< [s]
-  double growth_time{};    ///< in which the amplitude grows [s]
-  double window_start{};   ///< from here to the end the largest force is summed up [s]
-  double sample_period{};  ///< of the rows [s]
-  double tolerance{};      ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
+  double step{ 5e-6 };           ///< [s]
+  double duration{ 0.05 };       ///< [s]
+  double growth_time{ 5e-3 };    ///< in which the amplitude grows [s]
+  double window_start{ 0.03 };   ///< from here to the end the largest force is summed up [s]
+  double sample_period{ 5e-5 };  ///< of the rows [s]
+  double tolerance{};  ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
 };
 
 /// Largest force of the wave generator on a tooth, and where the energy is.

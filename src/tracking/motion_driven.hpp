@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
+#include "gear/ratio.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/presliding.hpp"
@@ -38,9 +41,40 @@ class MotionDriven
 {
 public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
-  explicit MotionDriven(const Parameters& parameters);
+  explicit MotionDriven(const Parameters& parameters)
+    : friction_(parameters)
+    , presliding_(parameters.telemetry)
+    , ripple_(parameters.telemetry, nominalRatio(parameters.gear))
+    , load_(parameters.output)
+    , telemetry_(parameters.telemetry)
+    , inertia_(Motor(parameters.motor).inertia() - parameters.telemetry.inertia_in_load)
+    , ratio_(nominalRatio(parameters.gear))
+    , temperature_(parameters.input.temperature)
+  {
+  }
 
-  MotionPrediction step(const MotionSample& sample) noexcept;
+  MotionPrediction step(const MotionSample& sample) noexcept
+  {
+    if (!started_ || sample.after_gap)
+    {
+      presliding_.reset();
+      last_ = sample;
+      started_ = true;
+    }
+    presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
+    const double share = presliding_.share();
+    last_ = sample;
+
+    const double friction = friction_.at(ratio_ * sample.velocity, sample.load, temperature_).sum();
+    MotionPrediction prediction;
+    prediction.friction_limit = ratio_ * friction;
+    prediction.friction_torque = share * prediction.friction_limit;
+    prediction.motor_torque = sample.load / ratio_ + inertia_ * ratio_ * sample.acceleration + share * friction +
+                              ripple_.at(sample.position, sample.velocity) / ratio_;
+    prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
+    prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
+    return prediction;
+  }
 
   /// Torque of the configured weight and inertia, for recordings without a load [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }

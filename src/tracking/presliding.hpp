@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -18,9 +20,18 @@ public:
   static constexpr double RELAXATION = 5.0;     ///< [s]
   static constexpr double LASTING_ANGLE = 0.4;  ///< of the motor [rad]
 
-  explicit Presliding(const TelemetryParameters& parameters);
+  explicit Presliding(const TelemetryParameters& parameters)
+    : angle_(parameters.presliding_angle), lasting_share_(parameters.lasting_share)
+  {
+  }
 
-  void move(double motor_step, double duration) noexcept;  ///< the motor turned by this much [rad] within [s]
+  /// The motor turned by this much [rad] within [s]
+  void move(double motor_step, double duration) noexcept
+  {
+    contacts_ = dahl(contacts_ * std::exp(-duration / RELAXATION), motor_step, angle_);
+    lasting_ = dahl(lasting_, motor_step, LASTING_ANGLE);
+  }
+
   void reset() noexcept { contacts_ = lasting_ = 0.0; }
 
   double share() const noexcept { return (1.0 - lasting_share_) * contacts_ + lasting_share_ * lasting_; }
@@ -28,6 +39,12 @@ public:
   double lasting() const noexcept { return lasting_; }    ///< of the lasting part alone
 
 private:
+  static double dahl(double share, double step, double angle) noexcept
+  {
+    const double end = std::copysign(1.0, step);
+    return end + (share - end) * std::exp(-std::abs(step) / angle);
+  }
+
   double angle_;
   double lasting_share_;
   double contacts_{};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -26,13 +28,56 @@ class StreamTiming
 public:
   void reset() noexcept { *this = StreamTiming(); }
 
-  void add(double time, double received) noexcept;
+  void add(double time, double received) noexcept
+  {
+    if (report_.rows > 0 && time <= last_)
+    {
+      ++(time == last_ ? report_.repeated : report_.backward);
+      return;
+    }
+    const double interval = report_.rows > 0 ? time - last_ : 0.0;
+    const std::size_t slot = report_.rows % KEPT;
+    // The first row has none: the second one's stands for it.
+    intervals_[slot] = interval;
+    intervals_[0] = report_.rows == 1 ? interval : intervals_[0];
+    delays_[slot] = received - time;
+    last_ = time;
+    ++report_.rows;
+    if (report_.rows % RENEW == 0)
+    {
+      report_.period = quantile(intervals_, kept(), 0.5);
+    }
+    report_.longest_gap = std::max(report_.longest_gap, interval);
+    if (report_.period > 0.0 && interval > 1.5 * report_.period)
+    {
+      report_.missing += static_cast<std::uint64_t>(std::lround(interval / report_.period)) - 1;
+    }
+  }
 
-  StreamTimingReport report() const noexcept;
+  StreamTimingReport report() const noexcept
+  {
+    StreamTimingReport report = report_;
+    report.period = quantile(intervals_, kept(), 0.5);
+    report.offset = quantile(delays_, kept(), 0.0);
+    report.jitter = quantile(delays_, kept(), 0.95) - report.offset;
+    return report;
+  }
 
 private:
   static constexpr std::size_t KEPT = 256;  // rows that medians are made of
   static constexpr std::size_t RENEW = 32;  // rows between two looks at the period
+
+  template <std::size_t N>
+  static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept
+  {
+    if (count == 0)
+    {
+      return 0.0;
+    }
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(count - 1));
+    std::nth_element(values.begin(), place, values.begin() + static_cast<std::ptrdiff_t>(count));
+    return *place;
+  }
 
   std::size_t kept() const noexcept { return report_.rows < KEPT ? static_cast<std::size_t>(report_.rows) : KEPT; }
 

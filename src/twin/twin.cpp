@@ -34,26 +34,6 @@ void Twin::reset(Stamp stamp) noexcept
   impl_->reset(stamp);
 }
 
-void Twin::commandMotorTorque(Stamp stamp, double torque) noexcept
-{
-  impl_->queue.push({ stamp, InputKind::MOTOR_TORQUE, torque }, impl_->simulated_until);
-}
-
-void Twin::commandLoadTorque(Stamp stamp, double torque) noexcept
-{
-  impl_->queue.push({ stamp, InputKind::LOAD_TORQUE, torque }, impl_->simulated_until);
-}
-
-void Twin::commandBrake(Stamp stamp, bool engaged) noexcept
-{
-  impl_->queue.push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }, impl_->simulated_until);
-}
-
-void Twin::setTemperature(Stamp stamp, double temperature) noexcept
-{
-  impl_->queue.push({ stamp, InputKind::TEMPERATURE, temperature }, impl_->simulated_until);
-}
-
 void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
 {
   FaultCounters& counted = impl_->counters.faults;

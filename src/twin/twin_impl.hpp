@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 
 #include "harmonic_joint_twin/twin/twin.hpp"

@@ -110,10 +110,11 @@ public:
 
   /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
   /// its stamp; one that comes too late is counted and acts at once, unless a newer one of its kind is in force.
-  void commandMotorTorque(Stamp stamp, double torque) noexcept;  ///< [N.m] motor shaft
-  void commandLoadTorque(Stamp stamp, double torque) noexcept;   ///< [N.m] output, > 0 resists positive motion
-  void commandBrake(Stamp stamp, bool engaged) noexcept;
-  void setTemperature(Stamp stamp, double temperature) noexcept;  ///< of the drive, kept within its range [degC]
+  /// Torques [N.m], of the load > 0 resists positive motion; the drive's temperature is kept within its range [degC].
+  void commandMotorTorque(Stamp stamp, double torque) noexcept { push({ stamp, InputKind::MOTOR_TORQUE, torque }); }
+  void commandLoadTorque(Stamp stamp, double torque) noexcept { push({ stamp, InputKind::LOAD_TORQUE, torque }); }
+  void commandBrake(Stamp stamp, bool engaged) noexcept { push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }); }
+  void setTemperature(Stamp stamp, double degrees) noexcept { push({ stamp, InputKind::TEMPERATURE, degrees }); }
 
   /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one that
   /// is not valid is refused and counted. While any is active all teeth are solved at every step.

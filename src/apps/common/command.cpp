@@ -14,6 +14,7 @@
 #include "apps/common/text_table.hpp"
 
 #include "base/edit_distance.hpp"
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 
 namespace hjt
@@ -47,16 +48,8 @@ const Check FINITE = bound([](double number) { return std::isfinite(number); }, 
 std::string wrongEnding(const std::string& path, const std::vector<std::string>& endings)
 {
   const std::string ending = std::filesystem::path(path).extension().string();
-  std::string allowed;
-  for (const std::string& name : endings)
-  {
-    if (name == ending)
-    {
-      return {};
-    }
-    allowed += (allowed.empty() ? "" : " or ") + name;
-  }
-  return "'" + path + "' must end in " + allowed;
+  const bool good = std::find(endings.begin(), endings.end(), ending) != endings.end();
+  return good ? "" : "'" + path + "' must end in " + joined(endings, " or ");
 }
 
 template <class Field>

@@ -13,6 +13,10 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
 {
   namespace fs = std::filesystem;
   std::error_code error;
+  if (path.empty())
+  {
+    return;
+  }
   if (!input.empty() && fs::equivalent(path, input, error))
   {
     throw InputError(path + " is the input itself; give another name to --out");

@@ -11,8 +11,6 @@
 
 namespace hjt
 {
-namespace
-{
 void warn(std::uint64_t count, const std::string& what)
 {
   if (count > 0)
@@ -21,6 +19,8 @@ void warn(std::uint64_t count, const std::string& what)
   }
 }
 
+namespace
+{
 void warnOf(const TwinCounters& counters)
 {
   warn(counters.input.not_finite, "inputs were not finite and refused");
@@ -62,15 +62,21 @@ int RunSummary::report(const Twin& twin, bool json) const
                       { "jumps", "", counters.jumps },
                       { "coarse_steps", "", counters.coarse_steps },
                       { "solver_failures", "", counters.solver_failures } });
+  const int code = reportWritten(output, json);
+  return code == EXIT_DONE && counters.solver_failures > 0 ? EXIT_FAILED : code;
+}
+
+int reportWritten(const std::string& output, bool json)
+{
   if (!json)
   {
     std::cout << "written: " << output << '\n';
   }
-  if (interruptSignal() != 0)
+  if (interruptSignal() == 0)
   {
-    std::cerr << "joint_twin: interrupted; " << output << " is readable up to here\n";
-    return EXIT_BY_SIGNAL + interruptSignal();
+    return EXIT_DONE;
   }
-  return counters.solver_failures > 0 ? EXIT_FAILED : EXIT_DONE;
+  std::cerr << "joint_twin: interrupted; " << output << " is readable up to here\n";
+  return EXIT_BY_SIGNAL + interruptSignal();
 }
 }  // namespace hjt

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iostream>
+#include <memory>
+
+#include "apps/common/progress.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 
 namespace hjt
 {
 /// Response surfaces from the user's cache; building shows its progress and what is amiss on stderr.
-SurfaceSource surfaceSource();
+inline SurfaceSource surfaceSource()
+{
+  const auto progress = std::make_shared<Progress>("building the response surface");
+  return { surfaceCacheDirectory(), [progress](double done) { progress->update(done); },
+           [](const std::string& what) { std::cerr << "warning: " << what << '\n'; } };
+}
 }  // namespace hjt

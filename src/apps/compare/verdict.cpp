@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/joined.hpp"
 #include "gear/angle.hpp"
 
 namespace hjt
@@ -46,16 +47,6 @@ std::vector<Cause> causesOf(Feature feature, double sign)
   return causes;
 }
 
-std::string namesOf(const std::vector<Cause>& causes)
-{
-  std::string text;
-  for (const Cause cause : causes)
-  {
-    text += (text.empty() ? "" : ", ") + std::string(causeName(cause));
-  }
-  return text;
-}
-
 /// One quantity as a multiple of the twin's.
 struct Ratio
 {
@@ -94,7 +85,7 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
   {
     finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
     finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
-                                              " Possible faults: " + namesOf(finding.causes) + ".") +
+                                              " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
                     " Other causes: " + ratio.besides + ".";
   }
 }

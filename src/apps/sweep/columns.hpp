@@ -23,8 +23,8 @@ struct RunColumn
   const char* name;
   const char* unit;
   const char* meaning;
-  double (*value)(const Instant&);              ///< none: a column of numbers per tooth
-  std::vector<double> ToothForces::*per_tooth;  ///< none: one number
+  double (*value)(const Instant&);                ///< none: a column of numbers per tooth
+  std::vector<double> ToothForces::*per_tooth{};  ///< none: one number
 };
 
 const std::vector<RunColumn>& columns();

@@ -2,10 +2,10 @@
 #include "apps/sweep/plan_values.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "apps/sweep/variable.hpp"
 
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -127,11 +127,7 @@ const PlanNode& required(const PlanNode& map, const std::string& key, PlanNode::
 
 void allowOnly(const PlanNode& map, const std::vector<std::string>& keys)
 {
-  std::string list;
-  for (const std::string& key : keys)
-  {
-    list += (list.empty() ? "" : ", ") + key;
-  }
+  const std::string list = joined(keys);
   if (map.kind != PlanNode::Kind::MAP)
   {
     map.refuse("must be a mapping with keys of: " + list);

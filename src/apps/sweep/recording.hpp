@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "apps/sweep/columns.hpp"
 #include "apps/sweep/plan_node.hpp"
+#include "apps/sweep/plan_values.hpp"
 
 namespace hjt
 {
@@ -34,5 +36,57 @@ struct Recording
 };
 
 /// The plan's mapping `record`. @throws InputError naming file and line.
-Recording readRecording(const PlanNode& record);
+inline Recording readRecording(const PlanNode& record)
+{
+  const PlanValues values;
+  Recording recording;
+  const std::string format = values.text(record, "format");
+  if (format == "bag")
+  {
+    allowOnly(record, { "format" });
+    recording.format = RunFormat::BAG;
+    return recording;
+  }
+  if (format != "hdf5")
+  {
+    required(record, "format").refuse("is unknown; allowed: hdf5, bag");
+  }
+  allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
+  recording.indicators = values.flag(record, "indicators");
+  recording.start = values.number(record, "start", "s", { 0, 1e6 });
+  recording.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }));
+  for (const auto& [name, node] : required(record, "groups", PlanNode::Kind::MAP).entries)
+  {
+    allowOnly(node, { "rate", "type", "columns" });
+    RecordingGroup group{ name, values.number(node, "rate", "Hz", { 1e-3, 1e6 }), false, {} };
+    const std::string type = values.text(node, "type");
+    if (type != "float32" && type != "float64")
+    {
+      required(node, "type").refuse("is unknown; allowed: float32, float64");
+    }
+    group.float32 = type == "float32";
+    const PlanNode& list = required(node, "columns", PlanNode::Kind::LIST);
+    for (const auto& [key, element] : list.entries)
+    {
+      const RunColumn* column = findColumn(values.text(list, key));
+      if (column == nullptr)
+      {
+        element.refuse("is no column; there are " + columnNames());
+      }
+      if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
+      {
+        element.refuse("stands twice");
+      }
+      group.columns.push_back(column);
+    }
+    if (name == "faults" || name == "parameters" || name == "indicators" || name == "record" ||
+        name.find('/') != std::string::npos || group.columns.empty())
+    {
+      node.refuse(
+          "needs at least one column, and a name other than faults, parameters, indicators and record, without '/'");
+    }
+    recording.groups.push_back(group);
+  }
+  return recording;
+}
 }  // namespace hjt

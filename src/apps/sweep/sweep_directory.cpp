@@ -17,6 +17,7 @@
 
 #include "apps/sweep/run_file.hpp"
 
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
@@ -253,13 +254,9 @@ std::string SweepDirectory::indexRow(const Json& record) const
   }
   for (const char* key : { "kind", "severity", "place", "onset" })
   {
-    std::string list;
-    for (const Json& fault : record.at("faults"))
-    {
-      list += (list.empty() ? "" : ";") +
-              (fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)));
-    }
-    row += "," + list;
+    const auto text = [key](const Json& fault)
+    { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
+    row += "," + joined(record.at("faults"), ";", text);
   }
   for (const char* key : { "noise_seed", "parameters_hash", "version", "error" })
   {

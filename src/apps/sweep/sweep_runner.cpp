@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <sstream>
 
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <iostream>
 #include <string>
-#include <utility>
 
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"

@@ -63,15 +63,6 @@ void declareMethod(Command& command, std::string& method, double& step, double& 
 
 struct TransientOptions : CommonOptions
 {
-  TransientOptions()
-  {
-    setup.step = 5e-6;
-    setup.duration = 0.05;
-    setup.growth_time = 5e-3;
-    setup.window_start = 0.03;
-    setup.sample_period = 5e-5;
-  }
-
   std::string method{ "esdirk4" };
   TransientSetup setup;
   std::string csv;
@@ -98,19 +89,13 @@ int transient(const TransientOptions& options)
     throw InputError("--window " + shortNumber(setup.window_start) + " [s] must lie before the end, --duration " +
                      shortNumber(setup.duration) + " [s]");
   }
-  if (!options.csv.empty())
-  {
-    requireWritable(options.csv, options.force);
-  }
+  requireWritable(options.csv, options.force);
   const TransientResult result = analyseTransient(parameters, setup, showProgress("inserting"));
   if (!result.finished)
   {
     return stopped(result.stopped_at);
   }
-  if (!options.csv.empty())
-  {
-    writeTable(options.csv, TRANSIENT_COLUMNS, result.rows);
-  }
+  writeTable(options.csv, TRANSIENT_COLUMNS, result.rows);
   const TransientRow& end = result.rows.back();
   const double numerical = end.supplied - end.dissipated - end.stored - end.kinetic;
   printReport(options.json,
@@ -157,16 +142,6 @@ const Subcommand TRANSIENT{ Subject::STUDY, "transient",
 
 struct DynamicsOptions : CommonOptions
 {
-  DynamicsOptions()
-  {
-    setup.speed = 317.0;
-    setup.load = 20.0;
-    setup.step = 2e-6;
-    setup.settle_time = 5e-3;
-    setup.duration = 5e-3;
-    setup.compare_period = 37e-6;
-  }
-
   std::string method{ "tr_bdf2" };
   QuasiStaticSetup setup;
 };

@@ -147,10 +147,10 @@ void print(const FollowSummary& summary, bool json)
 int follow(const FollowOptions& options)
 {
   const Parameters parameters = loadParameters(options);
+  requireWritable(options.out, options.force, options.recording);
   std::optional<TableFile<Comparison>> csv;
   if (!options.out.empty())
   {
-    requireWritable(options.out, options.force, options.recording);
     csv.emplace(options.out, COLUMNS);
   }
   const MotionSource source = motionSource(options);

@@ -218,10 +218,7 @@ bool warn(const IdentifyReport& report, bool load_recorded)
 int identifyJoint(const IdentifyOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  if (!options.out.empty())
-  {
-    requireWritable(options.out, options.force, options.recording);
-  }
+  requireWritable(options.out, options.force, options.recording);
   std::vector<MotionSample> samples;
   const MotionFindings count =
       visitMotion(options, MotionDriven(parameters), [&](const MotionSample& sample) { samples.push_back(sample); });

@@ -2,12 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <optional>
 #include <string>
 
-#include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
@@ -196,16 +194,7 @@ int import(const ImportOptions& options)
                               { "joint", "joint", joint.name },
                               { "rows", "rows", rows },
                               { "messages", "", bag.messages() } });
-  if (!options.json)
-  {
-    std::cout << "written: " << options.out << '\n';
-  }
-  if (interruptSignal() != 0)
-  {
-    std::cerr << "joint_twin: interrupted; " << options.out << " is readable up to here\n";
-    return EXIT_BY_SIGNAL + interruptSignal();
-  }
-  return EXIT_DONE;
+  return reportWritten(options.out, options.json);
 }
 
 void declare(Command& command, ImportOptions& options)

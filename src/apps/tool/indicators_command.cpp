@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
+#include "apps/common/run_summary.hpp"
 #include "apps/common/text_table.hpp"
 #include "apps/tool/recorded_signals.hpp"
 
@@ -57,18 +59,8 @@ struct WindowResult
 
 const char* stateName(AssessmentState state)
 {
-  switch (state)
-  {
-    case AssessmentState::LEARNING:
-      return "learning";
-    case AssessmentState::ASSESSED:
-      return "assessed";
-    case AssessmentState::NO_REFERENCE:
-      return "no reference";
-    case AssessmentState::WAITING:
-      break;
-  }
-  return "waiting";
+  constexpr std::array NAMES{ "waiting", "learning", "assessed", "no reference" };
+  return NAMES[static_cast<std::size_t>(state)];
 }
 
 /// All windows of a recording of signals.
@@ -132,39 +124,39 @@ const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
 };
 
+/// What `value` gives for each indicator, by its name.
+template <class Value>
+Json byIndicator(const Value& value)
+{
+  Json json;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    json[indicatorName(i)] = value(i);
+  }
+  return json;
+}
+
+Json featuresJson(const WindowResult& window)
+{
+  Json json;
+  const FeatureScores found = featureScores(window.deviations);
+  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
+  {
+    json[featureName(static_cast<Feature>(i))] = found[i].compared ? Json(found[i].score) : Json();
+  }
+  return json;
+}
+
 std::vector<Column<WindowResult>> documentColumns()
 {
+  using W = const WindowResult&;
   std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
   columns.insert(columns.begin(), { "recording", &WindowResult::recording });
-  columns.push_back({ "indicators", [](const WindowResult& window)
-                      {
-                        Json values;
-                        for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-                        {
-                          values[indicatorName(i)] = window.indicators.values[i];
-                        }
-                        return values;
-                      } });
-  columns.push_back({ "scores", [](const WindowResult& window)
-                      {
-                        Json scores;
-                        for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-                        {
-                          scores[indicatorName(i)] = window.deviations[i].score;
-                        }
-                        return scores;
-                      } });
-  columns.push_back({ "features", [](const WindowResult& window)
-                      {
-                        Json features;
-                        const FeatureScores found = featureScores(window.deviations);
-                        for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
-                        {
-                          features[featureName(static_cast<Feature>(i))] =
-                              found[i].compared ? Json(found[i].score) : Json();
-                        }
-                        return features;
-                      } });
+  columns.push_back({ "indicators", [](W window)
+                      { return byIndicator([&](std::size_t i) { return window.indicators.values[i]; }); } });
+  columns.push_back(
+      { "scores", [](W window) { return byIndicator([&](std::size_t i) { return window.deviations[i].score; }); } });
+  columns.push_back({ "features", featuresJson });
   columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
   return columns;
 }
@@ -244,10 +236,7 @@ std::vector<SignalIndicators> readRecording(const std::string& path, const Indic
       measured[i] = difference(measured[i], model[i]);
     }
   }
-  if (refused > 0)
-  {
-    std::cerr << "joint_twin: " << refused << " samples without an angle, a torque or progress in time passed over\n";
-  }
+  warn(refused, "samples without an angle, a torque or progress in time passed over");
   return measured;
 }
 
@@ -273,10 +262,7 @@ int run(const IndicatorsOptions& given)
   options.source = signalSource(options, parameters);
   for (const std::string& file : { options.out, options.save_baseline })
   {
-    if (!file.empty())
-    {
-      requireWritable(file, options.force, options.recordings.front());
-    }
+    requireWritable(file, options.force, options.recordings.front());
   }
   Assessor assessor(parameters);
   if (!options.baseline.empty())
@@ -307,10 +293,7 @@ int run(const IndicatorsOptions& given)
                      shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
                      shortNumber(parameters.indicators.window_time) + " s)");
   }
-  if (!options.out.empty())
-  {
-    writeTable(options.out, fileColumns(), windows);
-  }
+  writeTable(options.out, fileColumns(), windows);
   if (!options.save_baseline.empty())
   {
     writeBaseline(options.save_baseline, assessor.baseline());

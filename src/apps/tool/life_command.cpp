@@ -35,16 +35,6 @@ struct AgeOptions : LifeOptions
 
 struct TrialsOptions : LifeOptions
 {
-  TrialsOptions()
-  {
-    trials.lives = 100;
-    trials.seed = 1;
-    trials.every = 250.0;
-    trials.particles = 2000;
-    trials.flank_wear_error = 1e-6;
-    trials.spall_error = 0.05;
-  }
-
   LifeTrialOptions trials;
 };
 
@@ -110,10 +100,7 @@ const std::vector<Column<FreshPhase>> PHASE_COLUMNS{
 
 int age(const AgeOptions& options)
 {
-  if (!options.csv.empty())
-  {
-    requireWritable(options.csv, options.force, options.duty);
-  }
+  requireWritable(options.csv, options.force, options.duty);
   const LifeBench bench(options);
   const UnitVariation variation = nominalDrive(bench.parameters.life);
   const BearingLife bearing(bench.parameters.life);
@@ -123,10 +110,7 @@ int age(const AgeOptions& options)
       [&](double hours, const DriveAge& then) {
         rows.push_back({ hours, then, bearing.failedBy(then.bearing_turns), spallSize(variation, then.bearing_turns) });
       });
-  if (!options.csv.empty())
-  {
-    writeTable(options.csv, AGE_COLUMNS, rows);
-  }
+  writeTable(options.csv, AGE_COLUMNS, rows);
   std::vector<FreshPhase> phases;
   for (const DutyPhase& phase : bench.duty.phases)
   {
@@ -171,10 +155,7 @@ void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives
 
 int trials(const TrialsOptions& options)
 {
-  if (!options.csv.empty())
-  {
-    requireWritable(options.csv, options.force, options.duty);
-  }
+  requireWritable(options.csv, options.force, options.duty);
   const LifeBench bench(options);
   LifeTrialOptions trial_options = options.trials;
   trial_options.grease_changes = options.grease_changes;

@@ -14,6 +14,7 @@
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
 
+#include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
 #include "ros_io/bag_inputs.hpp"
@@ -33,16 +34,6 @@ struct ReplayOptions : CommonOptions
   std::string joint_namespace{ DEFAULT_NAMESPACE };
   bool without_command{};
 };
-
-std::string joined(const std::vector<std::string>& texts)
-{
-  std::string all;
-  for (const std::string& text : texts)
-  {
-    all += (all.empty() ? "" : ", ") + text;
-  }
-  return all;
-}
 
 /// An original message under an output's name would look like a simulated one.
 void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
@@ -68,9 +59,8 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   if (!found.other_joints.empty())
   {
-    throw InputError(options.bag + " commands other joints (" +
-                     joined({ found.other_joints.begin(), found.other_joints.end() }) + ") than joint.name = " + joint +
-                     "; choose one with --set joint.name=NAME or an overlay of config/joints");
+    throw InputError(options.bag + " commands other joints (" + joined(found.other_joints) + ") than joint.name = " +
+                     joint + "; choose one with --set joint.name=NAME or an overlay of config/joints");
   }
   throw InputError(options.bag + " has no motor torque on an input topic (" +
                    joined(inputTopics(options.joint_namespace)) +
@@ -113,23 +103,12 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   {
     failWithoutInputs(bag, options, found, parameters.joint.name);
   }
-  if (found.without_effort > 0)
-  {
-    std::cerr << "joint_twin: " << found.without_effort << " messages name " << parameters.joint.name
-              << " but give no effort for it; ignored\n";
-  }
-  if (found.damaged > 0)
-  {
-    std::cerr << "joint_twin: " << found.damaged << " damaged messages on input topics; ignored\n";
-  }
-  if (found.refused_faults > 0)
-  {
-    std::cerr << "joint_twin: " << found.refused_faults << " faults of unknown kind or out of range; ignored\n";
-  }
+  warn(found.without_effort, "messages name " + parameters.joint.name + " but give no effort for it; ignored");
+  warn(found.damaged, "damaged messages on input topics; ignored");
+  warn(found.refused_faults, "faults of unknown kind or out of range; ignored");
   if (!found.other_joints.empty())
   {
-    std::cerr << "joint_twin: messages for other joints ignored: "
-              << joined({ found.other_joints.begin(), found.other_joints.end() }) << '\n';
+    std::cerr << "joint_twin: messages for other joints ignored: " << joined(found.other_joints) << '\n';
   }
   return found;
 }

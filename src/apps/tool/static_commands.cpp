@@ -91,10 +91,7 @@ struct InsertOptions : CommonOptions
 int insert(const InsertOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  if (!options.csv.empty())
-  {
-    requireWritable(options.csv, options.force);
-  }
+  requireWritable(options.csv, options.force);
   warnIfJammed(parameters);
   const InsertionResult result = analyseInsertion(parameters);
   if (!result.status.ok())
@@ -176,10 +173,7 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
 int stiffness(const StiffnessOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  if (!options.csv.empty())
-  {
-    requireWritable(options.csv, options.force);
-  }
+  requireWritable(options.csv, options.force);
   warnIfJammed(parameters);
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)

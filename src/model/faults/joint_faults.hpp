@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harmonic_joint_twin/model/faults/fault_list.hpp"
+#include "model/faults/fault_edits.hpp"
 #include "model/joint_model.hpp"
 
 namespace hjt
@@ -11,10 +12,21 @@ namespace hjt
 class JointFaults
 {
 public:
-  explicit JointFaults(const Parameters& parameters, const FaultList& faults = {});
+  explicit JointFaults(const Parameters& parameters, const FaultList& faults = {})
+    : parameters_(parameters), sound_(parameters), model_(sound_)
+  {
+    apply(faults);
+  }
 
   /// From now on the joint has these faults, each valid, and no others.
-  void apply(const FaultList& faults) noexcept;
+  void apply(const FaultList& faults) noexcept
+  {
+    model_ = sound_;  // vectors of equal size: nothing is allocated
+    for (const ActiveFault& active : faults)
+    {
+      addFault(active.fault, parameters_, model_);
+    }
+  }
 
   /// The joint as it is now: the same object for good.
   const JointModel& model() const noexcept { return model_; }
@@ -26,5 +38,16 @@ private:
 };
 
 /// The joint of these parameters with the faults that it has from the start.
-JointModel startingJoint(const Parameters& parameters);
+inline JointModel startingJoint(const Parameters& parameters)
+{
+  FaultList faults;
+  for (const Fault& fault : parameters.faults)
+  {
+    if (fault.isThereFromTheStart())
+    {
+      faults.set(fault, 0);
+    }
+  }
+  return JointFaults(parameters, faults).model();
+}
 }  // namespace hjt
