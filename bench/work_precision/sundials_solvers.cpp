@@ -60,7 +60,7 @@ void linearise(Callbacks& own, double time, N_Vector y, double gamma)
   ++own.evaluations;
 }
 
-/// CVODE and ARKODE: the system is I - gamma J. It is always made anew, at no more than the cost of a factorisation.
+/// CVODE and ARKODE: the system is I - gamma J. It is made again each time, at no more than a factorisation costs.
 int linearSystem(double time, N_Vector y, N_Vector /*rates*/, SUNMatrix /*matrix*/, int /*keep*/, int* fresh,
                  double gamma, void* data, N_Vector, N_Vector, N_Vector)
 {

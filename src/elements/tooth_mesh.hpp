@@ -35,7 +35,8 @@ struct ToothPlace
 ///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
 ///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
 ///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
-///          d_i     depth of the tip below the circular spline's tip circle, zeta_i + h/2 - lost height - r_a             [m]
+///          d_i     depth of the tip below the circular spline's tip circle,
+///                  zeta_i + h/2 - lost height - r_a                                                        [m]
 ///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
 ///          k_i     stiffness of the tooth pair along the flank normal, >= 0                                [N/m]
 class ToothMesh

@@ -24,8 +24,8 @@ struct HalfClearance
 /// others:     c(zeta) = c0 + min over y of [s(zeta + y) - t(y)], less the same at full engagement
 /// where       c0      half clearance at full engagement, zeta = r0 + z_t + w0       [m]
 ///             beta    flank angle                                                   [rad]
-///             t, s    half thickness of the tooth at the height y, half width of its space (gear/flank_shapes.hpp), the
-///                     minimum taken where the two lie beside each other             [m]
+///             t, s    half thickness of the tooth at the height y, half width of its space (gear/flank_shapes.hpp),
+///                     the minimum taken where the two lie beside each other         [m]
 ///
 /// The minimum is tabled over the engagement and a little beyond, and joined by a C2 spline that goes on straight.
 class ToothProfile

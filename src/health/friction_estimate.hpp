@@ -45,8 +45,8 @@ public:
 
 private:
   static constexpr int COLUMNS = 5;
-  /// Speed and direction tell Coulomb from viscous friction only while their variance is inflated less than this [-]: two
-  /// speeds in the ratio 1 to 2, each way, give 10.
+  /// Speed and direction tell Coulomb from viscous friction only while their variance is inflated less than this [-]:
+  /// two speeds in the ratio 1 to 2, each way, give 10.
   static constexpr double MAX_INFLATION = 30.0;
 
   Indicator value(int column) const noexcept

@@ -38,8 +38,8 @@ struct LineFit
 ///
 /// Law:   y(t) = b . n(t) + sum_k ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  least squares over one window
 /// where  theta  motor angle of the very sample [rad];  o_k  order [1/turn]
-///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|, T^3
-///               (the torsion is no straight line over the load)
+///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|,
+///               T^3 (the torsion is no straight line over the load)
 /// Nothing is resampled and no speed need be constant: the line is a function of the angle, whichever way and however
 /// fast it is passed, and the motion may go back and forth. Lines fitted at once do not leak into each other.
 ///

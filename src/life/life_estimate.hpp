@@ -36,7 +36,7 @@ struct LifeEstimate
 class LifeEstimator
 {
 public:
-  explicit LifeEstimator(const Parameters& parameters) : parameters_(parameters), exposures_(parameters, POSITIONS) {}
+  explicit LifeEstimator(const Parameters& parameters) : parameters_(parameters), load_map_(parameters, POSITIONS) {}
 
   /// `record`: with turns in it. Takes seconds where it holds loads that were not met before.
   /// @throws ParameterError if the ring finds no equilibrium under one of its loads.
@@ -44,8 +44,8 @@ public:
   {
     const LifeParameters& life = parameters_.life;
     const DutyCycle duty = record.duty();
-    exposures_.cover(duty, {});
-    const DriveAgeing ageing(life, parameters_.gear, duty, exposures_);
+    load_map_.cover(duty, {});
+    const DriveAgeing ageing(life, parameters_.gear, duty, load_map_);
     const UnitVariation nominal = nominalDrive(life);
     LifeEstimate estimate;
     estimate.hours = record.hours();
@@ -78,6 +78,6 @@ private:
   static constexpr bool GREASE_IS_CHANGED = true;
 
   Parameters parameters_;
-  RevolutionLoadMap exposures_;
+  RevolutionLoadMap load_map_;
 };
 }  // namespace hjt

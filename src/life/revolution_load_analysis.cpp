@@ -44,36 +44,37 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
   const int teeth = parameters_.gear.teeth_flexspline;
   const double step = TWO_PI / teeth / positions_;  // of the wave generator [rad]
-  RevolutionLoad exposure;
+  RevolutionLoad revolution_load;
   double highest = std::numeric_limits<double>::lowest();
   double lowest = std::numeric_limits<double>::max();
-  walk_.under(load_torque,
-              [&](double follow)
-              {
-                const JointModel& model = walk_.model();
-                const RingEquilibrium& ring = walk_.ring();
-                running_ = ring.byWaveGenerator() + follow * ring.byOutput();
-                for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
-                {
-                  exposure.flank_sliding +=
-                      step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
-                                      model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, running_, follow));
-                }
-                for (int i = 0; i < teeth; ++i)
-                {
-                  const double stress = rimStress(i);
-                  highest = std::max(highest, stress);
-                  lowest = std::min(lowest, stress);
-                }
-                exposure.interface_sliding +=
-                    step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
-              });
+  walk_.under(
+      load_torque,
+      [&](double velocity_ratio)
+      {
+        const JointModel& model = walk_.model();
+        const RingEquilibrium& ring = walk_.ring();
+        running_ = ring.byWaveGenerator() + velocity_ratio * ring.byOutput();
+        for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
+        {
+          revolution_load.flank_sliding +=
+              step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
+                              model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, running_, velocity_ratio));
+        }
+        for (int i = 0; i < teeth; ++i)
+        {
+          const double stress = rimStress(i);
+          highest = std::max(highest, stress);
+          lowest = std::min(lowest, stress);
+        }
+        revolution_load.interface_sliding +=
+            step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
+      });
   if (!walk_.status().ok())
   {
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
                          " N.m: " + explanationOf(walk_.status()));
   }
-  exposure.rim_stress_range = highest - lowest;
-  return exposure;
+  revolution_load.rim_stress_range = highest - lowest;
+  return revolution_load;
 }
 }  // namespace hjt

@@ -13,7 +13,8 @@ namespace hjt
 class RevolutionLoadAnalysis
 {
 public:
-  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no equilibrium.
+  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no
+  /// equilibrium.
   RevolutionLoadAnalysis(const Parameters& parameters, int positions);
 
   /// One turn of the wave generator under `load_torque` [N.m].

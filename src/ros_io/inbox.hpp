@@ -38,8 +38,9 @@ public:
     inputs_.push_back(input);
   }
 
-  /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`. What
-  /// has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates nothing.
+  /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`.
+  /// What has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates
+  /// nothing.
   void take(std::vector<Input>& inputs) noexcept
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);

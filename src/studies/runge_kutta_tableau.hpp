@@ -8,7 +8,8 @@ namespace hjt
 {
 /// Coefficients of a diagonally implicit Runge-Kutta method, stiffly accurate: the last stage is the step's end.
 ///
-/// All implicit stages share the diagonal gamma, so one factored matrix serves them all. The first stage may be explicit.
+/// All implicit stages share the diagonal gamma, so one factored matrix serves them all. The first stage may be
+/// explicit.
 struct RungeKuttaTableau
 {
   int order;
@@ -31,8 +32,8 @@ inline const RungeKuttaTableau& implicitEuler()
   return TABLEAU;
 }
 
-/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 as one method (Bank et al. 1985; embedded estimate of order
-/// 3 of Hosea and Shampine 1996).
+/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 as one method (Bank et al. 1985; embedded estimate of
+/// order 3 of Hosea and Shampine 1996).
 inline const RungeKuttaTableau& trBdf2()
 {
   static const RungeKuttaTableau TABLEAU = []

@@ -8,8 +8,8 @@
 namespace hjt
 {
 /// Positions and speeds of a ring that travels in equilibrium while the wave generator turns at `speed` [rad/s] under a
-/// constant `load` [N.m]. `ring`: in equilibrium under that load. The output, too heavy to follow the drive within a tooth
-/// pitch, turns at its mean speed over one. @returns false if an equilibrium was not found.
+/// constant `load` [N.m]. `ring`: in equilibrium under that load. The output, too heavy to follow the drive within a
+/// tooth pitch, turns at its mean speed over one. @returns false if an equilibrium was not found.
 inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed, double load, RingMotion& motion)
 {
   const double pitch = ring.model().rest.pitchAngle();

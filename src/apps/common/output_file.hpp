@@ -8,8 +8,8 @@
 
 namespace hjt
 {
-/// @throws InputError if `path` exists and `force` is not given, or is the file that is read from. An empty one, of an option
-/// that was left out, is none.
+/// @throws InputError if `path` exists and `force` is not given, or is the file that is read from. An empty one, of an
+/// option that was left out, is none.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
 /// A CSV file of numbers; every number can be read back exactly.

@@ -91,8 +91,8 @@ private:
   CsvWriter csv_;
 };
 
-/// All rows as a CSV file; none if the path is empty, of an option that was left out. @throws InputError if it cannot be
-/// written.
+/// All rows as a CSV file; none if the path is empty, of an option that was left out. @throws InputError if it cannot
+/// be written.
 template <class Row, class Rows>
 void writeTable(const std::string& path, const std::vector<Column<Row>>& columns, const Rows& rows)
 {

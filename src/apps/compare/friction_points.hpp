@@ -65,8 +65,8 @@ public:
     return points;
   }
 
-  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong goes
-  /// out. NaN: no point.
+  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong
+  /// goes out. NaN: no point.
   double ratio() const
   {
     double measured = 0.0;

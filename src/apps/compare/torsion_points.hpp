@@ -32,8 +32,8 @@ public:
   {
   }
 
-  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position` of the
-  /// joint [rad], `speed` [rad/s].
+  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position`
+  /// of the joint [rad], `speed` [rad/s].
   void add(double torque, double torsion, double position, double speed)
   {
     const double twin = curve_.torsion(torque);
@@ -78,8 +78,8 @@ public:
     return means;
   }
 
-  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning; NaN
-  /// if the torque hardly varied.
+  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning;
+  /// NaN if the torque hardly varied.
   double compliance() const
   {
     return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(2, 0);

@@ -26,7 +26,7 @@ SurfaceSource sharedSurfaces(unsigned jobs)
   struct Remarks
   {
     std::mutex mutex;
-    std::set<std::string> said;
+    std::set<std::string> shown;
     Progress building{ "building response surfaces" };
   };
   const auto remarks = std::make_shared<Remarks>();
@@ -38,7 +38,7 @@ SurfaceSource sharedSurfaces(unsigned jobs)
   const auto tell = [remarks](const std::string& what)
   {
     const std::lock_guard<std::mutex> lock(remarks->mutex);
-    if (remarks->said.insert(what).second)
+    if (remarks->shown.insert(what).second)
     {
       std::cerr << "warning: " << what << '\n';
     }
