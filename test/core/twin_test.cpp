@@ -225,6 +225,15 @@ TEST(TwinInputs, ACommandTimesOutToZeroTorqueOnce)
   EXPECT_EQ(twin.counters().command_timeouts, 2U);
 }
 
+TEST(TwinInputs, ACommandFromTheEarliestStampHasTimedOut)
+{
+  Twin twin(shippedParameters());
+  twin.commandMotorTorque(std::numeric_limits<Stamp>::min(), 0.5);
+  ASSERT_TRUE(twin.step(SECOND));
+  EXPECT_EQ(twin.outputs().motor_torque, 0.0);
+  EXPECT_EQ(twin.counters().command_timeouts, 1U);
+}
+
 TEST(TwinDrive, HoldsItsSpeedLimit)
 {
   Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
