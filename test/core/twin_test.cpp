@@ -306,6 +306,23 @@ TEST(TwinLoop, DoesNotAllocate)
   EXPECT_NE(counts, 0);
 }
 
+TEST(TwinToothForces, GiveEveryToothItsPlace)
+{
+  Twin twin(shippedParameters());
+  advance(twin, MILLISECOND);
+  ToothForces teeth = twin.makeToothForces();
+  ASSERT_TRUE(twin.toothForces(teeth));
+  const GearParameters& gear = twin.parameters().gear;
+  for (int i = 0; i < gear.teeth_flexspline; ++i)
+  {
+    const double angle = TWO_PI * i / gear.teeth_flexspline;
+    const double wave = gear.wave_amplitude * std::cos(2.0 * angle);
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_NEAR(std::hypot(teeth.tooth_x[at], teeth.tooth_y[at]), gear.flexspline_inner_radius + wave, 5e-5) << i;
+    EXPECT_NEAR(std::remainder(std::atan2(teeth.tooth_y[at], teeth.tooth_x[at]) - angle, TWO_PI), 0.0, 0.01) << i;
+  }
+}
+
 TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
 {
   Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
