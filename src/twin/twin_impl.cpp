@@ -202,9 +202,9 @@ void Twin::Impl::takeSurface() noexcept
 /// The latest command, or zero when it has timed out.
 double Twin::Impl::commandInForce() noexcept
 {
-  const double age =
-      1e-9 * static_cast<double>(now - in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)]);
-  if (commanded && age > parameters.input.command_timeout)
+  const Stamp since = in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)];
+  // The other way round, the age of a command from the earliest stamp does not fit into one.
+  if (commanded && since < now - toStampLength(parameters.input.command_timeout))
   {
     commanded = false;
     ++counters.command_timeouts;

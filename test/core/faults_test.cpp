@@ -390,6 +390,18 @@ TEST(Faults, ThatComeLateDoNotUndoWhatIsNewer)
   EXPECT_EQ(twin.activeFaults().size(), 1U) << "reset forgets";
 }
 
+TEST(Faults, OfOneStampSetInAsTheyCame)
+{
+  Twin twin(shippedParameters());
+  for (const double severity : { 0.5, 0.2, 0.8 })
+  {
+    twin.injectFault(2 * MILLISECOND, { FaultKind::TOOTH_WEAR, severity, 3, 0.0 });
+  }
+  advance(twin, 3 * MILLISECOND);
+  ASSERT_EQ(twin.activeFaults().size(), 1U);
+  EXPECT_EQ(twin.activeFaults().begin()->fault.severity, 0.8);
+}
+
 TEST(FaultList, HasRoomForSoMany)
 {
   FaultList list;

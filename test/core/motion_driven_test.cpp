@@ -2,6 +2,7 @@
 // The twin driven by a measured motion, and what is identified from one. The robot measured is the twin itself, driven
 // by a servo, with parameters that the identification does not know and with the noise of real sensors.
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -255,7 +256,11 @@ TEST(MotionDifferentiator, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
     EXPECT_FALSE(smoother.push({ time, 1.0, 0.0, 0.0 }));  // its stamp repeated
     collect(false);
   }
-  EXPECT_FALSE(smoother.push({ 1e3, std::nan(""), 0.0, 0.0 }));
+  constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(smoother.push({ NONE, 0.0, 0.0, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, NONE, 0.0, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, 0.0, NONE, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, 0.0, 0.0, NONE }));
   collect(true);
   EXPECT_EQ(smoother.gaps(), 1u);
   EXPECT_GT(samples.size(), 480u);

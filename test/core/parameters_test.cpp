@@ -274,6 +274,7 @@ TEST(Parameters, MisspeltKeyIsRefusedWithTheNearestOne)
   EXPECT_EQ(file.complaint(), file.path() +
                                   ":2: unknown parameter motor.rotor_inertai = 0.0001 "
                                   "(did you mean motor.rotor_inertia?)");
+  EXPECT_THAT(complaint({ "ring.bending_stiffnes=1.0" }), HasSubstr("did you mean ring.bending_stiffness?"));
   EXPECT_THAT(complaint({ "ring.wave_amplitude=0.3e-3" }), HasSubstr("did you mean gear.wave_amplitude?"));
   EXPECT_THAT(complaint({ "motor.bananas=1" }), AllOf(HasSubstr("unknown"), Not(HasSubstr("did you mean"))));
 }
@@ -475,6 +476,17 @@ TEST(ParameterText, DescriptionReadsBackAsTheSameParameters)
   }
   EXPECT_EQ(map.size(), allKeys().size());
   EXPECT_EQ(describeParameters(parseParameters(map)), described);
+}
+
+TEST(ParameterText, DescriptionNumbersTheFaults)
+{
+  Parameters parameters = parseParameters(defaultMap());
+  parameters.faults = { { FaultKind::TOOTH_WEAR, 0.1, WHOLE_MEMBER, 0.0 }, { FaultKind::BEARING_BALL, 0.2, 3, 1.5 } };
+  const std::string described = describeParameters(parameters);
+  EXPECT_THAT(described, HasSubstr(faultKey(0) + ".severity: 0.1"));
+  EXPECT_THAT(described, HasSubstr(faultKey(1) + ".severity: 0.2"));
+  EXPECT_THAT(described, HasSubstr(faultKey(1) + ".place: 3"));
+  EXPECT_THAT(described, HasSubstr(faultKey(1) + ".onset: 1.5"));
 }
 
 TEST(ParameterText, TableHasARowForEveryKey)

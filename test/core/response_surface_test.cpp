@@ -437,6 +437,27 @@ TEST(SurfaceDeviations, AreContinuousFromPitchToPitch)
   }
 }
 
+/// A place taken from a pitch with deviations to one without any has none.
+TEST(SurfaceDeviations, AreNotKeptInAPlaceThatMovesOn)
+{
+  std::optional<SurfaceTables> tables = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
+  ASSERT_TRUE(tables);
+  for (std::size_t pitch = 1; pitch < tables->deviations.pitches.size(); pitch += 2)
+  {
+    tables->deviations.pitches[pitch] = {};
+  }
+  const ResponseSurface faulty(tables->table, tables->deviations);
+  ResponseSurface::Place moving;
+  for (int pitch = 0; pitch < 100; ++pitch)
+  {
+    const double motor = (pitch + 0.37) * TWO_PI / 200;
+    ResponseSurface::Place fresh;
+    ASSERT_TRUE(faulty.locate(motor, 2e-3 + motor / 101.0, moving));
+    ASSERT_TRUE(faulty.locate(motor, 2e-3 + motor / 101.0, fresh));
+    EXPECT_EQ(faulty.response(moving).energy, faulty.response(fresh).energy) << pitch;
+  }
+}
+
 TEST(SurfaceDeviations, AreNotBuiltBeyondABoundedNumberOfPoints)
 {
   constexpr std::size_t MOST = 20000;

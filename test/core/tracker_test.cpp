@@ -144,6 +144,18 @@ TEST_P(TrackerInMode, BeginsAnewWhenStampsJumpBack)
   EXPECT_EQ(tracker.counters().restarts, 1u);
 }
 
+TEST_P(TrackerInMode, CountsWhatItRefusedBeforeEveryRestart)
+{
+  Tracker tracker(parametersWith({}), GetParam());
+  for (int restart = 0; restart < 3; ++restart)
+  {
+    tracker.push(rowAt(100.0 - 30.0 * restart));
+    tracker.push(rowAt(100.0 - 30.0 * restart));
+  }
+  EXPECT_EQ(tracker.counters().restarts, 2u);
+  EXPECT_EQ(tracker.counters().refused, 3u);
+}
+
 TEST_P(TrackerInMode, AllocatesNothing)
 {
   Tracker tracker(parametersWith({}), GetParam());

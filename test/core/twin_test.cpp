@@ -225,6 +225,15 @@ TEST(TwinInputs, ACommandTimesOutToZeroTorqueOnce)
   EXPECT_EQ(twin.counters().command_timeouts, 2U);
 }
 
+TEST(TwinInputs, ACommandFromTheEarliestStampHasTimedOut)
+{
+  Twin twin(shippedParameters());
+  twin.commandMotorTorque(std::numeric_limits<Stamp>::min(), 0.5);
+  ASSERT_TRUE(twin.step(SECOND));
+  EXPECT_EQ(twin.outputs().motor_torque, 0.0);
+  EXPECT_EQ(twin.counters().command_timeouts, 1U);
+}
+
 TEST(TwinDrive, HoldsItsSpeedLimit)
 {
   Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
@@ -295,6 +304,23 @@ TEST(TwinLoop, DoesNotAllocate)
   twin.reset(SECOND);
   EXPECT_EQ(allocationCount(), before);
   EXPECT_NE(counts, 0);
+}
+
+TEST(TwinToothForces, GiveEveryToothItsPlace)
+{
+  Twin twin(shippedParameters());
+  advance(twin, MILLISECOND);
+  ToothForces teeth = twin.makeToothForces();
+  ASSERT_TRUE(twin.toothForces(teeth));
+  const GearParameters& gear = twin.parameters().gear;
+  for (int i = 0; i < gear.teeth_flexspline; ++i)
+  {
+    const double angle = TWO_PI * i / gear.teeth_flexspline;
+    const double wave = gear.wave_amplitude * std::cos(2.0 * angle);
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_NEAR(std::hypot(teeth.tooth_x[at], teeth.tooth_y[at]), gear.flexspline_inner_radius + wave, 5e-5) << i;
+    EXPECT_NEAR(std::remainder(std::atan2(teeth.tooth_y[at], teeth.tooth_x[at]) - angle, TWO_PI), 0.0, 0.01) << i;
+  }
 }
 
 TEST(TwinRunning, MakesItsRatioOutOfTheContacts)

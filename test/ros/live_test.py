@@ -13,7 +13,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Timing
-from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, listen_to_all, numbers_in, wait_until
+from ros_support import OK, PACKAGE, PATIENCE, WARN, Diagnostics, Listener, listen_to_all, numbers_in, wait_until
 
 NODE = "/joint_twin"
 JOINT = "elbow_joint"
@@ -198,7 +198,7 @@ class Live(unittest.TestCase):
         listener.close()
 
     def test_diagnostics_name_the_hardware_and_return_to_ok(self):
-        deadline = time.monotonic() + 30.0
+        deadline = time.monotonic() + PATIENCE
         while self.diagnostics.level("Input") != OK:
             self.assertLess(time.monotonic(), deadline, self.diagnostics.statuses("Input")[-1])
             self.drive(0.2, 0.2)

@@ -3,7 +3,6 @@
 import os
 import signal
 import struct
-import subprocess
 import time
 
 import genpy
@@ -132,7 +131,7 @@ class Replay(tool.ToolTest):
         started = time.monotonic()
         self.fail_with(1, ["in.bag: the times of recording span 3e+09 s, allowed: at most"],
                        "replay", "in.bag", "--out", "out.bag")
-        self.assertLess(time.monotonic() - started, 5.0)
+        self.assertLess(time.monotonic() - started, 5.0 * tool.SLOWER)
 
     def test_damaged_messages_are_left_out_and_counted(self):
         tool.write_recording(self.path("in.bag"), duration=0.1)
@@ -211,14 +210,11 @@ class Replay(tool.ToolTest):
     def test_interrupts_close_the_bag(self):
         tool.write_recording(self.path("in.bag"), duration=60.0)
         for number in [signal.SIGTERM, signal.SIGINT]:
-            process = subprocess.Popen([self.executable, "replay", "in.bag", "--out", f"{int(number)}.bag"],
-                                       cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            time.sleep(1.5)
-            process.send_signal(number)
-            _, errors = process.communicate(timeout=30)
-            self.assertEqual(process.returncode, 128 + number)
+            name = f"{int(number)}.bag"
+            code, errors = self.interrupt_while_writing(name, number, "replay", "in.bag", "--out", name)
+            self.assertEqual(code, 128 + number)
             self.assertIn(b"readable up to here", errors)
-            self.assertGreater(len(tool.raw_messages(self.path(f"{int(number)}.bag"))), 10)
+            self.assertGreater(len(tool.raw_messages(self.path(name))), 10)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,6 @@ import csv
 import math
 import os
 import signal
-import subprocess
-import time
 
 import rosbag
 
@@ -117,13 +115,9 @@ class Simulate(tool.ToolTest):
     def test_interrupts_close_the_bag(self):
         for number in [signal.SIGTERM, signal.SIGINT]:
             name = f"{int(number)}.bag"
-            process = subprocess.Popen([self.executable, "simulate", "--duration", "1000", "--torque", "0.4",
-                                        "--out", name],
-                                       cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            time.sleep(1.0)
-            process.send_signal(number)
-            _, errors = process.communicate(timeout=30)
-            self.assertEqual(process.returncode, 128 + number)
+            code, errors = self.interrupt_while_writing(name, number, "simulate", "--duration", "1000",
+                                                        "--torque", "0.4", "--out", name)
+            self.assertEqual(code, 128 + number)
             self.assertIn(b"readable up to here", errors)
             self.assertGreater(len(tool.raw_messages(self.path(name))), 10)
 

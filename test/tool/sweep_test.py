@@ -65,7 +65,7 @@ class Sweep(tool.ToolTest):
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     def wait_for_runs(self, out, count):
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + 60.0 * tool.SLOWER
         while time.monotonic() < deadline:
             runs = self.path(out + "/runs")
             if os.path.isdir(runs) and sum(name.endswith(".h5") for name in os.listdir(runs)) >= count:
@@ -89,7 +89,7 @@ class Sweep(tool.ToolTest):
         self.sweep("one", "--jobs", 1)
         done = subprocess.run(["mpirun", "-n", "3", "--allow-run-as-root", "--oversubscribe", self.mpi_executable,
                                "plan.yaml", "--out", "ranks"], cwd=self.directory, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=120, check=False)
+                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=120 * tool.SLOWER, check=False)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertEqual(tree(self.path("ranks")), tree(self.path("one")))
 
@@ -116,7 +116,7 @@ class Sweep(tool.ToolTest):
         process = self.start("plan.yaml", "a", "--jobs", "2")
         self.wait_for_runs("a", 2)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=30 * tool.SLOWER)
         self.assertEqual(process.returncode, 130, errors)
         self.assertIn(b"interrupted; the same command resumes", errors)
         rows = self.index("a")
@@ -346,7 +346,8 @@ record:
                 self.write("both.yaml", plan)
                 self.sweep("alone", plan="both.yaml")
                 both = [self.start("both.yaml", "both") for _ in range(2)]
-                ends = [(process.communicate(timeout=120)[1].decode(), process.returncode) for process in both]
+                ends = [(process.communicate(timeout=120 * tool.SLOWER)[1].decode(), process.returncode)
+                        for process in both]
                 self.assertIn(0, [code for _, code in ends], ends)
                 for note, code in ends:
                     if code != 0:

@@ -22,6 +22,7 @@ JOINT_NAMES = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
 SIMULATED_TOPICS = {"/joint_twin/joint_states", "/joint_twin/encoders", "/joint_twin/contact_forces",
                     "/joint_twin/health", "/joint_twin/indicators", "/joint_twin/assessment"}
 START = 1000000000  # [s] ROS time at which the recordings made here begin
+SLOWER = float(os.environ.get("HJT_PATIENCE", "1"))  # factor on every time limit; above 1 under a sanitizer
 
 
 class ToolTest(unittest.TestCase):
@@ -37,13 +38,13 @@ class ToolTest(unittest.TestCase):
 
     def run_tool(self, *arguments, environment=None):
         return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300, check=False,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300 * SLOWER, check=False,
                               env=dict(os.environ, **(environment or {})))
 
     def run_with_file_limit(self, limit, *arguments):
         """No file may grow beyond `limit` [byte]: writing fails as on a full disk."""
         return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300, check=False,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300 * SLOWER, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 
     def succeed(self, *arguments):
@@ -65,7 +66,9 @@ class ToolTest(unittest.TestCase):
         return done
 
     def measure(self, *arguments, environment=None):
-        """Exit code, seconds, and peak memory of the tool itself [byte]."""
+        """Exit code, seconds, and peak memory of the tool itself [byte]. Under a sanitizer the test is skipped."""
+        if SLOWER != 1.0:
+            self.skipTest("time and memory are the sanitizer's")
         started = time.monotonic()
         process = subprocess.Popen([self.executable, *map(str, arguments)], cwd=self.directory,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -76,6 +79,20 @@ class ToolTest(unittest.TestCase):
             peak = max(peak, peak_memory(process.pid))
             time.sleep(0.01)
         return process.returncode, time.monotonic() - started, peak
+
+    def interrupt_while_writing(self, name, number, *arguments):
+        """Starts the tool, sends it a signal once the bag `name` has content; exit code and stderr."""
+        process = subprocess.Popen([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        active = self.path(name + ".active")
+        deadline = time.monotonic() + 30.0 * SLOWER
+        while not os.path.exists(active) or os.path.getsize(active) < 100000:
+            self.assertLess(time.monotonic(), deadline, "nothing written")
+            time.sleep(0.01)
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=30 * SLOWER)
+        return process.returncode, errors
 
     def write(self, name, text):
         with open(self.path(name), "w") as file:
