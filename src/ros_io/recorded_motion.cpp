@@ -485,7 +485,8 @@ CsvTable openCsv(const MotionSource& source, std::size_t optional)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
   return CsvTable(source.path,
-                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n }, optional);
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n },
+                  optional);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
