@@ -361,7 +361,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
                             "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
-                            "the recording has one angle a joint; motor and output are needed" });
+                            "not identified; `joint_twin compare` measures it if both angles are recorded" });
 
   result.judged.configured = errorOf(parameters, judge);
   result.judged.without_ripple = errorOf(withoutRipple(result.parameters), judge);

@@ -23,9 +23,9 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& para
   const InputTopics inputs{ node, too_large_ };
   subscribers_ = {
     inputs.subscribe<Float64>(topics::MOTOR_TORQUE_COMMAND,
-                              [this](const auto& event) { receiveNow(InputKind::MOTOR_TORQUE, *event.getMessage()); }),
+                              [this](const auto& event) { receiveNow(InputKind::MOTOR_TORQUE, event); }),
     inputs.subscribe<Float64>(topics::LOAD_TORQUE,
-                              [this](const auto& event) { receiveNow(InputKind::LOAD_TORQUE, *event.getMessage()); }),
+                              [this](const auto& event) { receiveNow(InputKind::LOAD_TORQUE, event); }),
     inputs.subscribe<JointState>(topics::COMMAND, [this](const auto& event) { receiveCommand(*event.getMessage()); }),
     inputs.subscribe<JointState>(topics::LOAD, [this](const auto& event) { receiveLoad(*event.getMessage()); }),
     inputs.subscribe<harmonic_joint_twin::Fault>(topics::INJECT_FAULT,
@@ -33,9 +33,9 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& para
   };
 }
 
-void InputSubscribers::receiveNow(InputKind kind, const std_msgs::Float64& message)
+void InputSubscribers::receiveNow(InputKind kind, const ros::MessageEvent<const std_msgs::Float64>& event)
 {
-  inbox_.push({ fromRosTime(ros::Time::now()), kind, message.data });
+  inbox_.push({ fromRosTime(event.getReceiptTime()), kind, event.getMessage()->data });
 }
 
 void InputSubscribers::receiveCommand(const sensor_msgs::JointState& message)

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 #include <sensor_msgs/JointState.h>
@@ -35,7 +36,7 @@ public:
   MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, refused_fault_, too_large_ }; }
 
 private:
-  void receiveNow(InputKind kind, const std_msgs::Float64& message);
+  void receiveNow(InputKind kind, const ros::MessageEvent<const std_msgs::Float64>& event);
   void receiveCommand(const sensor_msgs::JointState& message);
   void receiveLoad(const sensor_msgs::JointState& message);
   void receiveFault(const harmonic_joint_twin::Fault& message);

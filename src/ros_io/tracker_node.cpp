@@ -67,8 +67,8 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
       topics::MEASURED, [this](const JointStateEvent& event) { receiveTelemetry(event); });
   load_subscriber_ = inputs.subscribe<sensor_msgs::JointState>(
       topics::LOAD, [this](const JointStateEvent& event) { receiveLoad(event); });
-  load_torque_subscriber_ = inputs.subscribe<std_msgs::Float64>(
-      topics::LOAD_TORQUE, [this](const auto& event) { receiveLoadNow(event.getMessage()->data); });
+  load_torque_subscriber_ =
+      inputs.subscribe<std_msgs::Float64>(topics::LOAD_TORQUE, [this](const auto& event) { receiveLoadTorque(event); });
 }
 
 void TrackerNode::receiveTelemetry(const JointStateEvent& event)
@@ -154,19 +154,21 @@ void TrackerNode::receiveLoad(const JointStateEvent& event)
     ++refusals_.load;
     return;
   }
-  pushLoad({ stampOr(message.header.stamp, event.getReceiptTime()), fromRosTime(event.getReceiptTime()), torque });
+  const ros::Time& stamp = message.header.stamp;
+  pushLoad({ stamp.isZero() ? std::nullopt : std::make_optional(fromRosTime(stamp)),
+             fromRosTime(event.getReceiptTime()), torque });
 }
 
-void TrackerNode::receiveLoadNow(double torque)
+void TrackerNode::receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  const double torque = event.getMessage()->data;
   if (!std::isfinite(torque))
   {
     ++refusals_.load;
     return;
   }
-  const Stamp now = fromRosTime(ros::Time::now());
-  pushLoad({ now, now, torque });
+  pushLoad({ std::nullopt, fromRosTime(event.getReceiptTime()), torque });
 }
 
 void TrackerNode::pushLoad(const LoadAt& load)
@@ -183,16 +185,18 @@ void TrackerNode::pushLoad(const LoadAt& load)
   }
 }
 
-/// Once there is a zero: a load by another clock than the rows is refused.
+/// Once there is a zero: a load by another clock than the rows is refused. Received without a stamp, it is valid from the
+/// instant on that the rows' clock shows then.
 void TrackerNode::passLoad(const LoadAt& load)
 {
-  if (!agree(load.received - load.stamp, offset_))
+  const Stamp stamp = load.stamp.value_or(load.received - offset_);
+  if (!agree(load.received - stamp, offset_))
   {
     ++refusals_.load;
     return;
   }
-  last_load_ = load;
-  tracker_.pushLoad(secondsFromStart(load.stamp), load.torque);
+  last_load_stamp_ = stamp;
+  tracker_.pushLoad(secondsFromStart(stamp), load.torque);
 }
 
 void TrackerNode::publish()
@@ -280,7 +284,7 @@ DiagnosticVerdict TrackerNode::judgeTelemetry() const
   {
     return { DiagnosticStatus::WARN, "Stamps are off this machine's clock" };
   }
-  if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_)
+  if (parameters_.telemetry.load != LoadSource::MODEL && !last_load_stamp_)
   {
     return { DiagnosticStatus::WARN, "No load received: weight and inertia as configured" };
   }
@@ -338,9 +342,9 @@ void TrackerNode::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Stamp far from the clock, refused", refusals_.far_stamp);
   status.add("Loads refused", refusals_.load);
   status.add("Rows without a received load", counters.without_load);
-  if (last_load_)
+  if (last_load_stamp_)
   {
-    status.add("Load's stamp before the newest row's reception [s]", toSeconds(last_received_ - last_load_->stamp));
+    status.add("Load's stamp before the newest row's reception [s]", toSeconds(last_received_ - *last_load_stamp_));
   }
 }
 

@@ -49,14 +49,14 @@ private:
 
   struct LoadAt
   {
-    Stamp stamp;     // [ns]
-    Stamp received;  // [ns]
-    double torque;   // [N.m]
+    std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
+    Stamp received;              // [ns]
+    double torque;               // [N.m]
   };
 
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
-  void receiveLoadNow(double torque);
+  void receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event);
   void pushLoad(const LoadAt& load);
   void passLoad(const LoadAt& load);
   bool start(Stamp stamp);
@@ -78,14 +78,14 @@ private:
   const Parameters parameters_;
   Tracker tracker_;
   LifePublisher life_;
-  std::optional<Stamp> start_;           // stamp of the first row: the tracker's zero [ns]
-  Stamp last_received_{};                // [ns]
-  Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
-  std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
-  std::uint64_t clock_changes_{};        // restarts because all stamps had moved far
-  std::optional<LoadAt> last_load_;
-  std::deque<LoadAt> early_loads_;  // received before the start
-  std::string found_names_;         // in the last message without this joint
+  std::optional<Stamp> start_;            // stamp of the first row: the tracker's zero [ns]
+  Stamp last_received_{};                 // [ns]
+  Stamp offset_{};                        // of the last row taken: reception less stamp [ns]
+  std::optional<Stamp> refused_offset_;   // of the last row, if its stamp was refused [ns]
+  std::uint64_t clock_changes_{};         // restarts because all stamps had moved far
+  std::optional<Stamp> last_load_stamp_;  // [ns]
+  std::deque<LoadAt> early_loads_;        // received before the start
+  std::string found_names_;               // in the last message without this joint
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;

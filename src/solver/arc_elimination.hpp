@@ -57,6 +57,8 @@ struct alignas(32) CornerFactors
 /// Code for one kind of processor.
 struct Kernels
 {
+  const char* name;  ///< e.g. "AVX2": the last bits of what is solved differ from kind to kind
+
   void (*factor)(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums);
 
   /// Eliminates right-hand sides `b` (a pointer each to 2 rows a tooth; [0], [1], [2] for 1, 2, 3 of them).

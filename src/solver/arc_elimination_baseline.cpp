@@ -5,7 +5,7 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels BASELINE = kernels();
+const Kernels BASELINE = kernels("BASELINE");
 
 const Kernels& fastest() noexcept
 {

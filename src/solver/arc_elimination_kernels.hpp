@@ -406,11 +406,10 @@ inline void solveCorner(const CornerFactors& factors, double* b)
   }
 }
 
-constexpr Kernels kernels()
+constexpr Kernels kernels(const char* name)
 {
-  return {
-    factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> }, factorCorner, solveCorner
-  };
+  return { name,         factor,     { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> },
+           factorCorner, solveCorner };
 }
 }  // namespace
 }  // namespace arcs

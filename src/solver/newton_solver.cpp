@@ -53,6 +53,7 @@ SolveCode NewtonSolver::iterate(RingLinearisation& system, RingState& state, Ene
     }
     if (++status.iterations > max_iterations)
     {
+      status.max_iterations = max_iterations_;
       return SolveCode::ITERATION_LIMIT;
     }
     if (!(descent != nullptr ? descent->step(system, state) : searchLine(status.residual, system, state)))

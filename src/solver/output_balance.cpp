@@ -70,6 +70,7 @@ SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, do
     total.cuts += moved.cuts;
     total.jumps += moved.jumps;
     total.residual = moved.residual;
+    total.max_iterations = moved.max_iterations;
     const double before = std::abs(excess);
     excess = ring.forces().output_torque - load_torque;
     idle = std::abs(excess) < CLOSER * least ? 0 : idle + 1;

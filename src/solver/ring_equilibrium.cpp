@@ -204,6 +204,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
     total.iterations += status.iterations;
     total.residual = status.residual;
     total.code = status.code;
+    total.max_iterations = status.max_iterations;
     if (status.ok())
     {
       done = next;

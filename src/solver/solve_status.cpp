@@ -21,11 +21,19 @@ const char* failureOf(SolveStage stage) noexcept
   return "the ring cannot be moved to the requested angles";
 }
 
-const char* adviceOf(const SolveStatus& status) noexcept
+/// solver.max_iterations of config/solver.yaml: all shipped gears are solved with it.
+constexpr int SHIPPED_MAX_ITERATIONS = 20;
+
+std::string adviceOf(const SolveStatus& status)
 {
   if (status.code == SolveCode::NOT_FINITE)
   {
     return "a number overflowed; look for extreme parameters or angles";
+  }
+  if (status.max_iterations > 0 && status.max_iterations < SHIPPED_MAX_ITERATIONS)
+  {
+    return "raise solver.max_iterations from " + std::to_string(status.max_iterations) + " to the shipped " +
+           std::to_string(SHIPPED_MAX_ITERATIONS);
   }
   if (status.stage == SolveStage::INSERTION || status.code == SolveCode::DISENGAGED)
   {
@@ -38,7 +46,7 @@ const char* adviceOf(const SolveStatus& status) noexcept
     return "the teeth do not carry it; reduce the load";
   }
   return status.code == SolveCode::ITERATION_LIMIT ?
-             "take smaller steps, or raise solver.max_iterations or solver.max_step_cuts" :
+             "take smaller steps, or raise solver.max_step_cuts" :
              "take smaller steps, or reduce the load: the teeth may be about to jump";
 }
 }  // namespace

@@ -37,8 +37,10 @@ class DeviationBuilder
 {
 public:
   DeviationBuilder(const Parameters& parameters, const JointModel& equal, const JointModel& actual, int repetition,
-                   const std::function<void(double)>& progress)
-    : progress_(progress)
+                   const std::function<void(double)>& progress, std::size_t max_points)
+    : parameters_(parameters)
+    , progress_(progress)
+    , max_points_(max_points)
     , equal_(parameters, equal)
     , actual_(parameters, actual)
     , pitches_(static_cast<std::size_t>(repetition))
@@ -57,7 +59,8 @@ public:
     }
     else
     {
-      result.failure_reason = "the ring finds no equilibrium at some angles within a turn";
+      result.failure_reason = too_many_ ? tooManyPoints(parameters_, max_points_) :
+                                          "the ring finds no equilibrium at some angles within a turn";
     }
     result.solves = equal_.solves() + actual_.solves();
     return result;
@@ -99,11 +102,23 @@ private:
     return nodes;
   }
 
+  /// Of a line's strips.
+  std::size_t pointsOf(const Set& wanted) const
+  {
+    std::size_t points = 0;
+    for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
+    {
+      points += wanted[pitch] ? static_cast<std::size_t>(columns_[pitch]) + 1 : 0;
+    }
+    return points;
+  }
+
   /// SurfaceDeviations on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
-  /// beside which, there are any. False: no equilibrium.
+  /// beside which, there are any. False: no equilibrium, or too many points.
   bool measureLine(double v, const Set& wanted, Line& line)
   {
-    if (!leadTo(v))
+    too_many_ = points_ + pointsOf(wanted) > max_points_;
+    if (too_many_ || !leadTo(v))
     {
       return false;
     }
@@ -150,6 +165,14 @@ private:
       }
     }
     setTolerance(line, equal.front());
+    return good;
+  }
+
+  /// The same for a line of the table.
+  bool addLine(double v, const Set& wanted)
+  {
+    const bool good = measureLine(v, wanted, lines_[v]);
+    points_ += pointsOf(wanted);
     return good;
   }
 
@@ -246,7 +269,7 @@ private:
       {
         const double part = static_cast<double>(i) / COARSE_LINES;
         const double v = end * part * part;
-        if (lines_.count(v) == 0 && !measureLine(v, all, lines_[v]))
+        if (lines_.count(v) == 0 && !addLine(v, all))
         {
           return false;
         }
@@ -279,11 +302,11 @@ private:
   bool refine(double below, double above, const Set& wanted, int halvings)
   {
     const double middle = 0.5 * (below + above);
-    Line& line = lines_[middle];
-    if (!measureLine(middle, wanted, line))
+    if (!addLine(middle, wanted))
     {
       return false;
     }
+    const Line& line = lines_[middle];
     Set coarse(pitches_, 0);
     for (std::size_t pitch = 0; pitch < pitches_ && halvings < MAX_HALVINGS; ++pitch)
     {
@@ -396,12 +419,16 @@ private:
     }
   }
 
+  const Parameters& parameters_;
   std::function<void(double)> progress_;
+  std::size_t max_points_;
   SurfaceRing equal_;
   SurfaceRing actual_;
   std::size_t pitches_;
   std::vector<int> columns_;  // of each pitch
   std::map<double, Line> lines_;
+  std::size_t points_{};  // of all lines
+  bool too_many_{};
   Torques largest_{ Torques::Zero() };  // departures of all lines so far
   double longest_way_{};                // between two solves, in v [rad]
   double v_{};                          // where the rings are [rad]
@@ -410,8 +437,8 @@ private:
 
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
-                               const std::function<void(double)>& progress)
+                               const std::function<void(double)>& progress, std::size_t max_points)
 {
-  return DeviationBuilder(parameters, equal, actual, repetition, progress).build(lowest, highest);
+  return DeviationBuilder(parameters, equal, actual, repetition, progress, max_points).build(lowest, highest);
 }
 }  // namespace hjt

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -10,6 +11,9 @@
 
 namespace hjt
 {
+/// No table of deviations has more: 460 MB; half the stiffness of the rim behind one tooth needs a third of it.
+constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
+
 /// SurfaceDeviations of a gear from one of equal teeth, or why there are none.
 struct DeviationBuild
 {
@@ -23,7 +27,9 @@ struct DeviationBuild
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
 /// size of the departures: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
+/// A table of more than `max_points` is given up.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
-                               const std::function<void(double)>& progress);
+                               const std::function<void(double)>& progress,
+                               std::size_t max_points = MAX_DEVIATION_POINTS);
 }  // namespace hjt

@@ -7,8 +7,6 @@
 #include <sstream>
 #include <vector>
 
-#include "surface/surface_ring.hpp"
-
 namespace hjt
 {
 namespace
@@ -21,13 +19,13 @@ constexpr int COARSE_LINES = 32;       // a side, before refinement, about
 constexpr int MAX_HALVINGS = 9;        // of an interval between two lines
 constexpr int MIN_COLUMNS = 16;
 constexpr int MAX_COLUMNS = 64;
-constexpr std::size_t MAX_NODES = 500000;  // 150 MB; the shipped gear needs a third of it
 
 class SurfaceBuilder
 {
 public:
-  SurfaceBuilder(const Parameters& parameters, const JointModel& model, const std::function<void(double)>& progress)
-    : progress_(progress), ring_(parameters, model)
+  SurfaceBuilder(const Parameters& parameters, const JointModel& model, const std::function<void(double)>& progress,
+                 std::size_t max_points)
+    : parameters_(parameters), progress_(progress), max_points_(max_points), ring_(parameters, model)
   {
     table_.pitch = ring_.pitch();
     table_.ratio = ring_.ratio();
@@ -227,10 +225,9 @@ private:
 
   void refine(double below, double above, int halvings)
   {
-    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= MAX_NODES)
+    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= max_points_)
     {
-      failure_reason_ =
-          "a table as fine as its tolerances ask for would have more than " + std::to_string(MAX_NODES) + " points";
+      failure_reason_ = tooManyPoints(parameters_, max_points_);
       return;
     }
     const double middle = 0.5 * (below + above);
@@ -269,7 +266,9 @@ private:
     }
   }
 
+  const Parameters& parameters_;
   std::function<void(double)> progress_;
+  std::size_t max_points_;
   SurfaceRing ring_;
   SurfaceTable table_;
   std::map<double, Line> lines_;
@@ -278,8 +277,8 @@ private:
 }  // namespace
 
 SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
-                          const std::function<void(double)>& progress)
+                          const std::function<void(double)>& progress, std::size_t max_points)
 {
-  return SurfaceBuilder(parameters, model, progress).build();
+  return SurfaceBuilder(parameters, model, progress, max_points).build();
 }
 }  // namespace hjt

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "model/joint_model.hpp"
 #include "solver/response_surface.hpp"
+#include "surface/surface_ring.hpp"
 
 namespace hjt
 {
@@ -23,7 +25,7 @@ struct SurfaceBuild
 /// The grid follows from measured errors: wherever the table's torques at the middle of an interval miss the ring's by
 /// more than a tolerance, the interval is halved. `model` must be the same again after every tooth pitch. There is no
 /// surface where its ring finds no equilibrium at the torques of its limits.
-/// `progress`: called with 0 ... 1, or empty.
+/// `progress`: called with 0 ... 1, or empty. A table of more than `max_points` is given up.
 SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
-                          const std::function<void(double)>& progress);
+                          const std::function<void(double)>& progress, std::size_t max_points = MAX_SURFACE_POINTS);
 }  // namespace hjt

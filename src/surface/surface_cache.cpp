@@ -27,6 +27,7 @@
 #include "gear/angle.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
+#include "solver/arc_elimination.hpp"
 #include "surface/deviation_builder.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
@@ -44,12 +45,12 @@ constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// What a file must begin with: all that its table depends on. Code, parameters, faults, and what stands in files that the
-/// parameters name.
+/// What a file must begin with: all that its table depends on. Code, the kind of processor, whose vectors round in their own
+/// way, parameters, faults, and what stands in files that the parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
-  std::string text =
-      FORMAT + std::string(surfaceSourceHash()) + '\n' + describeSurfaceParameters(parameters, !faults.empty());
+  std::string text = FORMAT + std::string(surfaceSourceHash()) + ' ' + arcs::fastest().name + '\n' +
+                     describeSurfaceParameters(parameters, !faults.empty());
   text += faults + '\n';
   for (const std::string& path :
        { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })

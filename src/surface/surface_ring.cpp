@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.hpp"
 #include "gear/ratio.hpp"
 #include "model/lobe_loads.hpp"
 #include "params/variants.hpp"
@@ -79,6 +80,19 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
   }
 }
 }  // namespace
+
+std::string tooManyPoints(const Parameters& parameters, std::size_t most)
+{
+  const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
+  return "a table as fine as its tolerances ask for would have more than " + std::to_string(most) +
+         " points; fewer teeth, a smaller wave, smaller torque limits or, where teeth differ, smaller errors and "
+         "faults "
+         "need fewer (" +
+         named("gear.teeth_flexspline", parameters.gear.teeth_flexspline) + ", " +
+         named("gear.wave_amplitude", parameters.gear.wave_amplitude) + ", " +
+         named("motor.torque_limit", parameters.motor.torque_limit) + ", " +
+         named("output.load_torque_limit", parameters.output.load_torque_limit) + ")";
+}
 
 SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   : model_(std::move(model))

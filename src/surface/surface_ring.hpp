@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include "model/joint_model.hpp"
 #include "solver/response_surface.hpp"
 #include "solver/ring_equilibrium.hpp"
 
 namespace hjt
 {
+/// No table of the ring has more: 150 MB; the shipped gear needs a third of it.
+constexpr std::size_t MAX_SURFACE_POINTS = 500000;
+
+/// Why there is no table of more than `most` points, with the parameters that its size depends on.
+std::string tooManyPoints(const Parameters& parameters, std::size_t most);
+
 /// A ring in equilibrium, solved to rounding, that is led over the nodes of a response surface and measured there.
 class SurfaceRing
 {

@@ -17,8 +17,23 @@ namespace
 constexpr int POSITIONS = 8;  // over a tooth pitch
 // Equally spaced in their logarithm.
 constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
-// Shares of the load that the motor can hold.
+// Shares of the largest load.
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
+
+/// What the motor can hold, or what acts on a joint that has no motor [N.m].
+double largestLoad(const Parameters& parameters)
+{
+  const double largest = parameters.motor.torque_limit > 0.0 ?
+                             parameters.motor.torque_limit * nominalRatio(parameters.gear) :
+                             parameters.output.load_torque_limit;
+  if (!(largest > 0.0))
+  {
+    throw ParameterError(
+        "motor.torque_limit and output.load_torque_limit are both 0: there is no range of loads to "
+        "tabulate the friction over");
+  }
+  return largest;
+}
 }  // namespace
 
 FrictionMap::FrictionMap(const Parameters& parameters)
@@ -30,7 +45,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
                     bearing_.torque(0.0, -race_preload_, parameters.input.temperature))
 {
   static_assert(SPEEDS == hjt::SPEEDS.size());
-  const double largest = parameters.motor.torque_limit * nominalRatio(parameters.gear);
+  const double largest = largestLoad(parameters);
   std::vector<double> loads;
   for (const double share : LOADS)
   {

@@ -27,8 +27,9 @@ struct FrictionShares
 class FrictionMap
 {
 public:
-  /// Tables loads up to what the motor can hold (some ten milliseconds).
-  /// @throws ParameterError if the ring finds no equilibrium under load.
+  /// Tables loads up to what the motor can hold, with motor.torque_limit = 0 up to output.load_torque_limit (some ten
+  /// milliseconds).
+  /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under load.
   explicit FrictionMap(const Parameters& parameters);
 
   /// At motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the largest.

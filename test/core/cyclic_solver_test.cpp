@@ -158,6 +158,31 @@ TEST(CyclicSolver, AgreesWithADenseSolverAtEquilibriumUnderLoad)
   expectSolution(tangent, random);
 }
 
+#ifdef HJT_AVX2
+/// What is kept beyond the process must name the kind: SurfaceCache does.
+TEST(CyclicSolver, RoundsInItsOwnWayOnEachKindOfProcessor)
+{
+  if (__builtin_cpu_supports("avx2") == 0 || __builtin_cpu_supports("fma") == 0)
+  {
+    GTEST_SKIP() << "this processor runs one kind";
+  }
+  std::mt19937 random(46);
+  const RingTangent tangent = randomTangent(200, random);
+  const Eigen::VectorXd load = randomMatrix(400, 1, random);
+  std::vector<Eigen::VectorXd> solutions;
+  for (const arcs::Kernels* kernels : { &arcs::BASELINE, &arcs::AVX2 })
+  {
+    CyclicSolver solver(200, *kernels);
+    ASSERT_TRUE(solver.factor(tangent));
+    solutions.push_back(load);
+    solver.solve<1>(solutions.back());
+  }
+  EXPECT_NE(solutions[0], solutions[1]);
+  EXPECT_STRNE(arcs::BASELINE.name, arcs::AVX2.name);
+  EXPECT_STRNE(arcs::AVX2.name, arcs::AVX512.name);
+}
+#endif
+
 TEST(CyclicSolver, SaysWhenThereIsNoSolution)
 {
   constexpr unsigned SEED = 44;

@@ -14,6 +14,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "identification/identification.hpp"
+#include "tracking/friction_map.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt
@@ -119,6 +120,29 @@ const IdentifiedValue& valueOf(const Identification& found, const std::string& k
   }
   ADD_FAILURE() << key << " was not looked for";
   return found.values.front();
+}
+
+TEST(FrictionMap, OfAJointWithoutMotorReachesToTheLoadsOnIt)
+{
+  const FrictionMap without(shippedParameters({ "motor.torque_limit=0.0" }));
+  const FrictionMap with(shippedParameters());
+  for (const double speed : { 0.5, 80.0 })
+  {
+    for (const double load : { 0.0, 3.0, 60.0, -200.0 })
+    {
+      const double expected = with.at(speed, load, 25.0).sum();
+      EXPECT_NEAR(without.at(speed, load, 25.0).sum(), expected, 0.01 * expected) << speed << " " << load;
+    }
+  }
+  try
+  {
+    const FrictionMap neither(shippedParameters({ "motor.torque_limit=0.0", "output.load_torque_limit=0.0" }));
+    ADD_FAILURE() << "accepted";
+  }
+  catch (const ParameterError& error)
+  {
+    EXPECT_THAT(error.what(), testing::HasSubstr("motor.torque_limit and output.load_torque_limit are both 0"));
+  }
 }
 
 TEST(MotionDriven, TakesTheTorqueThatMadeTheMotion)

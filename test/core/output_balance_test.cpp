@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "test_parameters.hpp"
@@ -105,6 +106,38 @@ TEST(OutputBalance, OfTeethThatDoNotReachEachOtherSaysSo)
   EXPECT_NE(explanationOf(status).find("no tooth touches"), std::string::npos);
   EXPECT_NE(explanationOf(status).find("gear.rim_thickness"), std::string::npos);
   EXPECT_EQ(explanationOf(status).find("solver.max_iterations"), std::string::npos);
+}
+
+/// What the user reads about an insertion of the shipped gear with these parameters, which fails.
+std::string failedInsertion(const std::vector<std::string>& assignments)
+{
+  const Parameters parameters = shippedParameters(assignments);
+  const RingModel model(parameters);
+  const SolveStatus status =
+      RingEquilibrium(model, parameters.solver).insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  EXPECT_EQ(status.code, SolveCode::ITERATION_LIMIT);
+  EXPECT_EQ(status.stage, SolveStage::INSERTION);
+  return explanationOf(status);
+}
+
+TEST(SolveStatus, NamesTheIterationsOnlyWhereTheShippedLimitIsHigher)
+{
+  const std::string shipped = std::to_string(shippedParameters().solver.max_iterations);
+  const std::string lowered =
+      failedInsertion({ "contact.stiffness=1.0e+12", "solver.max_iterations=1", "solver.max_step_cuts=0" });
+  EXPECT_THAT(lowered, testing::HasSubstr("raise solver.max_iterations from 1 to the shipped " + shipped));
+  EXPECT_THAT(lowered, testing::Not(testing::HasSubstr("gear.wave_amplitude")));
+  SolveStatus status;
+  status.code = SolveCode::ITERATION_LIMIT;
+  for (const SolveStage stage : { SolveStage::INSERTION, SolveStage::MOTION, SolveStage::BALANCE })
+  {
+    status.stage = stage;
+    status.max_iterations = shippedParameters().solver.max_iterations;
+    EXPECT_THAT(explanationOf(status), testing::Not(testing::HasSubstr("max_iterations")));
+    EXPECT_EQ(explanationOf(status).find("gear.wave_amplitude") != std::string::npos, stage == SolveStage::INSERTION);
+    status.max_iterations -= 1;
+    EXPECT_THAT(explanationOf(status), testing::HasSubstr("raise solver.max_iterations"));
+  }
 }
 
 TEST(OutputBalance, OfNoNumberIsRefused)

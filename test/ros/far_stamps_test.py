@@ -12,6 +12,7 @@ import rospy
 import rostest
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
 
 from harmonic_joint_twin.msg import Comparison, Fault
 from ros_support import PACKAGE, WARN, Diagnostics, Listener, Node, configuration_files, load_parameters, wait_until
@@ -47,6 +48,17 @@ class FarStamps(unittest.TestCase):
         self.tick(START)
         # A task that has values: the first status only says that the node is starting.
         wait_until(lambda: self.tick(START) or self.diagnostics.values("Input"), "diagnostics", 60.0)
+
+    def start_beside_robot(self):
+        """The node in mode motion: publisher of the robot's rows, listener of what the node makes of them."""
+        self.start("motion")
+        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
+        comparisons = Listener(f"{NODE}/comparison", Comparison)
+        self.addCleanup(comparisons.close)
+        comparisons.wait_for_connection()
+        self.row = 0
+        self.behind = 0.0  # the robot's clock [s]
+        return measured, comparisons
 
     def publisher(self, topic, message_type):
         publisher = rospy.Publisher(topic, message_type, queue_size=1000)
@@ -109,12 +121,7 @@ class FarStamps(unittest.TestCase):
         self.stop()
 
     def test_a_twin_beside_a_robot(self):
-        self.start("motion")
-        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
-        comparisons = Listener(f"{NODE}/comparison", Comparison)
-        self.addCleanup(comparisons.close)
-        comparisons.wait_for_connection()
-        self.row = 0
+        measured, comparisons = self.start_beside_robot()
         self.give_rows(measured, 50)
         wait_until(comparisons.messages, "comparisons")
         for stamp in FAR:
@@ -132,12 +139,7 @@ class FarStamps(unittest.TestCase):
         self.stop()
 
     def test_a_twin_beside_a_robot_whose_clock_jumps_far(self):
-        self.start("motion")
-        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
-        comparisons = Listener(f"{NODE}/comparison", Comparison)
-        self.addCleanup(comparisons.close)
-        comparisons.wait_for_connection()
-        self.row = 0
+        measured, comparisons = self.start_beside_robot()
         self.give_rows(measured, 50)
         self.jump(lambda _: time.sleep(0.5) or True)
         comparisons.clear()
@@ -146,16 +148,30 @@ class FarStamps(unittest.TestCase):
         self.stop()
 
     def test_a_twin_beside_a_robot_whose_first_stamp_is_wrong(self):
-        self.start("motion")
-        measured = self.publisher(f"{NODE}/joint_states_measured", JointState)
-        comparisons = Listener(f"{NODE}/comparison", Comparison)
-        self.addCleanup(comparisons.close)
-        comparisons.wait_for_connection()
-        self.row = 0
+        measured, comparisons = self.start_beside_robot()
         self.send(measured, FAR[-1], position=[0.1], effort=[0.1])
         self.give_rows(measured, 100)
         wait_until(lambda: len(comparisons.messages()) > 50, "comparisons")
         self.assertTrue(all(START <= m.header.stamp.to_sec() < START + 10 for m in comparisons.messages()))
+        self.stop()
+
+    def test_a_load_without_a_stamp_is_valid_for_the_rows_after_it(self):
+        """Whatever the robot's clock shows: here it is an hour slow."""
+        measured, comparisons = self.start_beside_robot()
+        load_torque = self.publisher(f"{NODE}/load_torque", Float64)
+        self.behind = 3600.0
+        self.give_rows(measured, 50)
+        wait_until(comparisons.messages, "comparisons")
+        for torque, give in ((7.0, load_torque.publish),
+                             (15.0, lambda torque: self.send(self.load, rospy.Time(0), effort=[torque]))):
+            give(torque)
+            time.sleep(0.2)
+            comparisons.clear()
+            self.give_rows(measured, 50)
+            wait_until(lambda: len(comparisons.messages()) > 30, "comparisons")
+            # The load's inertia takes part: the swing's acceleration of up to 0.1 rad/s^2.
+            self.assertAlmostEqual(comparisons.messages()[-1].load_torque, torque, delta=2.0)
+        self.assertEqual(self.diagnostics.number("Input", "Loads refused"), 0)
         self.stop()
 
     def give_rows(self, publisher, count):
@@ -163,8 +179,8 @@ class FarStamps(unittest.TestCase):
         for _ in range(count):
             self.row += 1
             self.now = START + PERIOD * self.row
-            stamp = rospy.Time.from_sec(self.now)
-            self.clock.publish(stamp)
+            self.clock.publish(rospy.Time.from_sec(self.now))
+            stamp = rospy.Time.from_sec(self.now - self.behind)
             self.send(publisher, stamp, position=[0.1 * math.sin(self.now - START)], effort=[0.1])
             time.sleep(0.002)
 

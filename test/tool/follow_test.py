@@ -5,6 +5,7 @@ import csv
 import glob
 import math
 import os
+import re
 
 import rosbag
 from sensor_msgs.msg import JointState
@@ -33,8 +34,9 @@ record: {format: bag}
 """
 
 
-def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT):
-    """The robot's own joint states as a UR driver publishes them; received 4 ms after their stamps, one in 50 lost."""
+def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT, eccentricity=0.0):
+    """The robot's own joint states as a UR driver publishes them; received 4 ms after their stamps, one in 50 lost.
+    `eccentricity`: further error of the output encoder once a turn [rad]."""
     with rosbag.Bag(source) as robot, rosbag.Bag(target, "w") as bag:
         states = [message for _, message, _ in robot.read_messages("/joint_twin/joint_states")]
         behind = round(lag / 0.008)
@@ -42,7 +44,8 @@ def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT):
             if row < behind or row % 50 == 30:
                 continue
             current = states[row - behind].effort[0] * RATIO / GAIN
-            told = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, state.position[1], 0.2],
+            angle = state.position[1] + eccentricity * math.sin(state.position[1])
+            told = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, angle, 0.2],
                               velocity=[0.0] * 3, effort=[0.0, current, 0.0])
             if both:
                 told.name.append(joint + "_motor")
@@ -115,27 +118,60 @@ class Follow(tool.ToolTest):
         self.fail_with(1, [JOINT], "follow", "a.bag", "--joint", "shoulder_joint")
 
 
-class Wrist(tool.ToolTest):
-    """A joint with another gear: nothing in the tool is of one size."""
-    WEIGHT = 5.0  # [N.m]
-    OPTIONS = ["--joint", "wrist_1", "--config", "size_14.yaml", "--set", f"output.gravity_torque={WEIGHT}"]
+class SoundJoint(tool.ToolTest):
+    """A joint with each of the shipped gears under a weight: nothing in the tool is of one size."""
+    ECCENTRICITY = 4.4e-4  # of the output encoder, as in real_sensors.yaml [rad]
 
-    def setUp(self):
-        super().setUp()
-        plan = PLAN.replace("joints/base.yaml", "size_14.yaml").replace("duration: 8.0", "duration: 30.0")
-        plan = plan.replace("set: {", f"set: {{output.gravity_torque: {self.WEIGHT}, ")
+    def judge_joint(self, joint, overlay, weight):
+        """The joint under `weight` [N.m], with an exact output encoder: all findings within two per cent."""
+        options = ["--joint", joint, "--config", overlay, "--set", f"output.gravity_torque={weight}"]
+        plan = PLAN.replace("joints/base.yaml", overlay).replace("duration: 8.0", "duration: 20.0")
+        plan = plan.replace("set: {", f"set: {{output.gravity_torque: {weight}, sensors.output_eccentricity: 0.0, ")
         self.write("plan.yaml", plan[:plan.index("  rubbing:")] + plan[plan.index("record:"):])
         self.succeed("sweep", "plan.yaml", "--out", "robots")
         run, = glob.glob(os.path.join(self.path("robots"), "runs", "*.bag"))
-        as_ur_tells(run, self.path("a.bag"), both=True, joint="wrist_1_joint")
-
-    def test_a_sound_wrist_is_followed_and_can_be_compared_and_identified(self):
+        name = {"base": JOINT}.get(joint, joint + "_joint")
+        as_ur_tells(run, self.path("a.bag"), both=True, joint=name)
+        as_ur_tells(run, self.path("eccentric.bag"), both=True, joint=name, eccentricity=self.ECCENTRICITY)
         for mode in ("motion", "observer"):
-            summary = self.succeed_json("follow", "a.bag", *self.OPTIONS, "--mode", mode)
+            summary = self.succeed_json("follow", "a.bag", *options, "--mode", mode)
             self.assertLess(summary["outside"], 0.02 * summary["rows"], summary)
-        report = self.succeed_json("compare", "a.bag", *self.OPTIONS, "--report", "r")
-        self.assertGreater(report["friction_ratio"], 0.0)
-        self.succeed_json("identify", "a.bag", *self.OPTIONS)
+
+        report = self.succeed_json("compare", "a.bag", *options, "--report", "sound")
+        self.assertAlmostEqual(report["friction_ratio"], 1.0, delta=0.02)
+        self.assertAlmostEqual(report["compliance_ratio"], 1.0, delta=0.02)
+        self.assertEqual(report["verdict"]["level"], "OK", report["verdict"])
+        levels = [finding["level"] for finding in report["verdict"]["findings"]]
+        self.assertEqual(levels, ["OK", "OK", "NOT JUDGED"])  # the signals: too few windows
+
+        found = self.succeed_json("identify", "a.bag", *options, "--folds", "4")
+        values = {value["key"]: value for value in found["values"]}
+        self.assertAlmostEqual(values["telemetry.torque_per_current"]["value"], GAIN, delta=0.01 * GAIN)
+        left_out = found["left_out"]
+        self.assertLess(left_out["identified"]["all"], 0.7 * left_out["configured"]["all"])
+        self.assertLess(left_out["identified"]["all"], 0.6 * left_out["gain_coulomb_viscous"]["all"])
+        self.assertLess(left_out["identified"]["all"], 0.15 * left_out["identified"]["signal"])
+        return options
+
+    def compare(self, report, *options):
+        done = self.succeed_json("compare", "eccentric.bag", *options, "--report", report)
+        return done["compliance_ratio"], done["verdict"]["level"], done["verdict"]["findings"][1]["text"]
+
+    def test_with_size_25_is_sound(self):
+        self.judge_joint("base", "joints/base.yaml", 45.0)
+
+    def test_with_size_14_is_sound(self):
+        """An output encoder's usual error is half the torsion of this gear by its weight."""
+        options = self.judge_joint("wrist_1", "size_14.yaml", 5.0)
+        ratio, level, text = self.compare("not_configured", *options)
+        self.assertAlmostEqual(ratio, 0.51, delta=0.05)
+        self.assertEqual(level, "WARN")
+        least = 1e-3 * float(re.search(r"amplitude ([0-9.]+) mrad or more, would look the same: "
+                                       r"sensors.output_eccentricity is 0.00 mrad", text).group(1))
+        self.assertGreater(least, 0.75 * self.ECCENTRICITY)
+        self.assertLess(least, self.ECCENTRICITY)
+        eccentric = ["--set", f"sensors.output_eccentricity={self.ECCENTRICITY}"]
+        self.assertEqual(self.compare("configured", *options, *eccentric)[:2], (ratio, "OK"))
 
 
 if __name__ == "__main__":

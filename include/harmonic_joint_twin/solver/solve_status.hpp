@@ -31,6 +31,7 @@ struct [[nodiscard]] SolveStatus
   SolveStage stage{ SolveStage::MOTION };
   int iterations{};            ///< Newton iterations, all attempts
   int cuts{};                  ///< halvings of the path
+  int max_iterations{};        ///< solver.max_iterations, if the last attempt ran out of them; else 0
   int jumps{};                 ///< teeth that changed their space through a tip: ratcheting, or too long a move
   double residual{};           ///< largest out-of-balance force component on a tooth [N]
   double unbalanced_torque{};  ///< of the last balance: load that the mesh does not carry [N.m]

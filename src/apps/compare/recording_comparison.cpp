@@ -71,7 +71,7 @@ void RecordingComparison::update(const MotionSample& sample)
     }
     if (std::isfinite(sample.motor_angle))
     {
-      torsion_.add(sample.load, sample.motor_angle / ratio_ - sample.position, sample.velocity);
+      torsion_.add(sample.load, sample.motor_angle / ratio_ - sample.position, sample.position, sample.velocity);
     }
   }
   reach_.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;

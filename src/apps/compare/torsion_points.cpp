@@ -12,7 +12,7 @@ TorsionPoints::TorsionPoints(const Parameters& parameters)
 {
 }
 
-void TorsionPoints::add(double torque, double torsion, double speed)
+void TorsionPoints::add(double torque, double torsion, double position, double speed)
 {
   const double twin = curve_.torsion(torque);
   const double way = speed < 0.0 ? -1.0 : 1.0;
@@ -20,6 +20,9 @@ void TorsionPoints::add(double torque, double torsion, double speed)
   ++rows_;
   twin_sum_ += twin;
   twin_squares_ += twin * twin;
+  const Eigen::Vector2d turn(std::cos(position), std::sin(position));
+  turn_sum_ += turn;
+  turn_squares_ += turn * turn.transpose();
   Bin& bin = bins_[speed < 0.0 ? 1 : 0][static_cast<int>(std::lround(torque / step_))];
   bin.sum += torsion;
   bin.rows += 1.0;
@@ -29,6 +32,14 @@ double TorsionPoints::twinAmplitude() const
 {
   const auto n = static_cast<double>(rows_);
   return rows_ == 0 ? 0.0 : std::sqrt(std::max(0.0, twin_squares_ / n - std::pow(twin_sum_ / n, 2)));
+}
+
+double TorsionPoints::turnAmplitude() const
+{
+  const double n = std::max(static_cast<double>(rows_), 1.0);
+  const Eigen::Matrix2d squares = turn_squares_ / n - turn_sum_ * turn_sum_.transpose() / (n * n);
+  // The root of the larger eigenvalue.
+  return std::sqrt(0.5 * squares.trace() + std::hypot(0.5 * (squares(0, 0) - squares(1, 1)), squares(0, 1)));
 }
 
 RunningRegression TorsionPoints::fitted() const

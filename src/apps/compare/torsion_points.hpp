@@ -26,8 +26,9 @@ public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit TorsionPoints(const Parameters& parameters);
 
-  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `speed` [rad/s].
-  void add(double torque, double torsion, double speed);
+  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position` of the
+  /// joint [rad], `speed` [rad/s].
+  void add(double torque, double torsion, double position, double speed);
 
   std::uint64_t rows() const { return rows_; }
 
@@ -38,6 +39,9 @@ public:
   /// if the torque hardly varied.
   double compliance() const;
   double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
+
+  /// Largest standard deviation that a sine of the joint angle of amplitude 1 has, over all phases [-].
+  double turnAmplitude() const;
 
 private:
   static constexpr double STEPS = 142.0;       // up to the largest load
@@ -58,5 +62,7 @@ private:
   std::uint64_t rows_{};
   double twin_sum_{};
   double twin_squares_{};
+  Eigen::Vector2d turn_sum_{ 0.0, 0.0 };  // of cosine and sine of the joint angle
+  Eigen::Matrix2d turn_squares_{ Eigen::Matrix2d::Zero() };
 };
 }  // namespace hjt

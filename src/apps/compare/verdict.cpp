@@ -189,13 +189,23 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
     finding.text = "The load hardly varies, so the stiffness of the drive cannot be measured.";
     return finding;
   }
-  // Once a turn an encoder off its axis looks like torsion under a weight.
-  const double eccentricity =
-      (parameters.sensors.output_eccentricity + parameters.sensors.motor_eccentricity / comparison.ratio()) /
-      std::sqrt(2.0) / comparison.torsion().twinAmplitude();
+  // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
+  const double twin = comparison.torsion().twinAmplitude();
+  const double turn = comparison.torsion().turnAmplitude();
+  const double eccentricity = (parameters.sensors.output_eccentricity * turn +
+                               parameters.sensors.motor_eccentricity / comparison.ratio() / std::sqrt(2.0)) /
+                              twin;
   judgeRatio({ "Torsion", compliance, own.compliance_ratio, parameters.comparison.compliance_tolerance + eccentricity,
                Feature::STIFFNESS, -1.0, "a wrong load, eccentric encoders" },
              parameters, finding);
+  constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
+  if (!std::isfinite(own.compliance_ratio) && finding.level != HealthLevel::OK && turn > MIN_TURN)
+  {
+    finding.text += " An error of the output encoder once a turn, of amplitude " +
+                    rounded(1e3 * std::abs(compliance - 1.0) * twin / turn, 2) +
+                    " mrad or more, would look the same: sensors.output_eccentricity is " +
+                    rounded(1e3 * parameters.sensors.output_eccentricity, 2) + " mrad.";
+  }
   if (!std::isfinite(own.compliance_ratio) && eccentricity > 0.01)
   {
     finding.text += " Of the tolerance " + rounded(eccentricity, 2) +
