@@ -66,7 +66,8 @@ struct Result
   std::uint64_t solver_failures{};
 };
 
-/// What is asked of the twin: every per-tooth array at every step, or encoders at 1 kHz and health, on the response surface.
+/// What is asked of the twin: every per-tooth array at every step, or encoders at 1 kHz and health, on the response
+/// surface.
 enum class Watch
 {
   TEETH,

@@ -122,15 +122,15 @@ def fault_table(kinds, faulty, limit):
     totals = []
     for kind in kinds:
         own = [run for run in faulty if run.kind == kind["kind"]]
-        told = [run for run in own if alarm(run)]
-        totals += told
+        alarmed = [run for run in own if alarm(run)]
+        totals += alarmed
         cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
         check_up, (best, where) = smallest(kind["kind"], faulty, limit,
                                            [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
         lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
                      + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
                      f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
-                     f"| {share(right(run)[0] for run in told)} | {share(right(run)[1] for run in told)} |")
+                     f"| {share(right(run)[0] for run in alarmed)} | {share(right(run)[1] for run in alarmed)} |")
     lines.append("| all | " + " | ".join(share(alarm(run) is not None for run in faulty if run.severity == severity)
                                          for severity in severities)
                  + f" | | | {share(right(run)[0] for run in totals)} | {share(right(run)[1] for run in totals)} |")
@@ -281,7 +281,7 @@ def main():
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds health.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
-    parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes anew, and no more")
+    parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes again, and nothing else")
     parser.add_argument("--sound-hours", type=float, default=2.0, help="of sound running in each motion [2]")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)

@@ -16,8 +16,8 @@ public:
   /// The right-hand side changes to that of a phase which begins at a time.
   virtual void enter(const Phase& phase, double time) = 0;
 
-  /// Goes on from `time`, at least by one step of its own, at most to the phase's end; one that cannot tell the state within
-  /// a step ends at `due` and no later. False if it fails. Pairs teeth and spaces after every step.
+  /// Goes on from `time`, at least by one step of its own, at most to the phase's end; one that cannot tell the state
+  /// within a step ends at `due` and no later. False if it fails. Pairs teeth and spaces after every step.
   virtual bool advance(double due, double end, double& time) = 0;
 
   /// State at a time within the last step.

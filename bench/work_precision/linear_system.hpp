@@ -32,8 +32,8 @@ private:
   Eigen::VectorXd rates_;
 };
 
-/// SuiteSparse KLU, refactored in a fixed pattern as SUNDIALS' own interface does. The cup's matrix of rank one is left out
-/// of the pattern and put back by Sherman and Morrison's formula; with it inside, KLU would face a dense block.
+/// SuiteSparse KLU, refactored in a fixed pattern as SUNDIALS' own interface does. The cup's matrix of rank one is left
+/// out of the pattern and put back by Sherman and Morrison's formula; with it inside, KLU would face a dense block.
 class KluSystem : public LinearSystem
 {
 public:

@@ -15,7 +15,8 @@ namespace
 {
 using namespace boost::numeric::odeint;
 
-/// Dormand and Prince's method of order 5, its step controlled by odeint; states scaled, so that one tolerance serves all.
+/// Dormand and Prince's method of order 5, its step controlled by odeint; states scaled, so that one tolerance serves
+/// all.
 class Dopri5 : public Integrator
 {
 public:

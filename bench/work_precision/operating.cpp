@@ -48,7 +48,7 @@ public:
                Eigen::MatrixXd(samples_, 2 * teeth()) }
   {
     dynamics.inputs.load_torque = LOAD;
-    if (!dynamics.settle().ok())
+    if (!dynamics.solveAtRest().ok())
     {
       throw std::runtime_error("operating: no equilibrium to start from");
     }
@@ -110,7 +110,8 @@ int stepsToASample(double step)
   return static_cast<int>(std::lround(SAMPLE_PERIOD / step));
 }
 
-/// The twin's own. Its speeds belong half a step ahead of its angles: a first kick of half a step from rest brings them there.
+/// The twin's own. Its speeds belong half a step ahead of its angles: a first kick of half a step from rest brings them
+/// there.
 Run leapfrog(const OperatingProblem& problem, double step, double limit)
 {
   Journey journey(problem);

@@ -12,8 +12,8 @@ namespace hjt
 /// after 0.3 s; 1 s.
 ///
 /// The leapfrog takes friction as it is, set-valued at rest; for the other methods it is a steep slope there, over
-/// `solver.stiction_velocity`. That makes no difference in motion; but the cup's dry friction sticks most of the time, in
-/// motion too, and is left out.
+/// `solver.stiction_velocity`. That makes no difference in motion; but the cup's dry friction sticks most of the time,
+/// in motion too, and is left out.
 struct OperatingProblem
 {
   OperatingProblem();

@@ -54,7 +54,8 @@ Problem insertion()
   return problem;
 }
 
-/// The working drive at 100 rad/s, wave generator and circular spline free; at the start the load steps from 10 to 40 N.m.
+/// The working drive at 100 rad/s, wave generator and circular spline free; at the start the load steps from 10 to 40
+/// N.m.
 Problem drive(const std::string& name, const std::string& title, double duration, double stiffer, double smoothing)
 {
   constexpr double SPEED = 100.0;       // [rad/s]

@@ -17,8 +17,8 @@ using StepDone = void (*)(int*, double*, double*, double*, double*, int*, int*, 
 using Radau5 = void (*)(int*, Rates, double*, double*, double*, double*, double*, double*, int*, Jacobian, int*, int*,
                         int*, Mass, int*, int*, int*, StepDone, int*, double*, int*, int*, int*, double*, int*, int*);
 
-/// Hairer and Wanner's code as R's deSolve has it (the Jacobian's bandwidths are two arguments more). Null if that package
-/// is not installed.
+/// Hairer and Wanner's code as R's deSolve has it (the Jacobian's bandwidths are two arguments more). Null if that
+/// package is not installed.
 Radau5 loadRadau5()
 {
   static void* const library = dlopen("/usr/lib/R/site-library/deSolve/libs/deSolve.so", RTLD_NOW | RTLD_LOCAL);

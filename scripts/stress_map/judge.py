@@ -106,11 +106,11 @@ def judge(runner, cell):
 
 
 def _judge(runner, cell):
-    code, document, said = runner.run(cell, cell.step)
-    if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in said):
-        return Judged(cell, CRASHED, said or f"exit code {code}")
+    code, document, message = runner.run(cell, cell.step)
+    if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
+        return Judged(cell, CRASHED, message or f"exit code {code}")
     if document is None:
-        return Judged(cell, REFUSED, said.replace("joint_twin: ", ""))
+        return Judged(cell, REFUSED, message.replace("joint_twin: ", ""))
     judged = Judged(cell, "", iterations=document["iterations_mean"], iterations_max=document["iterations_max"],
                     cuts=document["step_cuts"], coarse=document["coarse_steps"], phase=document["phase_advance_max"],
                     turn=document["wave_generator_turn_max"])

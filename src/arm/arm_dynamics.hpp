@@ -17,8 +17,9 @@ struct JointMotion
   double acceleration{};  ///< [rad/s^2]
 };
 
-/// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's recursive
-/// Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing throws or allocates.
+/// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
+/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing throws or
+/// allocates.
 class ArmDynamics
 {
 public:
@@ -30,8 +31,8 @@ public:
 
   std::size_t joints() const noexcept;
 
-  /// `torques` at the output of each joint that make the motion, > 0 resists positive motion [N.m]. Both have an entry for
-  /// each joint.
+  /// `torques` at the output of each joint that make the motion, > 0 resists positive motion [N.m]. Both have an entry
+  /// for each joint.
   void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
 private:

@@ -21,9 +21,9 @@ struct ArmSample
 
 /// Load of each joint of an arm from a stream of the angles of all, rows of one time each.
 ///
-/// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity and
-/// have no phase, and a row comes out at most HALF_WIDTH late. Live and offline alike. After construction nothing throws;
-/// nothing allocates.
+/// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
+/// and have no phase, and a row comes out at most HALF_WIDTH late. Live and offline alike. After construction nothing
+/// throws; nothing allocates.
 class ArmLoad
 {
 public:
@@ -35,12 +35,12 @@ public:
   /// @throws ParameterError as ArmDynamics.
   explicit ArmLoad(const ArmDescription& arm);
 
-  /// One row for each joint, all of one time. False: the row is not later than the one before, or not finite, and is left
-  /// out.
+  /// One row for each joint, all of one time. False: the row is not later than the one before, or not finite, and is
+  /// left out.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
-  /// The next sample that is ready, none: nullptr. Valid until the next call. With `at_end` also those that wait for later
-  /// rows.
+  /// The next sample that is ready, none: nullptr. Valid until the next call. With `at_end` also those that wait for
+  /// later rows.
   const ArmSample* pop(bool at_end = false) noexcept;
 
 private:

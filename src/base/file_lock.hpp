@@ -5,8 +5,8 @@
 
 namespace hjt
 {
-/// Holds a file for this process alone, against others that ask in the same way; ends with the object, or with the process however
-/// that ends. The content is left as it is.
+/// Holds a file for this process alone, against others that ask in the same way; ends with the object, or with the
+/// process however that ends. The content is left as it is.
 class FileLock
 {
 public:

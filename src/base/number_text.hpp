@@ -14,6 +14,7 @@ std::string numberText(double value);
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.
 std::string rangeText(const Range& range);
 
-/// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another text.
+/// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another
+/// text.
 std::optional<double> decimalNumber(const std::string& text);
 }  // namespace hjt

@@ -5,7 +5,8 @@
 
 namespace hjt
 {
-/// Whether the rows of a table stand in the order of the enumeration they are looked up by, none missing. For static_assert.
+/// Whether the rows of a table stand in the order of the enumeration they are looked up by, none missing. For
+/// static_assert.
 template <class Rows, class Row, class Key>
 constexpr bool isInOrder(const Rows& rows, Key Row::*key)
 {

@@ -18,8 +18,8 @@ namespace hjt
 /// Torque:  C(Phi), odd, piecewise linear: slope K1 up to torque T1, K2 up to T2, K3 beyond
 /// where    Phi  mean rotation of the tooth points from rest, mean_i(psi_i - psi0_i) [rad]
 ///
-/// The torque acts on the mean rotation. Taken per tooth, as the thesis writes it, the cup would be N times too stiff and
-/// would resist the travelling wave.
+/// The torque acts on the mean rotation. Taken per tooth, as the thesis writes it, the cup would be N times too stiff
+/// and would resist the travelling wave.
 class CupTorsion
 {
 public:

@@ -18,8 +18,8 @@ struct FrictionTerm
 /// All friction of the joint, seen through its two coordinates: dry terms and a viscous matrix.
 ///
 /// The ring follows the two angles in equilibrium, so every slip in it is a combination of the two speeds, and friction
-/// acts on the angles by virtual power. Its feedback on the shape of the ring, of the order of the friction coefficient,
-/// is left out.
+/// acts on the angles by virtual power. Its feedback on the shape of the ring, of the order of the friction
+/// coefficient, is left out.
 struct JointFriction
 {
   /// Room for one term a tooth, the motor shaft's and the cup's.

@@ -139,8 +139,8 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   tangent.addSegments();
 }
 
-/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is g_i
-/// at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
+/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is
+/// g_i at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
 HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
   const int n = shape.teeth();

@@ -17,7 +17,8 @@ namespace hjt
 ///          curvature  U = 1/2 sum_i k_i (eta_i - eta_{i-1})^2   (frame-indifferent)
 /// where    eta_i  rotation of the segment from tooth i to i+1 from rest [rad]
 ///          k_i    stiffness, >= 0                                       [N.m/rad]
-/// A rim that has been bent for good adds its own angle: less preset_i, what the brackets would be of themselves.
+/// A rim that has been bent for good adds its own angle: less natural_angle_i, what the brackets would be of
+/// themselves.
 class RimBending
 {
 public:

@@ -43,8 +43,8 @@ public:
   void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;
 
   /// Adds the dashpots' force on each coordinate of the ring: 2 N of the tooth points, wave generator and output angle.
-  /// `speeds`: of the same coordinates; `growth`: N, speed of the wave generator's surface by its growing amplitude along
-  /// each tooth's normal [m/s].
+  /// `speeds`: of the same coordinates; `growth`: N, speed of the wave generator's surface by its growing amplitude
+  /// along each tooth's normal [m/s].
   DashpotPower addForces(const RingShape& shape, const Contact& contact, const Eigen::VectorXd& speeds,
                          const Eigen::VectorXd& growth, Eigen::VectorXd& force) const noexcept;
 

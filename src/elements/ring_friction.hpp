@@ -76,8 +76,8 @@ private:
 };
 
 /// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
-/// acts on the mean rotation of the rim, so it costs nothing while the drive runs at constant load; it opens the torsion
-/// loop and damps the output when the motor stands.
+/// acts on the mean rotation of the rim, so it costs nothing while the drive runs at constant load; it opens the
+/// torsion loop and damps the output when the motor stands.
 class CupFriction
 {
 public:
@@ -110,7 +110,8 @@ private:
 ///
 /// The race does not slide in the rim: it rolls, held by mu F r >> bearing friction. What slips are the two surfaces as
 /// rim and race bend: their neutral fibres lie a lever apart, so the slip is the lever times the rate at which the rim
-/// tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed and gives 74 N.m on a 2.87 N.m motor.
+/// tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed and gives 74 N.m on a 2.87 N.m
+/// motor.
 class InterfaceFriction
 {
 public:
@@ -121,8 +122,8 @@ public:
 
   void scale(double factor) noexcept { coefficient_ *= factor; }
 
-  /// Size of the torque at the motor shaft, >= 0 [N.m]. `found`: by the contact, at the same shape; `rates`: of the points
-  /// by motor angle while running [m/rad].
+  /// Size of the torque at the motor shaft, >= 0 [N.m]. `found`: by the contact, at the same shape; `rates`: of the
+  /// points by motor angle while running [m/rad].
   double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                 const Eigen::VectorXd& rates) const noexcept;
 

@@ -75,8 +75,8 @@ struct SymmetricBlocks
 
 /// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
 ///
-/// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup adds
-/// `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
+/// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup
+/// adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
 struct RingTangent
 {
   explicit RingTangent(int teeth)

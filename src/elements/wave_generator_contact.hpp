@@ -13,8 +13,9 @@
 
 namespace hjt
 {
-/// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by theta.
-/// Errors of manufacture add to w (ellipticity) and move the ellipse's centre off the axis it turns about (eccentricity).
+/// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by
+/// theta. Errors of manufacture add to w (ellipticity) and move the ellipse's centre off the axis it turns about
+/// (eccentricity).
 ///
 /// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), r the contact ramp, depth_i inside the ellipse along its true normal
 /// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)

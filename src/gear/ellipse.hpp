@@ -50,8 +50,8 @@ inline bool isNear(double a, double b, double x, double y) noexcept
 /// approximated). Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
 ///
 /// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
-/// step of size e leaves an error of 0.02 e^2, so one step reaches 1e-10 rad. Straight-line code with few divisions, for
-/// the compiler to vectorise.
+/// step of size e leaves an error of 0.02 e^2, so one step reaches 1e-10 rad. Straight-line code with few divisions,
+/// for the compiler to vectorise.
 inline EllipseFoot closestPointNear(double a, double b, double x, double y) noexcept
 {
   const double c0 = x * (1.0 / a);

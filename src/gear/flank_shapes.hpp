@@ -7,12 +7,14 @@
 
 namespace hjt
 {
-/// Path of a flexspline tooth through its space, on an inextensible ring that is conjugate at its major axis: a cycloid.
+/// Path of a flexspline tooth through its space, on an inextensible ring that is conjugate at its major axis: a
+/// cycloid.
 ///
 ///   drop   = w0 (1 - cos tau)              from full engagement, along the axis of the space  [m]
 ///   across = (a / 2) (tau - sin tau)       a = (r0 + z_t) (Z_CS - Z_FS) / Z_CS                [m]
 ///
-/// tau = 2 psi, psi the tooth's angle from the major axis. It follows from the wave w0 cos 2 psi, the rim's displacement
+/// tau = 2 psi, psi the tooth's angle from the major axis. It follows from the wave w0 cos 2 psi, the rim's
+/// displacement
 /// -(w0/2) sin 2 psi with the tilt of the tooth, and the difference of the pitches.
 class EngagementPath
 {
@@ -31,8 +33,8 @@ private:
   double entry_;
 };
 
-/// Flanks of a flexspline tooth and of its space, at points `step` apart; lengths up to a constant that the clearance at
-/// full engagement settles (thesis §3.2).
+/// Flanks of a flexspline tooth and of its space, at points `step` apart; lengths up to a constant that the clearance
+/// at full engagement settles (thesis §3.2).
 ///
 /// trapezoid   straight flanks at the flank angle.
 /// involute    both gears cut as rigid ones: same base pitch, pressure angle = flank angle at mid-height of the tooth at

@@ -32,7 +32,7 @@ Eigen::VectorXd seededDeviations(double total, int seed, int teeth)
 
 Eigen::VectorXd readDeviations(const std::string& path, int teeth)
 {
-  constexpr double LARGEST = 1e-4;  // m, a tenth of the pitch of a gear of this size
+  constexpr double MAX_ERROR = 1e-4;  // m, a tenth of the pitch of a gear of this size
   NumberTable<2> table(path, { "tooth", "deviation" });
   Eigen::VectorXd deviations(teeth);
   std::array<double, 2> row{};
@@ -43,10 +43,10 @@ Eigen::VectorXd readDeviations(const std::string& path, int teeth)
     {
       throw InputError(table.place() + ": column 'tooth' must count from 0 to " + std::to_string(teeth - 1));
     }
-    if (std::abs(row[1]) > LARGEST)
+    if (std::abs(row[1]) > MAX_ERROR)
     {
       throw InputError(table.place() + ": column 'deviation' = " + numberText(row[1]) +
-                       " [m] is out of range, allowed: " + rangeText({ -LARGEST, LARGEST }) + " [m]");
+                       " [m] is out of range, allowed: " + rangeText({ -MAX_ERROR, MAX_ERROR }) + " [m]");
     }
     deviations[tooth] = row[1];
   }

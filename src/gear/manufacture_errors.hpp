@@ -15,16 +15,16 @@ namespace hjt
 /// where    A        such that the largest less the smallest is the total cumulative pitch deviation Fp
 ///          phase_k  the k-th number of the generator mt19937 over 2^32, times 2 pi: the same on every platform
 ///
-/// The amplitudes 1/k are those of a gear cut tooth after tooth: a drive with both encoders shows 6.9" at two and 3.1" at
-/// four lines a turn of its wave generator. A table's deviations are taken as they are.
+/// The amplitudes 1/k are those of a gear cut tooth after tooth: a drive with both encoders shows 6.9" at two and 3.1"
+/// at four lines a turn of its wave generator. A table's deviations are taken as they are.
 ///
 /// `key`: of the table, for the error text. @throws ParameterError on a bad table.
 Eigen::VectorXd pitchDeviations(const PitchParameters& pitch, int teeth, const std::string& key);
 Eigen::VectorXd flexsplinePitch(const ManufactureParameters& manufacture, const GearParameters& gear);
 Eigen::VectorXd circularSplinePitch(const ManufactureParameters& manufacture, const GearParameters& gear);
 
-/// Where the teeth of the flexspline and the spaces of the circular spline stand off their places, each at its own place
-/// in the axes of the perfect gear.
+/// Where the teeth of the flexspline and the spaces of the circular spline stand off their places, each at its own
+/// place in the axes of the perfect gear.
 ///
 /// Circular spline, a the angle from space 0: its pitch deviations, and
 /// eccentricity (x, y):  along x cos a + y sin a,    across y cos a - x sin a            (moved as a whole)

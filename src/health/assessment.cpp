@@ -53,7 +53,7 @@ const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
   }
   assessment_.state = AssessmentState::ASSESSED;
   const FeatureScores scores = featureScores(deviations_);
-  settle(levelOf(scores));
+  updateLevel(levelOf(scores));
   explain(indicators, scores);
   return assessment_;
 }
@@ -76,7 +76,7 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
 }
 
 /// Lets the level follow once enough windows in a row agree.
-void Assessor::settle(HealthLevel level) noexcept
+void Assessor::updateLevel(HealthLevel level) noexcept
 {
   if (level > assessment_.level)
   {
@@ -116,7 +116,7 @@ void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& 
   }
   if (assessment_.largest_score <= 1.0)
   {
-    return;  // this window says nothing; what was said stands until the level falls
+    return;  // no evidence in this window: the causes stand until the level falls
   }
   // That something is wrong is settled: only what, is asked.
   const std::array<double, CAUSE_COUNT> probabilities = causeProbabilities(scores);

@@ -70,7 +70,8 @@ public:
     }
   }
 
-  /// A line with a phase: how far its vector has moved. Less one degree of freedom, so that noise scores as much as else.
+  /// A line with a phase: how far its vector has moved. Less one degree of freedom, so that noise scores as much as
+  /// else.
   void vector(Feature feature, Line line) const noexcept
   {
     for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })

@@ -17,8 +17,9 @@ namespace hjt
 /// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
 ///
 /// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
-/// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says. Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed
-/// itself within indicators.speed_change of it.
+/// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says.
+/// Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed itself within
+/// indicators.speed_change of it.
 class SignalMonitor
 {
 public:

@@ -8,8 +8,8 @@ namespace hjt
 {
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
-/// What a drive's own sensors tell at one instant. What is not measured stays NaN: without one of the encoders only what
-/// needs both is missing, without a load estimate only efficiency.
+/// What a drive's own sensors tell at one instant. What is not measured stays NaN: without one of the encoders only
+/// what needs both is missing, without a load estimate only efficiency.
 struct SignalSample
 {
   std::int64_t stamp{};                   ///< [ns]

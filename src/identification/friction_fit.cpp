@@ -22,7 +22,8 @@ constexpr double OUTLIER = 3.0;         // blocks that many deviations off count
 constexpr std::size_t MIN_BLOCKS = 12;
 constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
 
-/// Largest half width of an interval over its value. The gain, which is known within some percent before, is asked more of.
+/// Largest half width of an interval over its value. The gain, which is known within some percent before, is asked more
+/// of.
 double widest(std::size_t quantity)
 {
   return quantity == FrictionFit::GAIN ? 0.1 : 0.5;

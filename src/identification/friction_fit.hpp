@@ -14,11 +14,11 @@ namespace hjt
 /// Gain, offset, inertia and friction of a joint from the rows that move, by least squares (Ceres).
 ///
 ///   current = (load + J n^2 a + s (rest + P preload + G grease + F flanks + V n |w|)) / gain + offset
-/// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in which the
-/// ripple of the teeth cancels out. No friction can be negative: preload and grease are held at zero then. Parameters
-/// that the data do not identify are dropped one at a time: first the optional ones (viscous friction in addition to
-/// the grease's, more friction of the flanks), then those with a known default (offset, gain, inertia). A Stribeck
-/// term, S n exp(-(w/5)^2), is fitted in addition.
+/// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in
+/// which the ripple of the teeth cancels out. No friction can be negative: preload and grease are held at zero then.
+/// Parameters that the data do not identify are dropped one at a time: first the optional ones (viscous friction in
+/// addition to the grease's, more friction of the flanks), then those with a known default (offset, gain, inertia). A
+/// Stribeck term, S n exp(-(w/5)^2), is fitted in addition.
 class FrictionFit
 {
 public:

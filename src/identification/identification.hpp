@@ -70,14 +70,15 @@ struct JudgedPart
   double from{ -1e300 };  ///< earlier samples only lead up to it [s]
 };
 
-/// What of a joint's friction, inertia, gain and ripple a motion shows; the model is the one of MotionDriven, its parameters
-/// are the twin's. In this order, each with what came before: FrictionFit and RippleFit on the rows that move, presliding
-/// on all.
+/// What of a joint's friction, inertia, gain and ripple a motion shows; the model is the one of MotionDriven, its
+/// parameters are the twin's. In this order, each with what came before: FrictionFit and RippleFit on the rows that
+/// move, presliding on all.
 ///
-/// Intervals are widened by the correlation of the residual. A quantity is refused, and stays as configured, if the motion
-/// does not move its column, if others explain it, if its interval is too wide or if it leaves the range that it can
-/// have. `train` and `judge`: samples of one stream each, in the order of time. `load_recorded`: their load comes from the
-/// recording, which may hold a part of the motor's inertia; that part is identified then, else the rotor's inertia.
+/// Intervals are widened by the correlation of the residual. A quantity is refused, and stays as configured, if the
+/// motion does not move its column, if others explain it, if its interval is too wide or if it leaves the range that it
+/// can have. `train` and `judge`: samples of one stream each, in the order of time. `load_recorded`: their load comes
+/// from the recording, which may hold a part of the motor's inertia; that part is identified then, else the rotor's
+/// inertia.
 /// @throws InputError if the training part hardly moves.
 Identification identify(const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge,
                         bool load_recorded);

@@ -19,8 +19,8 @@ struct Regression
   double correlation_rows{};   ///< rows after which the residual forgets itself
 };
 
-/// Solves a problem, and says how well by the parameters named, one value each; rows in the order in which they were added,
-/// one residual each.
+/// Solves a problem, and says how well by the parameters named, one value each; rows in the order in which they were
+/// added, one residual each.
 Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations);
 
 /// 1 + 2 sum of the correlations until they first turn negative.

@@ -23,8 +23,8 @@ inline double archardDepth(double coefficient, double sliding, double area)
   return coefficient * sliding / area;
 }
 
-/// Share of the grease's life that one turn takes at a temperature [degC]: the maker's turns between two changes, halved by
-/// every `grease_halving` kelvin above the temperature they hold for.
+/// Share of the grease's life that one turn takes at a temperature [degC]: the maker's turns between two changes,
+/// halved by every `grease_halving` kelvin above the temperature they hold for.
 double greaseAgeing(const LifeParameters& parameters, double temperature);
 
 /// By how much grease of an age wears the surfaces faster than fresh grease does: 1 when fresh, `grease_wear_factor` at

@@ -60,8 +60,8 @@ UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife&
   return variation;
 }
 
-/// Size of the bearing's spall: 0 up to `bearing_life`, 1 at the end of use, between them as the square of the turns, for a
-/// spall grows the faster the larger it is (assumed) [-].
+/// Size of the bearing's spall: 0 up to `bearing_life`, 1 at the end of use, between them as the square of the turns,
+/// for a spall grows the faster the larger it is (assumed) [-].
 inline double spallSize(const UnitVariation& variation, double bearing_turns)
 {
   const double grown = (bearing_turns / variation.bearing_life - 1.0) / variation.spall_growth;

@@ -63,17 +63,18 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   DriveAge rate;
   for (const DutyPhase& phase : duty_.phases)
   {
-    const RevolutionLoad exposure = exposures_.at(phase.load_torque, age.flank_wear, age.interface_wear);
+    const RevolutionLoad revolution_load = load_map_.at(phase.load_torque, age.flank_wear, age.interface_wear);
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
     // Each of the two surfaces loses its own depth: those of a pair share force and way.
     rate.flank_wear += turns * 2.0 * variation.flank_factor * grease_factor *
-                       archardDepth(life_.flank_wear_coefficient, exposure.flank_sliding, flank_area);
-    rate.interface_wear += turns * 2.0 * variation.interface_factor * grease_factor *
-                           archardDepth(life_.interface_wear_coefficient, exposure.interface_sliding, interface_area);
+                       archardDepth(life_.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
+    rate.interface_wear +=
+        turns * 2.0 * variation.interface_factor * grease_factor *
+        archardDepth(life_.interface_wear_coefficient, revolution_load.interface_sliding, interface_area);
     rate.grease += turns * greaseAgeing(life_, phase.temperature);
-    rate.flaw_depth += turns * crackGrowth(life_, exposure.rim_stress_range, age.flaw_depth);
+    rate.flaw_depth += turns * crackGrowth(life_, revolution_load.rim_stress_range, age.flaw_depth);
     rate.bearing_turns += turns * bearingWear(life_, phase.load_torque);
   }
   const double per_hour = 3600.0 / time;

@@ -14,13 +14,13 @@ namespace hjt
 /// The drive that the parameters describe: no factors, the median bearing.
 UnitVariation nominalDrive(const LifeParameters& parameters);
 
-/// A drive's use over years: the laws of ageing along a duty cycle, fed by the exposures of the tooth model.
+/// A drive's use over years: the laws of ageing along a duty cycle, fed by the loads per revolution of the tooth model.
 class DriveAgeing
 {
 public:
   DriveAgeing(const LifeParameters& life, const GearParameters& gear, const DutyCycle& duty,
-              const RevolutionLoadMap& exposures)
-    : life_(life), gear_(gear), duty_(duty), exposures_(exposures), turns_per_hour_(duty.turnsPerHour())
+              const RevolutionLoadMap& load_map)
+    : life_(life), gear_(gear), duty_(duty), load_map_(load_map), turns_per_hour_(duty.turnsPerHour())
   {
   }
 
@@ -37,9 +37,9 @@ public:
     DriveAge age;
   };
 
-  /// From new: up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of `every`
-  /// hours and at the end. `grease_changes`: the grease is changed when it is due.
-  /// Runge-Kutta of Dormand and Prince with its own steps, 1e-8 of the limits.
+  /// From new: up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of
+  /// `every` hours and at the end. `grease_changes`: the grease is changed when it is due. Runge-Kutta of Dormand and
+  /// Prince with its own steps, 1e-8 of the limits.
   Life live(const UnitVariation& variation, double hours, double every, bool grease_changes,
             const std::function<void(double, const DriveAge&)>& visit) const;
 
@@ -47,7 +47,7 @@ private:
   LifeParameters life_;
   GearParameters gear_;
   DutyCycle duty_;
-  const RevolutionLoadMap& exposures_;
+  const RevolutionLoadMap& load_map_;
   double turns_per_hour_;
 };
 }  // namespace hjt

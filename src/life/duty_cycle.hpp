@@ -24,8 +24,8 @@ struct DutyCycle
 {
   std::vector<DutyPhase> phases;
 
-  /// CSV with the columns duration (1e-9 ... 1e10 s), motor_speed (-1e5 ... 1e5 rad/s), load_torque (-1e6 ... 1e6 N.m) and
-  /// temperature (-40 ... 150 degC). @throws InputError naming line, column, value, unit and range.
+  /// CSV with the columns duration (1e-9 ... 1e10 s), motor_speed (-1e5 ... 1e5 rad/s), load_torque (-1e6 ... 1e6 N.m)
+  /// and temperature (-40 ... 150 degC). @throws InputError naming line, column, value, unit and range.
   static DutyCycle fromFile(const std::string& path);
 
   double turnsPerHour() const;

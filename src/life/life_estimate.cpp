@@ -18,7 +18,7 @@ constexpr double GREASE_CHANGES_AHEAD = 20.0;
 constexpr bool GREASE_IS_CHANGED = true;
 }  // namespace
 
-LifeEstimator::LifeEstimator(const Parameters& parameters) : parameters_(parameters), exposures_(parameters, POSITIONS)
+LifeEstimator::LifeEstimator(const Parameters& parameters) : parameters_(parameters), load_map_(parameters, POSITIONS)
 {
 }
 
@@ -31,8 +31,8 @@ LifeEstimate LifeEstimator::estimate(const UsageHistory& record)
 {
   const LifeParameters& life = parameters_.life;
   const DutyCycle duty = record.duty();
-  exposures_.cover(duty, {});
-  const DriveAgeing ageing(life, parameters_.gear, duty, exposures_);
+  load_map_.cover(duty, {});
+  const DriveAgeing ageing(life, parameters_.gear, duty, load_map_);
   const UnitVariation nominal = nominalDrive(life);
   LifeEstimate estimate;
   estimate.hours = record.hours();

@@ -35,6 +35,6 @@ public:
 
 private:
   Parameters parameters_;
-  RevolutionLoadMap exposures_;
+  RevolutionLoadMap load_map_;
 };
 }  // namespace hjt

@@ -6,7 +6,8 @@
 
 namespace hjt
 {
-/// What a duty cycle does to the nominal drive, in closed form: exposures of the new drive, grease that ages.
+/// What a duty cycle does to the nominal drive, in closed form: loads per revolution of the new drive, grease that
+/// ages.
 class NominalUse
 {
 public:

@@ -53,10 +53,10 @@ struct RemainingHours
 
 /// The remaining life as a distribution: a particle filter on what cannot be seen of one drive, its variation.
 ///
-/// A particle is a drive with factors of wear and a life of its bearing of its own, drawn from what the literature and the
-/// catalogue leave open (log-normal factors, the Weibull distribution of the bearing's life). Use ages every particle by
-/// the same laws; a reading weighs it by how likely it makes what was read. Where few particles carry the weight they are
-/// drawn anew, with a kernel that keeps mean and variance of the variations (Liu and West 2001).
+/// A particle is a drive with factors of wear and a life of its bearing of its own, drawn from what the literature and
+/// the catalogue leave open (log-normal factors, the Weibull distribution of the bearing's life). Use ages every
+/// particle by the same laws; a reading weighs it by how likely it makes what was read. Where few particles carry the
+/// weight they are redrawn, with a kernel that keeps mean and variance of the variations (Liu and West 2001).
 class RemainingLife
 {
 public:
@@ -68,7 +68,8 @@ public:
   /// Weighs all particles. Allocates nothing.
   void read(const WearReading& reading) noexcept;
 
-  /// The drive is known to be in use still: particles at their end lose their weight, unless all are. Allocates nothing.
+  /// The drive is known to be in use still: particles at their end lose their weight, unless all are. Allocates
+  /// nothing.
   void survive() noexcept;
 
   /// The hours until each particle's end, with this use ahead. Allocates nothing.

@@ -23,8 +23,8 @@ struct RevolutionLoadAnalysis::Impl
   {
   }
 
-  /// Stress of the rim's outer fibre, where the teeth stand, at tooth i: bending by the change of its curvature, and the
-  /// tension of the segment behind it [Pa].
+  /// Stress of the rim's outer fibre, where the teeth stand, at tooth i: bending by the change of its curvature, and
+  /// the tension of the segment behind it [Pa].
   double rimStress(int i) const
   {
     const RingShape& shape = walk.ring().shape();
@@ -62,21 +62,21 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
   Impl& impl = *impl_;
   const int teeth = impl.parameters.gear.teeth_flexspline;
   const double step = TWO_PI / teeth / impl.positions;  // of the wave generator [rad]
-  RevolutionLoad exposure;
+  RevolutionLoad revolution_load;
   double highest = std::numeric_limits<double>::lowest();
   double lowest = std::numeric_limits<double>::max();
   impl.walk.under(
       load_torque,
-      [&](double follow)
+      [&](double velocity_ratio)
       {
         const JointModel& model = impl.walk.model();
         const RingEquilibrium& ring = impl.walk.ring();
-        impl.running = ring.byWaveGenerator() + follow * ring.byOutput();
+        impl.running = ring.byWaveGenerator() + velocity_ratio * ring.byOutput();
         for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
         {
-          exposure.flank_sliding +=
-              step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
-                              model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, impl.running, follow));
+          revolution_load.flank_sliding += step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
+                                                           model.ring.of<ToothMesh>().slidingSpeed(
+                                                               ring.shape(), contact, impl.running, velocity_ratio));
         }
         for (int i = 0; i < teeth; ++i)
         {
@@ -84,7 +84,7 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
           highest = std::max(highest, stress);
           lowest = std::min(lowest, stress);
         }
-        exposure.interface_sliding +=
+        revolution_load.interface_sliding +=
             step * teeth * impl.interface.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), impl.running);
       });
   if (!impl.walk.status().ok())
@@ -92,7 +92,7 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
                          " N.m: " + explanationOf(impl.walk.status()));
   }
-  exposure.rim_stress_range = highest - lowest;
-  return exposure;
+  revolution_load.rim_stress_range = highest - lowest;
+  return revolution_load;
 }
 }  // namespace hjt

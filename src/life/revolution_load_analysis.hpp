@@ -12,7 +12,8 @@ namespace hjt
 class RevolutionLoadAnalysis
 {
 public:
-  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no equilibrium.
+  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no
+  /// equilibrium.
   RevolutionLoadAnalysis(const Parameters& parameters, int positions);
   ~RevolutionLoadAnalysis();
 

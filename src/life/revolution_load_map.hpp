@@ -14,8 +14,8 @@ namespace hjt
 /// The drive with the wear of its age, as faults of its parameters.
 Parameters wornDrive(const Parameters& parameters, const DriveAge& age);
 
-/// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at some
-/// stages of wear, bilinear between them.
+/// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at
+/// some stages of wear, bilinear between them.
 class RevolutionLoadMap
 {
 public:
@@ -29,8 +29,8 @@ public:
   /// Under a load that is covered [N.m], at a stage of wear [m]; beyond the limits of wear that at the limits.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
-  /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same quantity
-  /// under any load [-]. Slow.
+  /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same
+  /// quantity under any load [-]. Slow.
   double largestError() const;
 
 private:

@@ -13,8 +13,8 @@ namespace
 constexpr double LOAD_STEPS = 16.0;        // in the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 
-/// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is one;
-/// NaN counts as the first.
+/// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is
+/// one; NaN counts as the first.
 struct Share
 {
   Share(double place, std::size_t nodes) noexcept

@@ -23,12 +23,12 @@ double JointModel::shaftTorque(const Running& running, double contact_force, dou
          bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity) + interface_torque;
 }
 
-void JointModel::friction(const RingForces& forces, const RingRates& rates, double follow, const Running& running,
-                          JointFriction& friction) const noexcept
+void JointModel::friction(const RingForces& forces, const RingRates& rates, double velocity_ratio,
+                          const Running& running, JointFriction& friction) const noexcept
 {
   const auto& contact = forces.of<WaveGeneratorContact>();
   friction.setZero();
-  friction.running = rates.by_motor + follow * rates.by_output;
+  friction.running = rates.by_motor + velocity_ratio * rates.by_output;
   const double interface_torque = interface_friction.torque(rates.shape, contact, friction.running);
   friction.terms.push_back({ shaftTorque(running, contact.force.sum(), interface_torque), { 1.0, 0.0 } });
   mesh_friction.addTerms(ring.of<ToothMesh>(), forces.of<ToothMesh>(), rates, running.speeds, friction);

@@ -71,9 +71,9 @@ struct JointModel
     double viscosity;  ///< of the bearing's grease [m^2/s]
   };
 
-  /// All friction. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from the
-  /// ring's own stiffness [-].
-  void friction(const RingForces& forces, const RingRates& rates, double follow, const Running& running,
+  /// All friction. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from
+  /// the ring's own stiffness [-].
+  void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
   /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].

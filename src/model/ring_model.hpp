@@ -35,16 +35,16 @@ private:
 
 /// All conservative elements on the ring.
 ///
-/// It changes by assignment and through `edit` and `setMeshed` alone, and each of them gives it another version: who has
-/// solved it before sees that.
+/// It changes by assignment and through `edit` and `setMeshed` alone, and each of them gives it another version: who
+/// has solved it before sees that.
 class RingModel
 {
 public:
   /// @throws ParameterError on a bad table of pitch errors.
   explicit RingModel(const Parameters& parameters);
 
-  /// Forces and stored energy; of the teeth too unless the circular spline is not in yet. The shape's geometry must be up
-  /// to date.
+  /// Forces and stored energy; of the teeth too unless the circular spline is not in yet. The shape's geometry must be
+  /// up to date.
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 

@@ -11,7 +11,7 @@ struct RingResponse
   double energy{};                 ///< stored [J]
   double wave_generator_torque{};  ///< on the wave generator [N.m]
   double output_torque{};          ///< on the circular spline [N.m]
-  double follow{};                 ///< output speed over motor speed at constant load [-]
+  double velocity_ratio{};         ///< output speed over motor speed at constant load [-]
   double output_stiffness{};       ///< of the output, the wave generator held [N.m/rad]
   double motor_stiffness{};        ///< of the wave generator, the output held [N.m/rad]
 };
@@ -19,8 +19,8 @@ struct RingResponse
 /// Friction of the ring in equilibrium, as it acts on the joint's two speeds.
 struct RingFrictionResponse
 {
-  /// Loaded flanks that slide alike, taken together: sum_i |F_i| |slip_i . (motor, output speed)|, exact while all flanks
-  /// of a group slide the same way.
+  /// Loaded flanks that slide alike, taken together: sum_i |F_i| |slip_i . (motor, output speed)|, exact while all
+  /// flanks of a group slide the same way.
   static constexpr int FLANK_GROUPS = 6;
   using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 

@@ -18,7 +18,7 @@ enum class Shapes
   OTHERS    ///< neither: what is added to the tables' friction as they are read counts to these
 };
 
-/// What a parameter means, and what it shapes: the surface unless said otherwise.
+/// What a parameter means, and what it shapes: the surface unless stated otherwise.
 struct Meaning
 {
   // NOLINTNEXTLINE(google-explicit-constructor): most rows of the table give a text alone

@@ -54,8 +54,8 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// The value of an unquoted text: by rosparam's rules, but that every decimal number is one. rosparam takes 1e-6 for a text,
-/// which FieldReader reads alike.
+/// The value of an unquoted text: by rosparam's rules, but that every decimal number is one. rosparam takes 1e-6 for a
+/// text, which FieldReader reads alike.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
   if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))

@@ -23,8 +23,8 @@ struct BagInputs
   std::set<std::string> other_joints;  ///< joints named in stamped messages that do not name this one
 };
 
-/// Reads the input topics below `joint_namespace`. Stamped messages count at their header stamp, others at the time they
-/// were recorded.
+/// Reads the input topics below `joint_namespace`. Stamped messages count at their header stamp, others at the time
+/// they were recorded.
 /// @throws InputError if a topic has another type, or a stamp is far from the time of recording.
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters);
 

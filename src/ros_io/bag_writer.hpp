@@ -14,12 +14,12 @@
 
 namespace hjt
 {
-/// Writes a bag as `PATH.active` and gives it its name when closed, as `rosbag record` does: what stands under the name is
-/// always readable, also after an error or an interrupt. The same calls give the same bytes.
+/// Writes a bag as `PATH.active` and gives it its name when closed, as `rosbag record` does: what stands under the name
+/// is always readable, also after an error or an interrupt. The same calls give the same bytes.
 ///
-/// Where the disk takes no more, the bag is given up: it stays as `PATH.active` without an index, and the InputError tells
-/// how much is in it. `rosbag reindex` makes it readable but for the last chunk, 0.8 MB at most. Nothing can be written
-/// after that.
+/// Where the disk takes no more, the bag is given up: it stays as `PATH.active` without an index, and the InputError
+/// tells how much is in it. `rosbag reindex` makes it readable but for the last chunk, 0.8 MB at most. Nothing can be
+/// written after that.
 class BagWriter
 {
 public:

@@ -24,7 +24,8 @@ struct Channel
   double PublishParameters::*rate;     ///< [Hz]; divides solver.rate
   std::size_t slots;                   ///< messages that may wait for the publisher's thread
   Message (*make)(const Parameters&);  ///< with names and arrays in place
-  /// At the twin's current instant; gets that of the topic's last message [ns]. No allocation, no throw. False: nothing to say.
+  /// At the twin's current instant; gets that of the topic's last message [ns]. No allocation, no throw. False: nothing
+  /// to say.
   bool (*fill)(Twin&, Stamp, Message&);
   bool of_signals{};  ///< filled only while the twin watches its signals
 };
@@ -51,9 +52,9 @@ inline constexpr auto CHANNELS = std::make_tuple(
 
 constexpr std::size_t CHANNEL_COUNT = std::tuple_size_v<decltype(CHANNELS)>;
 
-/// Between two messages of a topic [ns]; both rates in Hz. A topic is due when the instant is a whole multiple of it, counted
-/// from the epoch and not from the start: the same input gives messages at the same instants however it was cut, live,
-/// replayed or offline.
+/// Between two messages of a topic [ns]; both rates in Hz. A topic is due when the instant is a whole multiple of it,
+/// counted from the epoch and not from the start: the same input gives messages at the same instants however it was
+/// cut, live, replayed or offline.
 inline Stamp publishPeriod(double publish_rate, double solver_rate)
 {
   return std::llround(solver_rate / publish_rate) * std::llround(1e9 / solver_rate);
@@ -61,8 +62,8 @@ inline Stamp publishPeriod(double publish_rate, double solver_rate)
 
 /// All channels of one twin, each with a `Sink<Message>` that its messages go to.
 ///
-/// A sink is constructed from (context, channel, first message) and has `bool isWanted()` and `write(fill)`, which calls
-/// `bool fill(Message&)` with the message to be filled and drops it if that returns false.
+/// A sink is constructed from (context, channel, first message) and has `bool isWanted()` and `write(fill)`, which
+/// calls `bool fill(Message&)` with the message to be filled and drops it if that returns false.
 template <template <class> class Sink>
 class Outputs
 {

@@ -11,8 +11,8 @@ namespace hjt
 {
 /// Reads JointState messages out of bags whose bytes may be damaged.
 ///
-/// A length that damage has made huge would let the message's own reading ask for as much memory, so the lengths are held
-/// against the bytes that are there before.
+/// A length that damage has made huge would let the message's own reading ask for as much memory, so the lengths are
+/// held against the bytes that are there before.
 class CheckedMessage
 {
 public:

@@ -28,9 +28,9 @@ struct JointNames
 /// Place of a name in the message; beyond every array if it is not there.
 std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
 
-// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing. As
-// functions of a Channel they also get `since`, the instant of the topic's last message, and return false if there is nothing
-// to say.
+// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
+// As functions of a Channel they also get `since`, the instant of the topic's last message, and return false if there
+// is nothing to say.
 
 /// A message without arrays.
 template <class Message>

@@ -19,9 +19,9 @@ struct DiagnosticVerdict
   std::string text;
 };
 
-/// Tasks of /diagnostics, each with a verdict and values: reported every `~diagnostic_period`, 1 s if that is not set, by the wall
-/// clock, since a simulated one may stand, and at once when a level changes. diagnostic_updater::Updater cannot serve: it adds
-/// to the time of the clock, and throws where that is near the last one.
+/// Tasks of /diagnostics, each with a verdict and values: reported every `~diagnostic_period`, 1 s if that is not set,
+/// by the wall clock, since a simulated one may stand, and at once when a level changes. diagnostic_updater::Updater
+/// cannot serve: it adds to the time of the clock, and throws where that is near the last one.
 class DiagnosticTasks
 {
 public:

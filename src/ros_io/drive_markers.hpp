@@ -21,8 +21,8 @@ struct MarkerStyle
 
 /// The drive as seen along its axis, for rviz, out of one message of contact forces.
 ///
-/// Points are where the message says, in the plane z = 0, with radii stretched. Teeth are drawn as plain trapezoids: the
-/// flanks' shape is not shown.
+/// Points are where the message says, in the plane z = 0, with radii stretched. Teeth are drawn as plain trapezoids:
+/// the flanks' shape is not shown.
 ///
 /// | namespace of the marker | shows |
 /// |---|---|

@@ -22,8 +22,9 @@ public:
   /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
   void push(const Input& input);
 
-  /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`. What
-  /// has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates nothing.
+  /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`.
+  /// What has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates
+  /// nothing.
   void take(std::vector<Input>& inputs) noexcept;
 
   /// An empty vector with room for a whole inbox.

@@ -13,13 +13,14 @@
 
 namespace hjt
 {
-/// Subscribes topics that anybody may publish on. A message of more than LARGEST bytes is counted and not read: what it would
-/// hold in memory is a multiple of its length.
+/// Subscribes topics that anybody may publish on. A message of more than MAX_BYTES bytes is counted and not read: what
+/// it would hold in memory is a multiple of its length.
 struct InputTopics
 {
   /// Of the JointState of 1000 joints, twice over [bytes].
-  static constexpr std::size_t LARGEST = 128 * 1024;
-  /// Seconds of messages at 1 kHz: a fast bag brings chunks, and a twin that catches up takes them later; none may be lost.
+  static constexpr std::size_t MAX_BYTES = 128 * 1024;
+  /// Seconds of messages at 1 kHz: a fast bag brings chunks, and a twin that catches up takes them later; none may be
+  /// lost.
   static constexpr std::uint32_t QUEUE_SIZE = 4096;
 
   ros::NodeHandle& node;
@@ -55,7 +56,7 @@ private:
 
     ros::VoidConstPtr deserialize(const ros::SubscriptionCallbackHelperDeserializeParams& message) override
     {
-      if (message.length > LARGEST)
+      if (message.length > MAX_BYTES)
       {
         ++too_large_;
         return {};

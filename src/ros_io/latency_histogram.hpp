@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Counts latencies in bins of fixed relative width, eight to a doubling, from a microsecond to 17 s. Fixed size: adding
-/// allocates nothing and costs the same whatever comes.
+/// Counts latencies in bins of fixed relative width, eight to a doubling, from a microsecond to 17 s. Fixed size:
+/// adding allocates nothing and costs the same whatever comes.
 class LatencyHistogram
 {
 public:

@@ -69,8 +69,8 @@ private:
   int rows_{};
 };
 
-/// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next one
-/// tells whether it can be true.
+/// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next
+/// one tells whether it can be true.
 class BagRows
 {
 public:

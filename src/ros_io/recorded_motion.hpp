@@ -51,18 +51,17 @@ bool recordsLoad(const MotionSource& source);
 /// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index.
 ///
 /// Times start at the first row.
-/// Bag: header stamps count, or the time of recording where they are zero. A load counts for rows from its stamp on. A row
-/// that agrees neither with the one before nor with the one after, its angle beyond what a joint can reach in the time or its
-/// stamp more than a second off theirs, was damaged and is left out.
-/// CSV: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`.
-/// `visit` returns false to stop. `progress`: 0 ... 1.
+/// Bag: header stamps count, or the time of recording where they are zero. A load counts for rows from its stamp on. A
+/// row that agrees neither with the one before nor with the one after, its angle beyond what a joint can reach in the
+/// time or its stamp more than a second off theirs, was damaged and is left out. CSV: columns timestamp, actual_q_N,
+/// actual_current_N, target_moment_N, as `joint_twin import`. `visit` returns false to stop. `progress`: 0 ... 1.
 /// @throws InputError if the file, the topic or the joint is not there; it names those that are.
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress);
 
-/// The same for all joints of an arm: `visit` gets a row for each of `names`, all of one time. `source` names recording and
-/// topics; its joint counts for nothing. CSV: the columns of joints 0 to 5, in the order of the names.
-/// Rows that hold not all of the joints are left out and counted as corrupt.
+/// The same for all joints of an arm: `visit` gets a row for each of `names`, all of one time. `source` names recording
+/// and topics; its joint counts for nothing. CSV: the columns of joints 0 to 5, in the order of the names. Rows that
+/// hold not all of the joints are left out and counted as corrupt.
 /// @throws InputError likewise; it names the joints that are missing.
 MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
                           const std::function<bool(const std::vector<MotionRow>&)>& visit,

@@ -7,8 +7,9 @@
 
 namespace hjt
 {
-/// SIGTERM and SIGHUP end a node as SIGINT does, which is all that roscpp catches. A SIGHUP that is ignored, as below nohup, stays
-/// ignored. SIGXFSZ is ignored: beyond a limit of size, writing fails as on a full disk. Call after ros::init.
+/// SIGTERM and SIGHUP end a node as SIGINT does, which is all that roscpp catches. A SIGHUP that is ignored, as below
+/// nohup, stays ignored. SIGXFSZ is ignored: beyond a limit of size, writing fails as on a full disk. Call after
+/// ros::init.
 inline void shutDownOnSignals()
 {
   const auto request = [](int) { ros::requestShutdown(); };

@@ -3,8 +3,8 @@
 
 namespace hjt
 {
-/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Those of CHANNELS that nothing else
-/// uses stand there.
+/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Those of CHANNELS that
+/// nothing else uses stand there.
 namespace topics
 {
 constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< in, std_msgs/Float64 [N.m]

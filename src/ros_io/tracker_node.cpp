@@ -113,8 +113,8 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   publish();
 }
 
-/// Sets the tracker's zero with the first row. False: the stamp is far from where those of the rows before lead to; if the
-/// next row agrees with this one, the clock of the robot or this machine's was set, and everything restarts.
+/// Sets the tracker's zero with the first row. False: the stamp is far from where those of the rows before lead to; if
+/// the next row agrees with this one, the clock of the robot or this machine's was set, and everything restarts.
 bool TrackerNode::start(Stamp stamp)
 {
   const Stamp offset = last_received_ - stamp;
@@ -185,8 +185,8 @@ void TrackerNode::pushLoad(const LoadAt& load)
   }
 }
 
-/// Once there is a zero: a load by another clock than the rows is refused. Received without a stamp, it is valid from the
-/// instant on that the rows' clock shows then.
+/// Once there is a zero: a load by another clock than the rows is refused. Received without a stamp, it is valid from
+/// the instant on that the rows' clock shows then.
 void TrackerNode::passLoad(const LoadAt& load)
 {
   const Stamp stamp = load.stamp.value_or(load.received - offset_);

@@ -26,8 +26,8 @@
 
 namespace hjt
 {
-/// The twin beside a robot, live: wires a `Tracker` to topics, diagnostics and a service. Whatever a message brings is worked
-/// off in its callback: nothing here waits for a clock.
+/// The twin beside a robot, live: wires a `Tracker` to topics, diagnostics and a service. Whatever a message brings is
+/// worked off in its callback: nothing here waits for a clock.
 class TrackerNode
 {
 public:

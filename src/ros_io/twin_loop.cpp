@@ -172,8 +172,8 @@ void TwinLoop::forgetInputs(std::size_t count) noexcept
   arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(std::min(count, arrived_.size())));
 }
 
-/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes now;
-/// one far from the clock is refused.
+/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes
+/// now; one far from the clock is refused.
 void TwinLoop::stampInputs(std::size_t waiting) noexcept
 {
   const auto fresh = arrived_.begin() + static_cast<std::ptrdiff_t>(waiting);

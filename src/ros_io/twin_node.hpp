@@ -20,8 +20,8 @@ namespace hjt
 {
 /// The live twin: wires a `Twin` to the topics and services of a node. Translates only; computes nothing.
 ///
-/// Threads: the loop advances the twin; a publisher sends what it filled; another ages the drive; the callbacks, diagnostics and services run
-/// in whoever spins, at least two threads, since a reset waits for the loop.
+/// Threads: the loop advances the twin; a publisher sends what it filled; another ages the drive; the callbacks,
+/// diagnostics and services run in whoever spins, at least two threads, since a reset waits for the loop.
 class TwinNode
 {
 public:

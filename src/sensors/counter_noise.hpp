@@ -6,10 +6,11 @@
 
 namespace hjt
 {
-/// Pairs of independent standard normal numbers, each a function of seed, channel and index alone: whatever is asked for
-/// first, a reading has the same noise live, replayed, offline and on any number of threads.
+/// Pairs of independent standard normal numbers, each a function of seed, channel and index alone: whatever is asked
+/// for first, a reading has the same noise live, replayed, offline and on any number of threads.
 ///
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then Box and Muller.
+/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then Box and
+/// Muller.
 class CounterNoise
 {
 public:

@@ -6,7 +6,8 @@ namespace hjt
 /// The ring cut into four arcs by four separators of two teeth each. All four arcs are eliminated at once, one in each
 /// lane of a vector of four numbers: no shuffling, and four chains of dependent operations side by side.
 ///
-/// Rows and arrays of lanes: number of lane k of entry e at [4 e + k]. All arrays are the caller's, aligned to 32 bytes.
+/// Rows and arrays of lanes: number of lane k of entry e at [4 e + k]. All arrays are the caller's, aligned to 32
+/// bytes.
 namespace arcs
 {
 constexpr int COUNT = 4;
@@ -19,7 +20,7 @@ constexpr int BEFORE_ENTRIES = BORDER * (BORDER + 1) / 2;
 constexpr int AFTER_ENTRIES = 10;
 constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
-constexpr int CORNER = 4 * COUNT;  ///< unknowns of the separators
+constexpr int SCHUR = 4 * COUNT;  ///< unknowns of the separators
 
 /// Where the arcs lie. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
 struct Layout
@@ -46,12 +47,13 @@ struct Sums
   double* between;  ///< BETWEEN_ENTRIES: four rows of the separator after the arc by BORDER columns
 };
 
-/// Of the symmetric matrix of the separators; the unit triangle's diagonal and what is beyond it are left out, as zeros.
-struct alignas(32) CornerFactors
+/// Of the symmetric matrix of the separators; the unit triangle's diagonal and what is beyond it are left out, as
+/// zeros.
+struct alignas(32) SchurFactors
 {
-  double upper[CORNER][CORNER];
-  double lower[CORNER][CORNER];  ///< its transpose
-  double inverse_pivots[CORNER];
+  double upper[SCHUR][SCHUR];
+  double lower[SCHUR][SCHUR];  ///< its transpose
+  double inverse_pivots[SCHUR];
 };
 
 /// Code for one kind of processor.
@@ -70,12 +72,12 @@ struct Kernels
   void (*backward[3])(const Layout& layout, const double* factors, const double* rows, const double* before,
                       const double* after, double* const* x);
 
-  /// U^T D U of the symmetric matrix of the separators, CORNER x CORNER, of which the upper triangle is read and
+  /// U^T D U of the symmetric matrix of the separators, SCHUR x SCHUR, of which the upper triangle is read and
   /// destroyed. Without pivoting: false if a pivot is not positive, which it is while the matrix is positive definite.
-  bool (*factor_corner)(double* matrix, CornerFactors& factors);
+  bool (*factor_schur)(double* matrix, SchurFactors& factors);
 
-  /// Solves for CORNER unknowns, in place.
-  void (*solve_corner)(const CornerFactors& factors, double* b);
+  /// Solves for SCHUR unknowns, in place.
+  void (*solve_schur)(const SchurFactors& factors, double* b);
 };
 
 extern const Kernels BASELINE;  ///< for every processor of the architecture

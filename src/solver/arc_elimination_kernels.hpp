@@ -345,42 +345,42 @@ void backward(const Layout& where, const double* factors, const double* rows, co
   }
 }
 
-inline bool factorCorner(double* matrix, CornerFactors& factors)
+inline bool factorSchur(double* matrix, SchurFactors& factors)
 {
-  constexpr int LANES = CORNER / COUNT;  // a row
+  constexpr int LANES = SCHUR / COUNT;  // a row
   bool positive = true;
 #pragma GCC unroll 16
-  for (int k = 0; k < CORNER; ++k)
+  for (int k = 0; k < SCHUR; ++k)
   {
-    const double* row = matrix + CORNER * k;
+    const double* row = matrix + SCHUR * k;
     const double pivot = row[k];
     const double inverse = 1.0 / pivot;
     positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
     factors.inverse_pivots[k] = inverse;
-    for (int i = 0; i < CORNER; ++i)
+    for (int i = 0; i < SCHUR; ++i)
     {
       const double share = i > k ? row[i] * inverse : 0.0;
       factors.upper[k][i] = share;
       factors.lower[i][k] = share;
     }
-    for (int i = k + 1; i < CORNER; ++i)
+    for (int i = k + 1; i < SCHUR; ++i)
     {
       const double share = factors.upper[k][i];
 #pragma GCC unroll 16
       for (int v = i / COUNT; v < LANES; ++v)
       {
-        lanes(matrix + CORNER * i)[v] -= share * lanes(row)[v];
+        lanes(matrix + SCHUR * i)[v] -= share * lanes(row)[v];
       }
     }
   }
   return positive;
 }
 
-inline void solveCorner(const CornerFactors& factors, double* b)
+inline void solveSchur(const SchurFactors& factors, double* b)
 {
-  constexpr int LANES = CORNER / COUNT;
+  constexpr int LANES = SCHUR / COUNT;
 #pragma GCC unroll 16
-  for (int k = 0; k < CORNER; ++k)
+  for (int k = 0; k < SCHUR; ++k)
   {
     const double value = b[k];
 #pragma GCC unroll 16
@@ -395,7 +395,7 @@ inline void solveCorner(const CornerFactors& factors, double* b)
     lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
   }
 #pragma GCC unroll 16
-  for (int k = CORNER - 1; k > 0; --k)
+  for (int k = SCHUR - 1; k > 0; --k)
   {
     const double value = b[k];
 #pragma GCC unroll 16
@@ -408,8 +408,8 @@ inline void solveCorner(const CornerFactors& factors, double* b)
 
 constexpr Kernels kernels(const char* name)
 {
-  return { name,         factor,     { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> },
-           factorCorner, solveCorner };
+  return { name,        factor,    { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> },
+           factorSchur, solveSchur };
 }
 }  // namespace
 }  // namespace arcs

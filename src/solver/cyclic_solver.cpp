@@ -14,7 +14,7 @@ CyclicSolver::CyclicSolver(int teeth, const arcs::Kernels& kernels)
   , separator_{}
   , factors_(static_cast<std::size_t>(arcs::FACTOR_ENTRIES * std::max(layout_.steps, 1)))
   , rows_(static_cast<std::size_t>(2 * MAX_COLUMNS * std::max(layout_.steps, 1)))
-  , corner_{}
+  , schur_{}
   , cup_(Separators::Zero())
 {
   int tooth = 0;
@@ -42,14 +42,14 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
   Entry between[arcs::BETWEEN_ENTRIES];
   kernels_.factor(layout_, entries, factors_.data()->lane, { before->lane, after->lane, between->lane });
 
-  return factorCorner(tangent, before, after, between);
+  return factorSchur(tangent, before, after, between);
 }
 
 /// The matrix of the separators and the cup: their own entries, and what the arcs add.
-bool CyclicSolver::factorCorner(const RingTangent& tangent, const Entry* before, const Entry* after,
-                                const Entry* between) noexcept
+bool CyclicSolver::factorSchur(const RingTangent& tangent, const Entry* before, const Entry* after,
+                               const Entry* between) noexcept
 {
-  alignas(32) Corner corner = Corner::Zero();  // the upper triangle
+  alignas(32) SchurComplement schur = SchurComplement::Zero();  // the upper triangle
   Separators cup = Separators::Zero();
   double pivot = -1.0 / tangent.cup_stiffness;
   for (int k = 0; k < COUNT; ++k)
@@ -57,16 +57,16 @@ bool CyclicSolver::factorCorner(const RingTangent& tangent, const Entry* before,
     const int a = separator_[k];
     const int own = 4 * k;
     const int next = 4 * ((k + 1) % COUNT);
-    corner.block<2, 2>(own, own) += tangent.diagonal.at(a);
-    corner.block<2, 2>(own, own + 2) += tangent.next.at(a);
-    corner.block<2, 2>(own + 2, own + 2) += tangent.diagonal.at(a + 1);
+    schur.block<2, 2>(own, own) += tangent.diagonal.at(a);
+    schur.block<2, 2>(own, own + 2) += tangent.next.at(a);
+    schur.block<2, 2>(own + 2, own + 2) += tangent.diagonal.at(a + 1);
     cup.segment<4>(own) += tangent.cup_direction.segment<4>(2 * a);
     const Entry* sum = before;
     for (int c = 0; c < 4; ++c)
     {
       for (int r = 0; r <= c; ++r)
       {
-        corner(own + r, own + c) += (sum++)->lane[k];
+        schur(own + r, own + c) += (sum++)->lane[k];
       }
     }
     for (int r = 0; r < 4; ++r)
@@ -78,51 +78,51 @@ bool CyclicSolver::factorCorner(const RingTangent& tangent, const Entry* before,
     constexpr int COLS[arcs::AFTER_ENTRIES] = { 0, 1, 1, 2, 3, 2, 3, 2, 3, 3 };
     for (int e = 0; e < arcs::AFTER_ENTRIES; ++e)
     {
-      corner(next + ROWS[e], next + COLS[e]) += after[e].lane[k];
+      schur(next + ROWS[e], next + COLS[e]) += after[e].lane[k];
     }
     for (int r = 0; r < 4; ++r)
     {
       for (int c = 0; c < 4; ++c)
       {
         const double value = between[BORDER * r + c].lane[k];
-        (own < next ? corner(own + c, next + r) : corner(next + r, own + c)) += value;
+        (own < next ? schur(own + c, next + r) : schur(next + r, own + c)) += value;
       }
       cup[next + r] += between[BORDER * r + 4].lane[k];
     }
   }
   cup_ = cup;
   cup_inverse_ = 1.0 / pivot;
-  alignas(32) Corner without_cup = corner;
+  alignas(32) SchurComplement without_cup = schur;
   without_cup.noalias() -= cup_inverse_ * cup * cup.transpose();
-  pivoting_ = !(pivot < 0.0 && kernels_.factor_corner(without_cup.data(), corner_));
+  pivoting_ = !(pivot < 0.0 && kernels_.factor_schur(without_cup.data(), schur_));
   if (!pivoting_)
   {
     return true;
   }
-  CornerWithCup whole;
-  whole.topLeftCorner<CORNER, CORNER>() = corner.selfadjointView<Eigen::Upper>();
-  whole.topRightCorner<CORNER, 1>() = cup;
-  whole.bottomLeftCorner<1, CORNER>() = cup.transpose();
-  whole(CORNER, CORNER) = pivot;
+  SchurWithCup whole;
+  whole.topLeftCorner<SCHUR, SCHUR>() = schur.selfadjointView<Eigen::Upper>();
+  whole.topRightCorner<SCHUR, 1>() = cup;
+  whole.bottomLeftCorner<1, SCHUR>() = cup.transpose();
+  whole(SCHUR, SCHUR) = pivot;
   lu_.compute(whole);
-  const CornerWithCup& lu = lu_.matrixLU();
+  const SchurWithCup& lu = lu_.matrixLU();
   return lu.allFinite() && (lu.diagonal().array() != 0.0).all();
 }
 
 /// Separators and the cup's multiplier, in place.
-void CyclicSolver::solveCorner(Separators& x, double& multiplier) const noexcept
+void CyclicSolver::solveSchur(Separators& x, double& multiplier) const noexcept
 {
   if (pivoting_)
   {
-    Eigen::Matrix<double, CORNER + 1, 1> whole;
+    Eigen::Matrix<double, SCHUR + 1, 1> whole;
     whole << x, multiplier;
     whole = lu_.solve(whole);
-    x = whole.head<CORNER>();
-    multiplier = whole[CORNER];
+    x = whole.head<SCHUR>();
+    multiplier = whole[SCHUR];
     return;
   }
   alignas(32) Separators inner = x - cup_inverse_ * multiplier * cup_;
-  kernels_.solve_corner(corner_, inner.data());
+  kernels_.solve_schur(schur_, inner.data());
   multiplier = cup_inverse_ * (multiplier - cup_.dot(inner));
   x = inner;
 }
@@ -146,7 +146,7 @@ void CyclicSolver::solve(double* const* columns, int count) noexcept
       }
       multiplier += before[BORDER * c + 4].lane[k];
     }
-    solveCorner(x, multiplier);
+    solveSchur(x, multiplier);
     for (int k = 0; k < COUNT; ++k)
     {
       const int previous = (k + COUNT - 1) % COUNT;

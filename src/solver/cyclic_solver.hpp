@@ -15,12 +15,12 @@ namespace hjt
 /// Direct solver for the ring's tangent: symmetric, cyclic, each tooth coupled to two on either side, plus the rank-one
 /// cup.
 ///
-/// Four separators of two teeth cut the ring into arcs, which are eliminated side by side (arc_elimination). What is left
-/// is dense: the separators and the cup's multiplier, 17 unknowns. Without the cup the ring may turn inside the wave
-/// generator almost freely (like a tank's track); pinning the separators keeps the elimination well conditioned, where a
-/// rank-one correction afterwards would lose all digits. Of the 17 the cup goes first; while the ring is stable the rest
-/// is positive definite and needs no pivoting, else it is done with pivoting.
-/// Cost: linear in the number of teeth. No allocation after construction.
+/// Four separators of two teeth cut the ring into arcs, which are eliminated side by side (arc_elimination). What is
+/// left is dense: the separators and the cup's multiplier, 17 unknowns. Without the cup the ring may turn inside the
+/// wave generator almost freely (like a tank's track); pinning the separators keeps the elimination well conditioned,
+/// where a rank-one correction afterwards would lose all digits. Of the 17 the cup goes first; while the ring is stable
+/// the rest is positive definite and needs no pivoting, else it is done with pivoting. Cost: linear in the number of
+/// teeth. No allocation after construction.
 class CyclicSolver
 {
 public:
@@ -52,18 +52,18 @@ public:
 
 private:
   static constexpr int MAX_COLUMNS = 3;
-  static constexpr int CORNER = arcs::CORNER;
-  using Corner = Eigen::Matrix<double, CORNER, CORNER, Eigen::RowMajor>;
-  using Separators = Eigen::Matrix<double, CORNER, 1>;
-  using CornerWithCup = Eigen::Matrix<double, CORNER + 1, CORNER + 1>;
+  static constexpr int SCHUR = arcs::SCHUR;
+  using SchurComplement = Eigen::Matrix<double, SCHUR, SCHUR, Eigen::RowMajor>;
+  using Separators = Eigen::Matrix<double, SCHUR, 1>;
+  using SchurWithCup = Eigen::Matrix<double, SCHUR + 1, SCHUR + 1>;
   struct alignas(32) Entry
   {
     double lane[arcs::COUNT];
   };
   using Entries = std::vector<Entry>;
 
-  bool factorCorner(const RingTangent& tangent, const Entry* before, const Entry* after, const Entry* between) noexcept;
-  void solveCorner(Separators& x, double& multiplier) const noexcept;
+  bool factorSchur(const RingTangent& tangent, const Entry* before, const Entry* after, const Entry* between) noexcept;
+  void solveSchur(Separators& x, double& multiplier) const noexcept;
   void solve(double* const* columns, int count) noexcept;
 
   const arcs::Kernels& kernels_;
@@ -71,10 +71,10 @@ private:
   std::array<int, arcs::COUNT> separator_;  // first tooth of each
   Entries factors_;                         // never empty: their first lanes are handed on
   Entries rows_;
-  arcs::CornerFactors corner_;  // of the separators, the cup eliminated
-  Separators cup_;              // its column
-  double cup_inverse_{};        // and its pivot's inverse
+  arcs::SchurFactors schur_;  // of the separators, the cup eliminated
+  Separators cup_;            // its column
+  double cup_inverse_{};      // and its pivot's inverse
   bool pivoting_{};
-  Eigen::PartialPivLU<CornerWithCup> lu_;  // if pivoting
+  Eigen::PartialPivLU<SchurWithCup> lu_;  // if pivoting
 };
 }  // namespace hjt

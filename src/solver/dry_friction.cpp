@@ -8,8 +8,9 @@ namespace hjt
 {
 namespace
 {
-/// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops falling.
-/// Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there in `slope`.
+/// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
+/// falling. Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there
+/// in `slope`.
 template <class Gradient>
 double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, Eigen::Vector2d& slope)
 {
@@ -68,14 +69,15 @@ bool solveSlip(double free, double most, double e, double& share)
 
 /// Slip speed at which a term is half way to full friction: what it sees at the regularising motor speed, the output
 /// following or held, whichever slips more.
-double DryFriction::width(const FrictionTerm& term, double follow) const noexcept
+double DryFriction::width(const FrictionTerm& term, double velocity_ratio) const noexcept
 {
   constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its powers up to the third stay numbers
-  return width_ * (std::abs(term.slip[0]) + std::abs(follow * term.slip[1])) + MIN_WIDTH;
+  return width_ * (std::abs(term.slip[0]) + std::abs(velocity_ratio * term.slip[1])) + MIN_WIDTH;
 }
 
-Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
-                                   const Eigen::Vector2d& free_speeds, double step) const noexcept
+Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocity_ratio,
+                                   const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_speeds,
+                                   double step) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
   constexpr double ENOUGH = 1e-12;     // relative change of the speeds
@@ -88,7 +90,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
     hessian.diagonal() += inertia_;
     for (const FrictionTerm& term : friction.terms)
     {
-      const double e = width(term, follow);
+      const double e = width(term, velocity_ratio);
       const double slip = term.slip.dot(v);
       const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
       sum += step * term.strength * slip * inverse * term.slip;
@@ -111,7 +113,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
                    -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
       }
       if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
-          std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(follow) * width_))
+          std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(velocity_ratio) * width_))
       {
         break;
       }
@@ -134,7 +136,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double follow,
   return v;
 }
 
-bool DryFriction::slide(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
   constexpr std::size_t MAX_TERMS = 8;
@@ -153,7 +155,7 @@ bool DryFriction::slide(const JointFriction& friction, double follow, const Eige
   for (std::size_t j = 0; j < count; ++j)
   {
     const double slip = friction.terms[j].slip.dot(old_speeds);
-    widths[j] = width(friction.terms[j], follow);
+    widths[j] = width(friction.terms[j], velocity_ratio);
     senses[j] = slip < 0.0 ? -1.0 : 1.0;
     // Against its width, without dividing.
     if (j == 0 || std::abs(slip) * widths[nearest] < least * widths[j])
@@ -201,14 +203,14 @@ bool DryFriction::slide(const JointFriction& friction, double follow, const Eige
   return true;
 }
 
-Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double follow,
+Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double velocity_ratio,
                                     const Eigen::Vector2d& speeds) const noexcept
 {
   Eigen::Vector2d torque = -friction.viscous * speeds;
   for (const FrictionTerm& term : friction.terms)
   {
     const double slip = term.slip.dot(speeds);
-    torque -= term.strength * slip / std::hypot(slip, width(term, follow)) * term.slip;
+    torque -= term.strength * slip / std::hypot(slip, width(term, velocity_ratio)) * term.slip;
   }
   return torque;
 }

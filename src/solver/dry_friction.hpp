@@ -12,8 +12,8 @@ namespace hjt
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
 ///
 /// Convex, so it has one solution whatever the step: friction sticks, slides and reverses without a mode switch.
-/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2. A motor that friction
-/// on its shaft can hold comes to rest exactly.
+/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2. A motor that
+/// friction on its shaft can hold comes to rest exactly.
 class DryFriction
 {
 public:
@@ -22,20 +22,21 @@ public:
   }
 
   /// `follow`: output speed over motor speed in plain running; scales the regularisation of slips at the output.
-  Eigen::Vector2d solve(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+  Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
   /// The same minimum where every term but one slides as it did at the old speeds, far from standing still: linear but
   /// for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by the tails of the
   /// regularisation, less than 1e-9 of the friction.
-  bool slide(const JointFriction& friction, double follow, const Eigen::Vector2d& old_speeds,
+  bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
   /// Friction torque on motor and output at given speeds, explicit [N.m].
-  Eigen::Vector2d torque(const JointFriction& friction, double follow, const Eigen::Vector2d& speeds) const noexcept;
+  Eigen::Vector2d torque(const JointFriction& friction, double velocity_ratio,
+                         const Eigen::Vector2d& speeds) const noexcept;
 
 private:
-  double width(const FrictionTerm& term, double follow) const noexcept;
+  double width(const FrictionTerm& term, double velocity_ratio) const noexcept;
 
   Eigen::Vector2d inertia_;
   double width_;

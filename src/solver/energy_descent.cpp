@@ -116,7 +116,7 @@ bool EnergyDescent::pairsAgain(RingState& state) noexcept
   return old_space_ != state.shape.space;
 }
 
-SolveStatus EnergyDescent::settle(RingLinearisation& system, RingState& state) noexcept
+SolveStatus EnergyDescent::descend(RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_STEPS = 2000;
   constexpr double FIRST_DAMPING = 1e6;  // N/m, added to every tooth's stiffness

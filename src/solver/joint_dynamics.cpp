@@ -17,7 +17,7 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
 {
 }
 
-SolveStatus JointDynamics::settle() noexcept
+SolveStatus JointDynamics::solveAtRest() noexcept
 {
   constexpr int MAX_ITERATIONS = 50;
   SolveStatus result = ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude });
@@ -84,9 +84,9 @@ void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
   surface_agrees_ = surface != nullptr && !on_surface_ && surfaceAgrees();
 }
 
-SolveStatus JointDynamics::followModel() noexcept
+SolveStatus JointDynamics::updateModel() noexcept
 {
-  const SolveStatus result = ring_.followModel();
+  const SolveStatus result = ring_.updateModel();
   viscosity_ = model_.bearing.viscosity(temperature_);
   takeRing();
   return result;
@@ -103,7 +103,7 @@ void JointDynamics::takeRing() noexcept
 {
   const Eigen::Matrix2d& k = ring_.stiffness();
   response_ = JointModel::summary(ring_.forces());
-  response_.follow = ring_.follow();
+  response_.velocity_ratio = ring_.velocityRatio();
   response_.output_stiffness = k(1, 1);
   response_.motor_stiffness = k(0, 0);
   motor_angle_ = ring_.position().wave_generator_angle;
@@ -158,7 +158,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     return;
   }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.forces(), rates, follow(), { speeds, inputs, viscosity() }, friction_);
+  model_.friction(ring_.forces(), rates, velocityRatio(), { speeds, inputs, viscosity() }, friction_);
 }
 
 /// Of the bearing's grease, at the present temperature.
@@ -182,7 +182,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
     return;
   }
   updateFriction(speeds);
-  const Eigen::Vector2d drag = dry_.torque(friction_, follow(), speeds);
+  const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;
   rate.segment<2>(MOTOR_SPEED) = (torque() + drag).cwiseQuotient(model_.inertia());
   rate[MOTOR_WORK] = inputs.motor_torque * speeds[0];

@@ -13,8 +13,8 @@ namespace hjt
 {
 /// Right-hand side of the joint: the four-state rigid body with the ring in equilibrium at every instant.
 ///
-/// The equilibrium comes from Newton's method on the full ring; or, once a response surface is given, from that, as long
-/// as the angles lie on it. It changes to the surface only where ring and surface agree.
+/// The equilibrium comes from Newton's method on the full ring; or, once a response surface is given, from that, as
+/// long as the angles lie on it. It changes to the surface only where ring and surface agree.
 ///
 /// Callable as `system(x, dxdt, t)` for Boost.odeint's explicit steppers; the leapfrog uses the parts.
 class JointDynamics
@@ -23,13 +23,13 @@ public:
   JointDynamics(const JointModel& model, const SolverParameters& parameters);
 
   /// Inserts the wave generator and lets the output settle under its load, the motor held at angle 0.
-  SolveStatus settle() noexcept;
+  SolveStatus solveAtRest() noexcept;
 
   /// From now on by this surface where it holds, which must outlive its use; null: by the full ring.
   void useSurface(const ResponseSurface* surface) noexcept;
 
   /// After an edit of the model: the ring in its equilibrium at the present angles, by the full ring.
-  SolveStatus followModel() noexcept;
+  SolveStatus updateModel() noexcept;
 
   /// The present equilibrium is the surface's.
   bool onSurface() const noexcept { return on_surface_; }
@@ -56,7 +56,7 @@ public:
   const JointFriction& friction() const noexcept { return friction_; }
   const DryFriction& dryFriction() const noexcept { return dry_; }
   /// Output speed over motor speed at constant load: from the ring's stiffness, not from the tooth numbers [-].
-  double follow() const noexcept { return response_.follow; }
+  double velocityRatio() const noexcept { return response_.velocity_ratio; }
   double storedEnergy() const noexcept { return model_.storedEnergy(response_, output_angle_); }
 
   JointInputs inputs;

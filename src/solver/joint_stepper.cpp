@@ -63,7 +63,7 @@ void JointStepper::checkStep(const Parameters& parameters)
 bool JointStepper::reset() noexcept
 {
   dynamics_.inputs = {};
-  const bool settled = dynamics_.settle().ok();
+  const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
   x_[OUTPUT_ANGLE] = dynamics_.outputAngle();
   speeds_.setZero();
@@ -84,11 +84,11 @@ bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
          inputs.temperature == last.temperature;
 }
 
-bool JointStepper::followModel() noexcept
+bool JointStepper::updateModel() noexcept
 {
   const double stored = dynamics_.storedEnergy();
   const Eigen::Vector2d torque = dynamics_.torque();
-  const bool good = dynamics_.followModel().ok();
+  const bool good = dynamics_.updateModel().ok();
   released_ += stored - dynamics_.storedEnergy();
   if (kind_ == StepperKind::LEAPFROG)
   {
@@ -140,7 +140,7 @@ bool JointStepper::stepRungeKutta() noexcept
   }
   speeds_ = x_.segment<2>(MOTOR_SPEED);
   dynamics_.updateFriction(speeds_);
-  friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.follow(), speeds_);
+  friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
   const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
   balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - x_[DISSIPATED] - kinetic;
   return true;
@@ -152,7 +152,7 @@ double JointStepper::phaseAdvance() const noexcept
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const double motor = ring.motor_stiffness / inertia[0];
   const double output = ring.output_stiffness / inertia[1];
-  const double cross = ring.follow * ring.output_stiffness;
+  const double cross = ring.velocity_ratio * ring.output_stiffness;
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
                                                             cross * cross / (inertia[0] * inertia[1]));
   return step_ * std::sqrt(std::max(fastest, 0.0));

@@ -27,13 +27,13 @@ public:
 
   /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
   ///
-  /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved slower
-  /// than regularised friction creeps, or than counts. Then nothing is solved.
+  /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved
+  /// slower than regularised friction creeps, or than counts. Then nothing is solved.
   bool step(const JointInputs& inputs) noexcept;
 
   /// After an edit of the model between two steps, the full ring in use: what its stored energy changes by is set free,
   /// or taken up, by the fault. False: the ring did not converge and is still the old one.
-  bool followModel() noexcept;
+  bool updateModel() noexcept;
   double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
 
   /// See JointDynamics.

@@ -20,9 +20,10 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   const Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
   Eigen::Vector2d after;
   // On the surface the friction is in few terms, and all is done to be quick.
-  if (!system.onSurface() || !system.dryFriction().slide(system.friction(), system.follow(), before, free, dt, after))
+  if (!system.onSurface() ||
+      !system.dryFriction().slide(system.friction(), system.velocityRatio(), before, free, dt, after))
   {
-    after = system.dryFriction().solve(system.friction(), system.follow(), before, free, dt);
+    after = system.dryFriction().solve(system.friction(), system.velocityRatio(), before, free, dt);
   }
   speeds_ = 0.5 * (before + after);
   friction_ = inertia.cwiseProduct(after - free) / dt;

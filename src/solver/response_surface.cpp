@@ -102,9 +102,9 @@ SurfaceCell::Energy SurfaceCell::energy() const noexcept
            along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height };
 }
 
-ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable departures)
+ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations)
   : table_(std::move(table))
-  , deviations_(std::move(departures))
+  , deviations_(std::move(deviations))
   , pitches_per_radian_(1.0 / table_.pitch)
   , inverse_ratio_(1.0 / table_.ratio)
   , line_index_(table_.lines)
@@ -143,7 +143,7 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   cell.width = 1.0 / table_.columns;
   cell.height = table_.lines[line + 1] - table_.lines[line];
   place.at = v;
-  place.departure.below = nullptr;
+  place.deviation.below = nullptr;
   if (!deviations_.pitches.empty())
   {
     locateDeviation(pitch, part, place);
@@ -168,7 +168,7 @@ void ResponseSurface::locateDeviation(std::int64_t pitch, double part, Place& pl
   const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
   const double height = table.lines[line + 1] - table.lines[line];
   const SurfaceTable::Node* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
-  place.departure = {
+  place.deviation = {
     below, below + stride, columns - column, (place.at - table.lines[line]) / height, 1.0 / table.columns, height
   };
   place.lobes_swapped = deviations_.swaps_lobes && turns % 2 != 0;
@@ -178,10 +178,10 @@ std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept
 {
   std::array<double, 2> forces{ place.cell.value(SurfaceTable::LOBE_FORCE),
                                 place.cell.value(SurfaceTable::LOBE_FORCE + 1) };
-  if (place.departure.below != nullptr)
+  if (place.deviation.below != nullptr)
   {
-    forces[place.lobes_swapped ? 1 : 0] += place.departure.value(SurfaceTable::LOBE_FORCE);
-    forces[place.lobes_swapped ? 0 : 1] += place.departure.value(SurfaceTable::LOBE_FORCE + 1);
+    forces[place.lobes_swapped ? 1 : 0] += place.deviation.value(SurfaceTable::LOBE_FORCE);
+    forces[place.lobes_swapped ? 0 : 1] += place.deviation.value(SurfaceTable::LOBE_FORCE + 1);
   }
   return forces;
 }
@@ -190,19 +190,19 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
 {
   SurfaceCell::Energy energy = place.cell.energy();
   RingResponse response;
-  response.follow = place.cell.value(SurfaceTable::FOLLOW);
+  response.velocity_ratio = place.cell.value(SurfaceTable::VELOCITY_RATIO);
   response.output_stiffness = place.cell.value(SurfaceTable::OUTPUT_STIFFNESS);
-  if (place.departure.below != nullptr)
+  if (place.deviation.below != nullptr)
   {
-    const SurfaceCell::Energy more = place.departure.energy();
+    const SurfaceCell::Energy more = place.deviation.energy();
     energy.value += more.value;
     energy.by_u += more.by_u;
     energy.by_v += more.by_v;
     energy.by_uu += more.by_uu;
     energy.by_uv += more.by_uv;
     energy.by_vv += more.by_vv;
-    response.follow += place.departure.value(SurfaceTable::FOLLOW);
-    response.output_stiffness += place.departure.value(SurfaceTable::OUTPUT_STIFFNESS);
+    response.velocity_ratio += place.deviation.value(SurfaceTable::VELOCITY_RATIO);
+    response.output_stiffness += place.deviation.value(SurfaceTable::OUTPUT_STIFFNESS);
   }
   const double per_pitch = pitches_per_radian_;
   const double k_uu = energy.by_uu * per_pitch * per_pitch;
@@ -234,9 +234,9 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
     return w00 * at(cell.below[0]) + w01 * at(cell.below[1]) + w10 * at(cell.above[0]) + w11 * at(cell.above[1]);
   };
   Values x = bilinear(place.cell);
-  if (place.departure.below != nullptr)
+  if (place.deviation.below != nullptr)
   {
-    x += bilinear(place.departure);
+    x += bilinear(place.deviation);
   }
   friction.contact_force = x[Table::CONTACT_FORCE - FIRST];
   friction.interface_torque = x[Table::INTERFACE_TORQUE - FIRST];

@@ -22,7 +22,7 @@ struct SurfaceTable
     ENERGY_BY_U,           // dU/du, u in pitches [J]
     ENERGY_BY_V,           // dU/dv [J/rad]
     ENERGY_BY_UV,          // [J/rad]
-    FOLLOW,                // [-]
+    VELOCITY_RATIO,        // [-]
     OUTPUT_STIFFNESS,      // [N.m/rad]
     CONTACT_FORCE,         // [N]
     INTERFACE_TORQUE,      // [N.m]
@@ -52,7 +52,7 @@ struct DeviationTable
     std::vector<double> lines;              ///< v of the lines, ascending [rad]; none: nothing departs
     std::vector<SurfaceTable::Node> nodes;  ///< (columns + 1) a line
   };
-  std::vector<Pitch> pitches;  ///< none: there are no departures
+  std::vector<Pitch> pitches;  ///< none: there are no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
 };
 
@@ -104,23 +104,23 @@ struct SurfaceCell
   }
 };
 
-/// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same again
-/// after one tooth pitch; with departures, for one that is the same again after more.
+/// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
+/// again after one tooth pitch; with deviations, for one that is the same again after more.
 ///
 /// The stored energy is one function, piecewise bicubic after Hermite, from its values, slopes and mixed derivative at
 /// the nodes; both torques are its derivatives, so what goes in comes out again. What friction needs is bilinear.
 class ResponseSurface
 {
 public:
-  /// `table`: at least two lines. The lines of a pitch of `departures` span those of the table.
-  explicit ResponseSurface(SurfaceTable table, DeviationTable departures = {});
+  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table.
+  explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {});
 
   /// A place on the surface.
   struct Place
   {
     SurfaceCell cell;
-    SurfaceCell departure;  ///< without nodes where nothing departs
-    bool lobes_swapped{};   ///< against how the departures were measured
+    SurfaceCell deviation;  ///< without nodes where nothing departs
+    bool lobes_swapped{};   ///< against how the deviations were measured
     double at{};            ///< v [rad]
   };
 
@@ -147,14 +147,14 @@ public:
   /// Bilinear, of any value but the energy's.
   static double value(const Place& place, int which) noexcept
   {
-    return place.cell.value(which) + (place.departure.below != nullptr ? place.departure.value(which) : 0.0);
+    return place.cell.value(which) + (place.deviation.below != nullptr ? place.deviation.value(which) : 0.0);
   }
 
   /// Mesh force of both lobes [N].
   static std::array<double, 2> lobeForces(const Place& place) noexcept;
 
   const SurfaceTable& table() const noexcept { return table_; }
-  const DeviationTable& departures() const noexcept { return deviations_; }
+  const DeviationTable& deviations() const noexcept { return deviations_; }
   double lowest() const noexcept { return table_.lines.front(); }  ///< of v [rad]
   double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
 

@@ -83,7 +83,7 @@ SolveStatus RingEquilibrium::insertWedged(const DrivePosition& target) noexcept
   return moveTo(target).addEffort(status);
 }
 
-SolveStatus RingEquilibrium::relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
+SolveStatus RingEquilibrium::solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
 {
   begin(points, position);
   return moveTo(position);
@@ -135,7 +135,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
   return status;
 }
 
-SolveStatus RingEquilibrium::followModel() noexcept
+SolveStatus RingEquilibrium::updateModel() noexcept
 {
   model_version_ = model_.version();
   system_.forgetFactors();
@@ -156,7 +156,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
   if (model_version_ != model_.version())
   {
-    const SolveStatus followed = followModel();
+    const SolveStatus followed = updateModel();
     return followed.ok() ? moveTo(target).addEffort(followed) : followed;
   }
   if (target == now_.position && now_.residual <= tolerance_)
@@ -175,12 +175,12 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   return status;
 }
 
-SolveStatus RingEquilibrium::settle(const DrivePosition& target) noexcept
+SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
 {
   start_ = now_;
   prediction_.forget();
   now_.position = target;
-  const SolveStatus status = descent_.settle(system_, now_);
+  const SolveStatus status = descent_.descend(system_, now_);
   if (!status.ok())
   {
     restore(start_);

@@ -17,9 +17,9 @@ namespace hjt
 {
 /// The ring in equilibrium for a position of wave generator and circular spline.
 ///
-/// From a prediction (RingPrediction) Newton's method (NewtonSolver); a target that is not reached directly is approached
-/// over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good state stays.
-/// An insertion that fails so is done once more down the stored energy (EnergyDescent).
+/// From a prediction (RingPrediction) Newton's method (NewtonSolver); a target that is not reached directly is
+/// approached over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good
+/// state stays. An insertion that fails so is done once more down the stored energy (EnergyDescent).
 class RingEquilibrium
 {
 public:
@@ -30,22 +30,22 @@ public:
   SolveStatus insert(const DrivePosition& target) noexcept;
 
   /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
-  SolveStatus relax(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
+  SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
   /// Repeats the insertion during a run after `moveTo` failed: the teeth are paired again. On failure the state is
   /// unchanged.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After a change of the model: to its equilibrium at the present position, inserted anew if there is no way to it.
+  /// After a change of the model: to its equilibrium at the present position, inserted again if there is no way to it.
   /// `moveTo` does so first if nobody has.
-  SolveStatus followModel() noexcept;
+  SolveStatus updateModel() noexcept;
 
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
   /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their
   /// spaces are paired again on the way. Slow; `iterations` counts its steps. On failure the state is unchanged.
-  SolveStatus settle(const DrivePosition& target) noexcept;
+  SolveStatus descend(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return model_; }
   const RingShape& shape() const noexcept { return now_.shape; }
@@ -63,9 +63,9 @@ public:
   /// Second derivatives of the stored energy by (wave generator, output) angle, the ring following [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
-  /// Output speed over wave generator speed at constant load: from the stiffness, not from the tooth numbers; 0 where the
-  /// output hangs free [-].
-  double follow() const noexcept
+  /// Output speed over wave generator speed at constant load: from the stiffness, not from the tooth numbers; 0 where
+  /// the output hangs free [-].
+  double velocityRatio() const noexcept
   {
     return now_.stiffness(1, 1) > 0.0 ? -now_.stiffness(1, 0) / now_.stiffness(1, 1) : 0.0;
   }

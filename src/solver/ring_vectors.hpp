@@ -6,7 +6,7 @@
 namespace hjt
 {
 /// Loops over the coordinates of all teeth that the solver goes through at every step, for the compiler to vectorise.
-/// Vectors of one call have one size and are not the same, but where said.
+/// Vectors of one call have one size and are not the same, unless stated.
 namespace ring_vectors
 {
 /// Largest absolute value; NaN if one is not finite.

@@ -26,19 +26,19 @@ public:
   const SolveStatus& status() const { return walk_.status(); }
 
   /// What each friction takes at this position, per motor speed [N.m].
-  LossShares shares(double speed, double follow)
+  LossShares shares(double speed, double velocity_ratio)
   {
-    const Eigen::Vector2d rates(1.0, follow);  // of both angles by the motor's
+    const Eigen::Vector2d rates(1.0, velocity_ratio);  // of both angles by the motor's
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
     const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
     const auto& contact = ring.forces().of<WaveGeneratorContact>();
-    friction_.running = by_angle.by_motor + follow * by_angle.by_output;
+    friction_.running = by_angle.by_motor + velocity_ratio * by_angle.by_output;
     LossShares shares;
     shares.bearing = model.bearing.torque(speed, contact.force.sum(), temperature_);
     shares.interface = model.interface_friction.torque(ring.shape(), contact, friction_.running);
     shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
-                   model.load.viscousFriction() * follow * follow * std::abs(speed);
+                   model.load.viscousFriction() * velocity_ratio * velocity_ratio * std::abs(speed);
     friction_.setZero();
     model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), by_angle, speed * rates,
                                  friction_);
@@ -61,7 +61,8 @@ private:
 double breakaway(LossMeter& meter, double load)
 {
   double largest = 0.0;
-  meter.walk().under(load, [&](double follow) { largest = std::max(largest, meter.shares(0.0, follow).gear()); });
+  meter.walk().under(
+      load, [&](double velocity_ratio) { largest = std::max(largest, meter.shares(0.0, velocity_ratio).gear()); });
   return largest;
 }
 }  // namespace
@@ -83,11 +84,11 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
     }
     const double part = 1.0 / positions;
     meter.walk().under(load,
-                       [&](double follow)
+                       [&](double velocity_ratio)
                        {
                          for (std::size_t i = first; i < rows.size(); ++i)
                          {
-                           const LossShares at = meter.shares(rows[i].motor_speed, follow);
+                           const LossShares at = meter.shares(rows[i].motor_speed, velocity_ratio);
                            LossShares& mean = rows[i].loss;
                            mean.bearing += part * at.bearing;
                            mean.interface += part * at.interface;
@@ -95,7 +96,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
                            mean.cup += part * at.cup;
                            mean.damping += part * at.damping;
                            mean.motor += part * at.motor;
-                           rows[i].load_reduced += part * load * follow;
+                           rows[i].load_reduced += part * load * velocity_ratio;
                          }
                        });
     for (std::size_t i = first; i < rows.size(); ++i)

@@ -10,7 +10,8 @@
 namespace hjt
 {
 /// The joint, with the faults it starts with, led quasi-statically through one tooth pitch of the wave generator at
-/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go through side by side in a pitch.
+/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go
+/// through side by side in a pitch.
 class PitchWalk
 {
 public:
@@ -33,7 +34,7 @@ public:
       status_ = balanceOutput(ring_, pitch_ * i / positions_, load);
       if (status_.ok())
       {
-        visit(ring_.follow());
+        visit(ring_.velocityRatio());
       }
     }
   }

@@ -8,8 +8,8 @@
 
 namespace hjt
 {
-/// Torsion of the gear under load, wave generator locked, friction left out: an odd function, linear between the solutions
-/// of the ring at torques in proportion to cup.torsion_breakpoints; the last slope goes on beyond them.
+/// Torsion of the gear under load, wave generator locked, friction left out: an odd function, linear between the
+/// solutions of the ring at torques in proportion to cup.torsion_breakpoints; the last slope goes on beyond them.
 class TorsionCurve
 {
 public:

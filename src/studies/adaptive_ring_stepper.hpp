@@ -13,17 +13,17 @@ namespace hjt
 ///   next / present = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),   0.2 ... 5
 /// where   e_n   error estimate of step n over the tolerance, at most 1; k   the power of the step it goes with
 ///
-/// A step whose e_n is above 1 is done again, shorter, and the one after it does not grow. Where a tooth touches or lets go
-/// the forces have a kink: no event is looked for, the estimate sees it and the step shrinks for as long as it must.
-/// No allocation after construction.
+/// A step whose e_n is above 1 is done again, shorter, and the one after it does not grow. Where a tooth touches or
+/// lets go the forces have a kink: no event is looked for, the estimate sees it and the step shrinks for as long as it
+/// must. No allocation after construction.
 class AdaptiveRingStepper : public RingStepper
 {
 public:
   /// `tolerance` > 0 [m].
   AdaptiveRingStepper(DynamicRing& ring, std::unique_ptr<EmbeddedRingStepper> method, double tolerance);
 
-  /// Covers `length` in as many steps as it takes; what the last of them taught is kept for the next call. False if they
-  /// became shorter than a billionth of it.
+  /// Covers `length` in as many steps as it takes; what the last of them taught is kept for the next call. False if
+  /// they became shorter than a billionth of it.
   bool step(RingMotion& motion, double length) noexcept override;
 
 private:

@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Direct solver for the ring's tangent over all coordinates: the cyclic tooth part bordered by the two angles, which are
-/// condensed to 2 x 2 by two more right-hand sides. No allocation after construction.
+/// Direct solver for the ring's tangent over all coordinates: the cyclic tooth part bordered by the two angles, which
+/// are condensed to 2 x 2 by two more right-hand sides. No allocation after construction.
 class BorderedRingSolver
 {
 public:

@@ -9,12 +9,12 @@
 
 namespace hjt
 {
-/// Explicit Runge-Kutta method of order 8 in twelve stages, with embedded methods of order 5 and 3 to judge its error by
-/// (Dormand and Prince 1989; DOP853 of Hairer, Norsett and Wanner).
+/// Explicit Runge-Kutta method of order 8 in twelve stages, with embedded methods of order 5 and 3 to judge its error
+/// by (Dormand and Prince 1989; DOP853 of Hairer, Norsett and Wanner).
 ///
 /// For motions whose vibrations are wanted, every one of them: its step is bounded by the stiffest mode as that of
-/// `ExplicitRingStepper` is (5.8 over its angular frequency), but up to there it is far more accurate. No allocation after
-/// construction.
+/// `ExplicitRingStepper` is (5.8 over its angular frequency), but up to there it is far more accurate. No allocation
+/// after construction.
 class DormandPrinceStepper : public EmbeddedRingStepper
 {
 public:

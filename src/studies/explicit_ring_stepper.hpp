@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// The classical Runge-Kutta method of Boost.odeint: no damping of its own worth speaking of, but the step is bounded by
-/// the stiffest mode (2.8 over its angular frequency). The reference for the implicit methods.
+/// The classical Runge-Kutta method of Boost.odeint: no damping of its own worth speaking of, but the step is bounded
+/// by the stiffest mode (2.8 over its angular frequency). The reference for the implicit methods.
 class ExplicitRingStepper : public RingStepper
 {
 public:

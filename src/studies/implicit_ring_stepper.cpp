@@ -144,9 +144,9 @@ void ImplicitRingStepper::accept() noexcept
   }
 }
 
-/// Out-of-balance force at the speeds v_, into residual_; q_ follows. The speeds are the unknowns because they keep their
-/// digits in short steps, where differences of positions would lose them. @returns its Euclidean length, torques as forces
-/// at the rim [N].
+/// Out-of-balance force at the speeds v_, into residual_; q_ follows. The speeds are the unknowns because they keep
+/// their digits in short steps, where differences of positions would lose them. @returns its Euclidean length, torques
+/// as forces at the rim [N].
 double ImplicitRingStepper::residual(double time) noexcept
 {
   q_ = q_bar_ + stage_step_ * v_;

@@ -54,7 +54,7 @@ Coverage coverage(const std::vector<LifeTrial>& trials, double from)
     {
       if (forecast.hours >= from * trial.life.hours)
       {
-        ++coverage.said;
+        ++coverage.forecasts;
         coverage.held += forecast.held() ? 1 : 0;
       }
     }

@@ -25,9 +25,9 @@ struct LifeTrialOptions
 /// A forecast of the filter at one reading, and the true life.
 struct LifeForecast
 {
-  double hours{};           ///< of use when it was said
-  double remaining{};       ///< what came [h]
-  RemainingHours forecast;  ///< what was said
+  double hours{};      ///< of use when the forecast was made
+  double remaining{};  ///< what came [h]
+  RemainingHours forecast;
 
   /// The interval from the 10 to the 90 % quantile holds what came.
   bool held() const { return remaining >= forecast.quantile[1] && remaining <= forecast.quantile[3]; }
@@ -43,10 +43,10 @@ struct LifeTrial
 /// How often an interval that should hold 80 % of all outcomes did.
 struct Coverage
 {
-  int said{};
+  int forecasts{};
   int held{};
 
-  double share() const { return said > 0 ? static_cast<double>(held) / said : 0.0; }
+  double share() const { return forecasts > 0 ? static_cast<double>(held) / forecasts : 0.0; }
 };
 
 /// Over all forecasts from a share `from` of each life on.

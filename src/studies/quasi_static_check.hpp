@@ -63,8 +63,8 @@ enum class QuasiStaticOutcome
   NO_EQUILIBRIUM
 };
 
-/// Forces, torques and positions are compared with the ring in equilibrium at the same two angles, which is what the twin
-/// computes; the torsion with that of the equilibrium under the same load.
+/// Forces, torques and positions are compared with the ring in equilibrium at the same two angles, which is what the
+/// twin computes; the torsion with that of the equilibrium under the same load.
 struct QuasiStaticResult
 {
   QuasiStaticOutcome outcome{ QuasiStaticOutcome::NO_EQUILIBRIUM };

@@ -46,7 +46,8 @@ private:
     return ring_.forces().of<WaveGeneratorContact>().force.dot(surface_);
   }
 
-  /// Force on the amplitude that is not balanced [N]. The lobes' springs alone give it a slope of 2 k over the amplitude.
+  /// Force on the amplitude that is not balanced [N]. The lobes' springs alone give it a slope of 2 k over the
+  /// amplitude.
   double excess()
   {
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);
@@ -61,7 +62,7 @@ private:
       return status;
     }
     ++snaps_;
-    return ring_.settle(target);
+    return ring_.descend(target);
   }
 
   SolveStatus moveAmplitude(double amplitude)

@@ -42,9 +42,9 @@ struct RatchetResult
 /// Jump of the teeth (ratcheting): wave generator locked, the output driven step by step against the teeth until the
 /// torque falls. Displacement controlled, so that the fall is followed as far as there is an equilibrium.
 ///
-/// `lobe_stiffness` k: radial stiffness of each of the two lobes with all that backs it up [N/m], > 0, infinite for rigid.
-/// The wave amplitude w is then one more unknown with the energy k (w_free - w)^2, w_free such that w = w0 at no load:
-/// w0 is what was measured on the assembled gear.
+/// `lobe_stiffness` k: radial stiffness of each of the two lobes with all that backs it up [N/m], > 0, infinite for
+/// rigid. The wave amplitude w is then one more unknown with the energy k (w_free - w)^2, w_free such that w = w0 at no
+/// load: w0 is what was measured on the assembled gear.
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress);
 }  // namespace hjt

@@ -7,7 +7,8 @@ namespace hjt
 {
 /// Coefficients of a diagonally implicit Runge-Kutta method, stiffly accurate: the last stage is the step's end.
 ///
-/// All implicit stages share the diagonal gamma, so one factored matrix serves them all. The first stage may be explicit.
+/// All implicit stages share the diagonal gamma, so one factored matrix serves them all. The first stage may be
+/// explicit.
 struct RungeKuttaTableau
 {
   int order;
@@ -26,8 +27,8 @@ struct RungeKuttaTableau
 /// Order 1, L-stable: what ode14x of the thesis' chapter 6 extrapolates from.
 const RungeKuttaTableau& implicitEuler();
 
-/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 as one method (Bank et al. 1985; embedded estimate of order
-/// 3 of Hosea and Shampine 1996).
+/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 as one method (Bank et al. 1985; embedded estimate of
+/// order 3 of Hosea and Shampine 1996).
 const RungeKuttaTableau& trBdf2();
 
 /// Order 4, L-stable, stage order 2, six stages, embedded order 3 (Kennedy and Carpenter 2003, ARK4(3)6L[2]SA, implicit

@@ -116,7 +116,8 @@ std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBen
     {
       // A ring in proportion is wrong only in the second order of w.
       const Eigen::VectorXd displacements = ring.shape().points - model.rest.points();
-      status = ring.relax(model.rest.points() + w / ring.position().wave_amplitude * displacements, { 0.0, 0.0, w });
+      status =
+          ring.solveFrom(model.rest.points() + w / ring.position().wave_amplitude * displacements, { 0.0, 0.0, w });
     }
     SmallWaveRow row;
     row.status = status;

@@ -8,10 +8,10 @@
 
 namespace hjt
 {
-/// How far one ring of teeth is from another that ought to be the same, turned and renumbered.
+/// How far one ring of teeth is from another that should be the same, turned and renumbered.
 struct RingDifference
 {
-  double position{};       ///< largest distance of a tooth point from where it ought to be [m]
+  double position{};       ///< largest distance of a tooth point from where it should be [m]
   double contact_force{};  ///< largest difference of the wave generator's force on a tooth [N]
   double flank_force{};    ///< largest difference of the force on a flank [N]
 };
@@ -36,8 +36,8 @@ struct StateInvariants
   double cup_torque{};             ///< of the flexspline's cup on the housing [N.m]
 };
 
-/// Wave generator at `angle`, `load` on the circular spline; the shifted state `pitches` tooth pitches further on is found
-/// by an insertion of its own, not from this one.
+/// Wave generator at `angle`, `load` on the circular spline; the shifted state `pitches` tooth pitches further on is
+/// found by an insertion of its own, not from this one.
 StateInvariants analyseState(const Parameters& parameters, double angle, double load, int pitches);
 
 /// Torques against the differences of the stored energy of neighbouring equilibria, and the torques' own differences.

@@ -36,7 +36,7 @@ struct TrialResult
 };
 
 /// Marches the twin from where it stands to `end`, `feed` giving the inputs of every step before it (false: stop), and
-/// looks at every step; keeps a sample every `sample_period` [ns], which should be a multiple of the step. Stops at the first step that
-/// is not finite.
+/// looks at every step; keeps a sample every `sample_period` [ns], which should be a multiple of the step. Stops at the
+/// first step that is not finite.
 TrialResult runTrial(Twin& twin, Stamp end, Stamp sample_period, const std::function<bool(Twin&)>& feed);
 }  // namespace hjt

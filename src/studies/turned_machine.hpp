@@ -38,8 +38,8 @@ struct TurnedMachine
   std::vector<TurnedBending> bending;
 };
 
-/// The ring in equilibrium under `load` [N.m], turned by `samples` random angles and, for the bending laws, by `samples`
-/// angles from -0.5 to 0.5 rad. The cup is left out: it is held by the housing, which has no angle of its own here;
-/// a turn by whole tooth pitches with the housing is the renumbering of `analyseState`.
+/// The ring in equilibrium under `load` [N.m], turned by `samples` random angles and, for the bending laws, by
+/// `samples` angles from -0.5 to 0.5 rad. The cup is left out: it is held by the housing, which has no angle of its own
+/// here; a turn by whole tooth pitches with the housing is the renumbering of `analyseState`.
 TurnedMachine analyseTurnedMachine(const Parameters& parameters, double load, unsigned seed, int samples);
 }  // namespace hjt

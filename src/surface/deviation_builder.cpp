@@ -20,8 +20,8 @@ using Node = SurfaceTable::Node;
 using Strip = std::vector<Node>;
 using Torques = Eigen::Array2d;  // on output and motor [N.m]
 
-constexpr double SHARE = 1e-2;    // of the largest departure on a line, that the table may be off by [-]
-constexpr double SMALLEST = 0.1;  // a line's largest departure counts as at least this part of the largest of all [-]
+constexpr double SHARE = 1e-2;    // of the largest deviation on a line, that the table may be off by [-]
+constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
 constexpr int MIN_COLUMNS = 4;
@@ -113,8 +113,8 @@ private:
     return points;
   }
 
-  /// SurfaceDeviations on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
-  /// beside which, there are any. False: no equilibrium, or too many points.
+  /// SurfaceDeviations on a line for some of the pitches: first at their edges, then, on the way back, within those
+  /// where, or beside which, there are any. False: no equilibrium, or too many points.
   bool measureLine(double v, const Set& wanted, Line& line)
   {
     too_many_ = points_ + pointsOf(wanted) > max_points_;
@@ -128,7 +128,7 @@ private:
       return false;
     }
     bool good = true;
-    const auto departure = [&](std::size_t pitch, double part)
+    const auto deviation = [&](std::size_t pitch, double part)
     {
       good = good && actual_.moveTo(actual_.pitch() * (static_cast<double>(pitch) + part), v);
       Node node = good ? actual_.measure() : Node{};
@@ -141,7 +141,7 @@ private:
     {
       if (wanted[last(last(pitch))] || wanted[last(pitch)] || wanted[pitch] || wanted[next(pitch)])
       {
-        edges[pitch] = departure(pitch, 0.0);
+        edges[pitch] = deviation(pitch, 0.0);
       }
     }
     line.strips.resize(pitches_);
@@ -159,7 +159,7 @@ private:
         {
           for (int column = columns - 1; column > 0; --column)
           {
-            strip[static_cast<std::size_t>(column)] = departure(pitch, static_cast<double>(column) / columns);
+            strip[static_cast<std::size_t>(column)] = deviation(pitch, static_cast<double>(column) / columns);
           }
         }
       }
@@ -190,9 +190,9 @@ private:
     line.tolerance = SHARE * actual_.overload(equal) * largest.max(SMALLEST * largest_);
   }
 
-  Torques torques(const Node& departure) const
+  Torques torques(const Node& deviation) const
   {
-    return torques(departure[SurfaceTable::ENERGY_BY_U], departure[SurfaceTable::ENERGY_BY_V]);
+    return torques(deviation[SurfaceTable::ENERGY_BY_U], deviation[SurfaceTable::ENERGY_BY_V]);
   }
 
   Torques torques(double by_u, double by_v) const { return { -by_v, by_v / actual_.ratio() - by_u / actual_.pitch() }; }
@@ -204,14 +204,14 @@ private:
     return std::max(torque[0], torque[1] * actual_.ratio()) > ROUNDING * actual_.torqueLimit();
   }
 
-  /// Whether what lies in a cell is close enough to the departure measured there.
+  /// Whether what lies in a cell is close enough to the deviation measured there.
   bool agrees(const SurfaceCell& cell, const Node& measured, const Torques& tolerance) const
   {
     const SurfaceCell::Energy energy = cell.energy();
     return ((torques(energy.by_u, energy.by_v) - torques(measured)).abs() <= tolerance).all();
   }
 
-  /// For each pitch the fewest columns that give the departures half way between them.
+  /// For each pitch the fewest columns that give the deviations half way between them.
   bool chooseColumns(double lowest, double highest)
   {
     std::vector<int> enough(pitches_, MIN_COLUMNS);
@@ -429,7 +429,7 @@ private:
   std::map<double, Line> lines_;
   std::size_t points_{};  // of all lines
   bool too_many_{};
-  Torques largest_{ Torques::Zero() };  // departures of all lines so far
+  Torques largest_{ Torques::Zero() };  // deviations of all lines so far
   double longest_way_{};                // between two solves, in v [rad]
   double v_{};                          // where the rings are [rad]
 };

@@ -22,11 +22,11 @@ struct DeviationBuild
   int solves{};                ///< equilibria of the ring that were found for it
 };
 
-/// Tabulates by how much the ring of `actual` differs from that of `equal`, whose surface has the range `lowest` ... `highest`
-/// of v [rad].
+/// Tabulates by how much the ring of `actual` differs from that of `equal`, whose surface has the range `lowest` ...
+/// `highest` of v [rad].
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
-/// size of the departures: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
+/// size of the deviations: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
 /// A table of more than `max_points` is given up.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,

@@ -45,8 +45,8 @@ constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// What a file must begin with: all that its table depends on. Code, the kind of processor, whose vectors round in their own
-/// way, parameters, faults, and what stands in files that the parameters name.
+/// What a file must begin with: all that its table depends on. Code, the kind of processor, whose vectors round in
+/// their own way, parameters, faults, and what stands in files that the parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
   std::string text = FORMAT + std::string(surfaceSourceHash()) + ' ' + arcs::fastest().name + '\n' +
@@ -104,10 +104,10 @@ public:
   /// A whole number not below `least`.
   std::size_t size(double least)
   {
-    constexpr double MOST = 1e6;
+    constexpr double MAX_VALUE = 1e6;
     double value = 0.0;
     take(&value, 1);
-    good_ = good_ && value >= least && value < MOST;
+    good_ = good_ && value >= least && value < MAX_VALUE;
     return good_ ? static_cast<std::size_t>(value) : 0;
   }
 
@@ -186,8 +186,8 @@ bool parseBody(std::string_view bytes, DeviationTable& table)
   return good && reader.complete();
 }
 
-/// The bytes of a regular file of this user that others cannot write, if it is not too large; else nothing. Opening it does
-/// not wait, as it would for the writer of a FIFO.
+/// The bytes of a regular file of this user that others cannot write, if it is not too large; else nothing. Opening it
+/// does not wait, as it would for the writer of a FIFO.
 std::optional<std::string> readOwnFile(const std::string& path)
 {
   const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
@@ -329,18 +329,18 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
   SurfaceTables tables{ std::move(*table), {} };
   if (repetition > 1)
   {
-    std::optional<DeviationTable> departures = obtain<DeviationTable>(
-        "departures", header(parameters, faults), source,
+    std::optional<DeviationTable> deviations = obtain<DeviationTable>(
+        "deviations", header(parameters, faults), source,
         [&]
         {
           return buildDeviations(parameters, equal, model, repetition, tables.table.lines.front(),
                                  tables.table.lines.back(), source.progress);
         });
-    if (!departures)
+    if (!deviations)
     {
       return std::nullopt;
     }
-    tables.departures = std::move(*departures);
+    tables.deviations = std::move(*deviations);
   }
   return tables;
 }
@@ -351,7 +351,7 @@ SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointMode
   const auto make = [&]() -> SurfacePool::Surface
   {
     std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
-    return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->departures)) :
+    return tables ? std::make_shared<const ResponseSurface>(std::move(tables->table), std::move(tables->deviations)) :
                     nullptr;
   };
   return source.pool ? source.pool->obtain(header(parameters, faults), make) : make();

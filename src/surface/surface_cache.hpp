@@ -16,19 +16,19 @@ namespace hjt
 struct SurfaceTables
 {
   SurfaceTable table;
-  DeviationTable departures;
+  DeviationTable deviations;
 };
 
 /// The surface of a gear: from the cache, or built and put there. Nothing if the gear has none.
 ///
-/// `model`: the joint of these parameters with its faults; `faults`: names what they changed in it, for the cache; empty: none.
-/// Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as departure from one
-/// of equal teeth.
+/// `model`: the joint of these parameters with its faults; `faults`: names what they changed in it, for the cache;
+/// empty: none. Teeth of one member may differ, by faults or by errors of manufacture: then the gear is tabulated as
+/// deviation from one of equal teeth.
 ///
-/// A file counts only if it is a regular file of this user that others cannot write, not larger than 1 GB, begins with the
-/// hash of this very code, the same parameters and faults, ends with the hash of all its bytes, and holds finite numbers on
-/// ascending lines; else the table is built again and the file replaced. That finds damage and other builds, not a table
-/// that this user has forged. Files appear whole or not at all.
+/// A file counts only if it is a regular file of this user that others cannot write, not larger than 1 GB, begins with
+/// the hash of this very code, the same parameters and faults, ends with the hash of all its bytes, and holds finite
+/// numbers on ascending lines; else the table is built again and the file replaced. That finds damage and other builds,
+/// not a table that this user has forged. Files appear whole or not at all.
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source);
 

@@ -15,8 +15,8 @@
 namespace hjt
 {
 /// Surfaces in memory for the twins of one process, one for each set of parameters. Safe to use from several threads:
-/// who asks for one that is being made waits for it, and who asks for another does not. Where `make` throws, its caller gets
-/// the exception and the next asker tries again.
+/// who asks for one that is being made waits for it, and who asks for another does not. Where `make` throws, its caller
+/// gets the exception and the next asker tries again.
 class SurfacePool
 {
 public:

@@ -23,12 +23,14 @@ constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
 
-/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in three by
-/// the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor speed.
+/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in
+/// three by the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor
+/// speed.
 ///
 /// While the drive runs, and while the motor stands and the output swings, all flanks of a group slide the same way, so
-/// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean square.
-void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* groups)
+/// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean
+/// square.
+void groupFlanks(const std::vector<FrictionTerm>& terms, double velocity_ratio, double* groups)
 {
   constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
   constexpr double LOW = 0.25;   // slip, as a share of the mean, that counts to the slowest group only
@@ -42,7 +44,7 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
   std::array<Sums, RingFrictionResponse::FLANK_GROUPS> sums;
   std::array<double, 2> first{};
   std::array<double, 2> second{};
-  const auto running = [&](const FrictionTerm& term) { return term.slip[0] + follow * term.slip[1]; };
+  const auto running = [&](const FrictionTerm& term) { return term.slip[0] + velocity_ratio * term.slip[1]; };
   const auto sense = [&](const FrictionTerm& term) { return running(term) * term.slip[1] >= 0.0 ? 0 : 1; };
   for (const FrictionTerm& term : terms)
   {
@@ -72,9 +74,9 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double follow, double* 
     const Eigen::Vector2d rms =
         size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
     // From (motor speed, output speed less what follows) to (motor speed, output speed).
-    groups[0] = group.slip[0] - follow * group.slip[1];
+    groups[0] = group.slip[0] - velocity_ratio * group.slip[1];
     groups[2 * SIZES] = group.slip[1];
-    groups[4 * SIZES] = rms[0] - follow * rms[1];
+    groups[4 * SIZES] = rms[0] - velocity_ratio * rms[1];
     groups[6 * SIZES] = rms[1];
     ++groups;
   }
@@ -131,16 +133,16 @@ Node SurfaceRing::measure()
   const auto& contact = forces.of<WaveGeneratorContact>();
   const auto& mesh = forces.of<ToothMesh>();
   const Eigen::Matrix2d& k = ring_.stiffness();
-  const double follow = ring_.follow();
+  const double velocity_ratio = ring_.velocityRatio();
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
   node[SurfaceTable::ENERGY] = forces.energy;
   node[SurfaceTable::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
   node[SurfaceTable::ENERGY_BY_V] = -forces.output_torque;
   node[SurfaceTable::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
-  node[SurfaceTable::FOLLOW] = follow;
+  node[SurfaceTable::VELOCITY_RATIO] = velocity_ratio;
   node[SurfaceTable::OUTPUT_STIFFNESS] = k(1, 1);
   node[SurfaceTable::CONTACT_FORCE] = contact.force.sum();
-  friction_.running = rates.by_motor + follow * rates.by_output;
+  friction_.running = rates.by_motor + velocity_ratio * rates.by_output;
   node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), contact, friction_.running);
   friction_.setZero();
   model_.damping.add(contact, rates, friction_);
@@ -148,7 +150,7 @@ Node SurfaceRing::measure()
   node[SurfaceTable::VISCOUS + 1] = friction_.viscous(0, 1);
   node[SurfaceTable::VISCOUS + 2] = friction_.viscous(1, 1);
   unit_friction_.addTerms(model_.ring.of<ToothMesh>(), mesh, rates, { 0.0, 0.0 }, friction_);
-  groupFlanks(friction_.terms, follow, &node[SurfaceTable::FLANKS]);
+  groupFlanks(friction_.terms, velocity_ratio, &node[SurfaceTable::FLANKS]);
   const LobeLoads lobes =
       lobeLoads({ mesh.flank_force, contact.force, tooth_angles_, ring_.position().wave_generator_angle });
   node[SurfaceTable::TEETH_LOADED] = lobes.teeth_loaded;
@@ -177,7 +179,7 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
   double flanks = 0.0;
   for (int i = SurfaceTable::FLANKS; i < SurfaceTable::FLANKS + RingFrictionResponse::FLANK_GROUPS; ++i)
   {
-    flanks += std::abs(node[i] + node[SurfaceTable::FOLLOW] * node[i + RingFrictionResponse::FLANK_GROUPS]);
+    flanks += std::abs(node[i] + node[SurfaceTable::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
   }
   return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) +
          node[SurfaceTable::INTERFACE_TORQUE] + static_friction_ * flanks;
@@ -188,8 +190,8 @@ int SurfaceRing::repetition()
   constexpr double SAME = 1e-6;  // of the torque limit [-]
   constexpr double LOAD = 0.25;  // of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
-  // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to the
-  // circular spline's. Where its lobes differ, twice as much.
+  // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to
+  // the circular spline's. Where its lobes differ, twice as much.
   const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
   std::array<bool, candidates.size()> repeats;
   repeats.fill(true);

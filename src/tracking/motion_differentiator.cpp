@@ -71,7 +71,7 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   for (std::uint64_t i = index; i > 0 && end_ - i < ROOM && take(at(i - 1)); --i)
   {
   }
-  if (rows >= FEWEST)
+  if (rows >= MIN_ROWS)
   {
     const Eigen::Vector3d parabola = normal.ldlt().solve(right);
     sample.velocity = parabola[1] / half_width_;

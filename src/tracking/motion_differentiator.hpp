@@ -30,8 +30,9 @@ struct MotionSample : MotionRow
 
 /// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
 ///
-/// A parabola is laid through the rows within a half width of each by least squares, their own stamps counting. A sample comes
-/// out when the rows after it are known, so at most the half width late. Memory is fixed; nothing allocates.
+/// A parabola is laid through the rows within a half width of each by least squares, their own stamps counting. A
+/// sample comes out when the rows after it are known, so at most the half width late. Memory is fixed; nothing
+/// allocates.
 class MotionDifferentiator
 {
 public:
@@ -58,7 +59,7 @@ private:
     std::uint64_t segment;  // number of gaps before it
   };
   static constexpr std::size_t ROOM = 512;  // more than two windows of rows at MIN_STEP
-  static constexpr int FEWEST = 4;          // rows for a parabola that does not only pass through them
+  static constexpr int MIN_ROWS = 4;        // rows for a parabola that does not only pass through them
 
   const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
   MotionSample fit(std::uint64_t index) const noexcept;

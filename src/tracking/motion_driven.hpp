@@ -26,14 +26,15 @@ struct MotionPrediction
   double band{};             ///< half width of the current's band that the motion leaves open [A]
 };
 
-/// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table of it.
+/// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table
+/// of it.
 ///
 ///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
 ///       T_r torque ripple caused by the kinematic error (TorqueRipple)
-/// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred nanoseconds;
-/// nothing allocates.
+/// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred
+/// nanoseconds; nothing allocates.
 class MotionDriven
 {
 public:

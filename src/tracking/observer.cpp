@@ -140,7 +140,7 @@ double Observer::correct(ObserverPiece::State angle, double measured, double noi
 
 Observation Observer::step(const Measurement& measurement) noexcept
 {
-  if (!started_ || measurement.anew)
+  if (!started_ || measurement.restarted)
   {
     start(measurement);
     last_ = measurement;

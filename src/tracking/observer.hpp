@@ -34,7 +34,8 @@ struct ObserverPiece
 };
 
 /// The exact step of one stiffness. `inertia`: of motor and output [kg.m^2]; `step` [s].
-/// Two per cent of critical damping are taken for the torsional swing, so that a swing faster than the rows cannot hide.
+/// Two per cent of critical damping are taken for the torsional swing, so that a swing faster than the rows cannot
+/// hide.
 ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
                                 const ObserverParameters& noise);
 
@@ -49,7 +50,7 @@ struct Measurement
   double load_torque{};   ///< external, at the output, > 0 resists positive motion [N.m]
   double output_angle{};  ///< [rad]
   double motor_angle{};   ///< NaN: there is no such encoder [rad]
-  bool anew{};            ///< first after a gap: the state before is discarded
+  bool restarted{};       ///< first after a gap: the state before is discarded
 };
 
 /// Estimate after the measurement.
@@ -70,15 +71,15 @@ struct Observation
                              ///< information
 };
 
-/// The joint of four states, driven by the measured torque and corrected towards the encoders, the output's alone or both: an
-/// extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
+/// The joint of four states, driven by the measured torque and corrected towards the encoders, the output's alone or
+/// both: an extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
 ///
-/// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed to
-/// stop the motor, at most what it is. While the motor sticks, the angle measurement does not update the disturbance,
-/// so the estimate does not wind up; its band widens instead. If the robot moves nevertheless, the model's output
-/// follows it until the spring torque exceeds stiction. The remaining torque is the residual: increased friction, an
-/// unknown load. The model's parameters are never adapted, so a fault cannot be adapted away. A step costs about a
-/// microsecond.
+/// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed
+/// to stop the motor, at most what it is. While the motor sticks, the angle measurement does not update the
+/// disturbance, so the estimate does not wind up; its band widens instead. If the robot moves nevertheless, the model's
+/// output follows it until the spring torque exceeds stiction. The remaining torque is the residual: increased
+/// friction, an unknown load. The model's parameters are never adapted, so a fault cannot be adapted away. A step costs
+/// about a microsecond.
 class Observer
 {
 public:

@@ -9,7 +9,8 @@
 
 namespace hjt
 {
-/// Health of a measured joint from its own signals, live and offline alike. Nothing allocates or throws after construction.
+/// Health of a measured joint from its own signals, live and offline alike. Nothing allocates or throws after
+/// construction.
 class SignalWatch
 {
 public:

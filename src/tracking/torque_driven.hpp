@@ -9,8 +9,8 @@ namespace hjt
 {
 /// The whole twin driven by a measured motor current, open loop: motion out. Differences from the robot accumulate.
 ///
-/// The current of a sample drives from its time on. The weight is that at the measured angle, so that a twin gone astray
-/// does not hang elsewhere. Starts at rest at the measured angle, and again after a gap.
+/// The current of a sample drives from its time on. The weight is that at the measured angle, so that a twin gone
+/// astray does not hang elsewhere. Starts at rest at the measured angle, and again after a gap.
 class TorqueDriven
 {
 public:

@@ -12,11 +12,11 @@ namespace hjt
 {
 /// Motor torque ripple caused by the kinematic error, referred to the joint.
 ///
-/// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load standing still would feel. The
-/// load is carried along: with its resonance w0 on that stiffness and its damping z the gear feels
+/// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load standing still would feel.
+/// The load is carried along: with its resonance w0 on that stiffness and its damping z the gear feels
 ///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed,
-/// nothing at rest, since the load settles. Four lines: two and four waves a turn of the motor, against the circular spline,
-/// which turns with the output, and against the flexspline.
+/// nothing at rest, since the load settles. Four lines: two and four waves a turn of the motor, against the circular
+/// spline, which turns with the output, and against the flexspline.
 class TorqueRipple
 {
 public:
@@ -36,7 +36,8 @@ public:
   /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// The same of cos and sin of each line [N.m], resonance [Hz], damping [-] and lag [s], for whatever numbers a fit uses.
+  /// The same of cos and sin of each line [N.m], resonance [Hz], damping [-] and lag [s], for whatever numbers a fit
+  /// uses.
   template <class T>
   static T torque(const Orders& orders, double position, double velocity, const T* values)
   {

@@ -192,12 +192,12 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   sample->after_gap = sample->after_gap || restarted_;
   restarted_ = false;
 
-  const std::optional<double> told = loadAt(sample->time);
-  const bool is_all = told && load_source_ == LoadSource::TARGET_MOMENT;
-  sample->load = told.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
+  const std::optional<double> received = loadAt(sample->time);
+  const bool is_all = received && load_source_ == LoadSource::TARGET_MOMENT;
+  sample->load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
   // What of the motor's inertia a controller reckons with is not there a second time.
   const double external =
-      told.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample->acceleration : 0.0);
+      received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample->acceleration : 0.0);
 
   Comparison now;
   now.time = sample->time;
@@ -205,7 +205,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.velocity = { sample->velocity, sample->velocity, 0.0 };
   now.current = { sample->current, sample->current, 0.0 };
   now.load_torque = sample->load;
-  now.load_provided = told.has_value();
+  now.load_provided = received.has_value();
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
@@ -221,7 +221,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   last_compared_ = now.time;
   ++counters_.compared;
   counters_.outside += now.isOutside() ? 1 : 0;
-  counters_.without_load += load_source_ != LoadSource::MODEL && !told ? 1 : 0;
+  counters_.without_load += load_source_ != LoadSource::MODEL && !received ? 1 : 0;
   return now;
 }
 

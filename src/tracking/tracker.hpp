@@ -27,7 +27,8 @@ struct Compared
   double residual() const noexcept { return measured - predicted; }
 };
 
-/// A healthy joint beside the measured one at the time of one row of telemetry. Fields as in Comparison.msg; always finite.
+/// A healthy joint beside the measured one at the time of one row of telemetry. Fields as in Comparison.msg; always
+/// finite.
 struct Comparison
 {
   double time{};             ///< of the row [s]
@@ -58,9 +59,10 @@ struct TrackerCounters
   std::uint64_t solver_failures{};  ///< steps of the twin in torque mode that did not converge
 };
 
-/// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion` and
-/// `observer`. Live and offline alike: the same rows and loads give the same numbers, if a load comes before the rows that
-/// are MotionDifferentiator::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or allocates.
+/// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion`
+/// and `observer`. Live and offline alike: the same rows and loads give the same numbers, if a load comes before the
+/// rows that are MotionDifferentiator::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or
+/// allocates.
 class Tracker
 {
 public:
@@ -82,7 +84,8 @@ public:
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
   void push(const MotionRow& row) noexcept;
 
-  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until there is none.
+  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until there is
+  /// none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
   TrackerCounters counters() const noexcept;
@@ -99,8 +102,8 @@ public:
   const SignalIndicators& signalIndicators() const noexcept { return watch_.indicators(); }
   const Assessment& assessment() const noexcept { return watch_.assessor().assessment(); }
 
-  /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the weight and
-  /// inertia that are configured; the whole is in the sample [N.m]
+  /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the
+  /// weight and inertia that are configured; the whole is in the sample [N.m]
   class Follower
   {
   public:

@@ -7,8 +7,8 @@ namespace hjt
 {
 /// All teeth at the joint's present angles, for those who look at them.
 ///
-/// While the joint runs on the response surface its own ring stays where it was: a second ring is brought to the present
-/// angles instead, so that looking changes nothing in the run. Allocates at construction only.
+/// While the joint runs on the response surface its own ring stays where it was: a second ring is brought to the
+/// present angles instead, so that looking changes nothing in the run. Allocates at construction only.
 class ObservedRing
 {
 public:
@@ -26,7 +26,7 @@ public:
       return &joint.ring();
     }
     // From the joint's own ring, which is in equilibrium at the angles of its last use.
-    started_ = started_ || ring_.relax(joint.ring().shape().points, joint.ring().position()).ok();
+    started_ = started_ || ring_.solveFrom(joint.ring().shape().points, joint.ring().position()).ok();
     return started_ && ring_.moveTo(joint.position()).ok() ? &ring_ : nullptr;
   }
 

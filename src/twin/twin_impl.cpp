@@ -138,7 +138,7 @@ bool Twin::Impl::takeFaults() noexcept
   }
   stepper.useSurface(nullptr);
   faults.apply(active);
-  const bool good = stepper.followModel();
+  const bool good = stepper.updateModel();
   observed_ring.restart();
   useSurface();
   return good;
@@ -258,7 +258,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.temperature = temperature;
   outputs.wave_generator_torque = -ring.wave_generator_torque;
   outputs.joint_torque = ring.output_torque;
-  outputs.friction_torque = std::abs(friction[0] + ring.follow * friction[1]);
+  outputs.friction_torque = std::abs(friction[0] + ring.velocity_ratio * friction[1]);
   outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
   outputs.released_energy = stepper.releasedEnergy();

@@ -259,8 +259,8 @@ TEST(ArmLoad, AllocatesNothingAfterConstruction)
   EXPECT_EQ(allocationCount(), before);
 }
 
-/// The controller's rigid-body torque in recordings of a UR5, from its own target motion. It takes the links for points and
-/// adds the motors' inertia, both of which the test does too.
+/// The controller's rigid-body torque in recordings of a UR5, from its own target motion. It takes the links for points
+/// and adds the motors' inertia, both of which the test does too.
 TEST(ArmDynamics, AgreesWithAController)
 {
   const char* const set = std::getenv("HJT_TELEMETRY_DIR");

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double STEP = 1e-4;   // [s]
 constexpr double WIDTH = 1e-6;  // stiction velocity [rad/s]
-constexpr double FOLLOW = 1.0 / 101.0;
+constexpr double VELOCITY_RATIO = 1.0 / 101.0;
 
 /// A step of random friction: a shaft, many flanks, viscous terms.
 struct RandomStep
@@ -31,7 +31,7 @@ struct RandomStep
     friction.viscous = 1e-4 * direction * direction.transpose();
     // Speeds from stuck to full speed, the free ones near enough to be stopped now and then.
     const double speed = part(random) * std::pow(10.0, 4.0 * part(random) - 2.0);
-    old = { speed, speed * FOLLOW + 1e-3 * part(random) * size() };
+    old = { speed, speed * VELOCITY_RATIO + 1e-3 * part(random) * size() };
     free = old + Eigen::Vector2d(part(random), part(random))
                      .cwiseProduct(STEP * Eigen::Vector2d(0.5, 50.0))
                      .cwiseQuotient(inertia);
@@ -44,7 +44,7 @@ struct RandomStep
     double value = 0.5 * change.dot(inertia.cwiseProduct(change)) + 0.25 * STEP * mean.dot(friction.viscous * mean);
     for (const FrictionTerm& term : friction.terms)
     {
-      const double width = WIDTH * (std::abs(term.slip[0]) + FOLLOW * std::abs(term.slip[1]));
+      const double width = WIDTH * (std::abs(term.slip[0]) + VELOCITY_RATIO * std::abs(term.slip[1]));
       value += STEP * term.strength * std::hypot(term.slip.dot(v), width);
     }
     return value;
@@ -87,7 +87,7 @@ TEST(DryFriction, IsTheMinimumFoundByBruteForce)
   {
     const RandomStep step(random);
     const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
     const double reach = 2.0 * (step.free.cwiseAbs() + step.old.cwiseAbs()).maxCoeff() * 101.0 + 1e-3;
     const auto best_output = [&](double motor) {
       return minimum(-reach, reach, [&](double output) { return step.potential({ motor, output }); });
@@ -116,13 +116,13 @@ TEST(DryFriction, SlidesAsItIsSolved)
     const RandomStep step(random, 1 + k % 7);
     const DryFriction dry(step.inertia, WIDTH);
     Eigen::Vector2d v(1e9, 1e9);
-    if (!dry.slide(step.friction, FOLLOW, step.old, step.free, STEP, v))
+    if (!dry.slide(step.friction, VELOCITY_RATIO, step.old, step.free, STEP, v))
     {
       EXPECT_EQ(v, Eigen::Vector2d(1e9, 1e9)) << k;
       continue;
     }
     ++slid;
-    const Eigen::Vector2d solved = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    const Eigen::Vector2d solved = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
     // The tails of the regularisation: 1e-9 of the friction; and what `solve` leaves, 1e-12 of the speeds.
     const Eigen::Vector2d friction =
         (step.inertia.cwiseProduct(solved - step.free)).cwiseAbs() + Eigen::Vector2d::Constant(1e-12);
@@ -142,9 +142,9 @@ TEST(DryFriction, LeavesNoForceUnbalanced)
   {
     const RandomStep step(random);
     const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
+    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
     // Momentum: M (v - v_free) = h (dry friction at v + viscous friction at the mean speed).
-    const Eigen::Vector2d at_end = dry.torque(step.friction, FOLLOW, v) + step.friction.viscous * v;
+    const Eigen::Vector2d at_end = dry.torque(step.friction, VELOCITY_RATIO, v) + step.friction.viscous * v;
     const Eigen::Vector2d at_mean = -0.5 * step.friction.viscous * (v + step.old);
     const Eigen::Vector2d error = step.inertia.cwiseProduct(v - step.free) - STEP * (at_end + at_mean);
     Eigen::Vector2d scale = step.inertia.cwiseProduct(step.free.cwiseAbs() + v.cwiseAbs() + step.old.cwiseAbs());
@@ -173,7 +173,7 @@ protected:
   double stepped(double speed, double torque) const
   {
     const Eigen::Vector2d old(speed, 0.0);
-    return dry_.solve(friction_, FOLLOW, old, { speed + STEP * torque / INERTIA, 0.0 }, STEP)[0];
+    return dry_.solve(friction_, VELOCITY_RATIO, old, { speed + STEP * torque / INERTIA, 0.0 }, STEP)[0];
   }
 
   JointFriction friction_{ 0 };
@@ -231,11 +231,11 @@ TEST_F(Slider, TorqueOpposesTheSpeedAndIsOdd)
 {
   for (const double speed : { 1e-9, 1e-6, 1.0, 300.0 })
   {
-    const double torque = dry_.torque(friction_, FOLLOW, { speed, 0.0 })[0];
+    const double torque = dry_.torque(friction_, VELOCITY_RATIO, { speed, 0.0 })[0];
     EXPECT_NEAR(torque, -COULOMB * speed / std::hypot(speed, WIDTH), 1e-15);
-    EXPECT_EQ(dry_.torque(friction_, FOLLOW, { -speed, 0.0 })[0], -torque);
+    EXPECT_EQ(dry_.torque(friction_, VELOCITY_RATIO, { -speed, 0.0 })[0], -torque);
   }
-  EXPECT_EQ(dry_.torque(friction_, FOLLOW, { 0.0, 0.0 })[0], 0.0);
+  EXPECT_EQ(dry_.torque(friction_, VELOCITY_RATIO, { 0.0, 0.0 })[0], 0.0);
 }
 
 TEST(DryFriction, WithoutFrictionLeavesTheFreeSpeeds)
@@ -243,7 +243,7 @@ TEST(DryFriction, WithoutFrictionLeavesTheFreeSpeeds)
   const DryFriction dry({ 1e-4, 0.5 }, WIDTH);
   const JointFriction none(0);
   const Eigen::Vector2d free(3.0, -0.2);
-  EXPECT_LT((dry.solve(none, FOLLOW, { 1.0, 1.0 }, free, STEP) - free).norm(), 1e-14);
+  EXPECT_LT((dry.solve(none, VELOCITY_RATIO, { 1.0, 1.0 }, free, STEP) - free).norm(), 1e-14);
 }
 
 TEST(DryFriction, NeverFeedsEnergyIn)
@@ -255,8 +255,8 @@ TEST(DryFriction, NeverFeedsEnergyIn)
   {
     const RandomStep step(random);
     const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, FOLLOW, step.old, step.free, STEP);
-    EXPECT_LE(dry.torque(step.friction, FOLLOW, v).dot(v), 0.0);
+    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
+    EXPECT_LE(dry.torque(step.friction, VELOCITY_RATIO, v).dot(v), 0.0);
     // Over the step: friction takes kinetic energy from the free motion, or none.
     const double taken =
         0.5 * step.free.dot(step.inertia.cwiseProduct(step.free)) - 0.5 * v.dot(step.inertia.cwiseProduct(v));

@@ -78,7 +78,7 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
   const Parameters parameters = shippedParameters();
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
-  ASSERT_TRUE(dynamics.settle().ok());
+  ASSERT_TRUE(dynamics.solveAtRest().ok());
   RandomDrive drive(randomDrive(73), parameters);
   Leapfrog leapfrog;
   JointState x = JointState::Zero();
@@ -90,17 +90,17 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
     leapfrog.do_step(dynamics, x, 0.0, 1e-4);
     ASSERT_TRUE(dynamics.status.ok());
     const Eigen::Vector2d after = x.segment<2>(MOTOR_SPEED);
-    const Eigen::Vector2d law = dynamics.dryFriction().torque(dynamics.friction(), dynamics.follow(), after) +
+    const Eigen::Vector2d law = dynamics.dryFriction().torque(dynamics.friction(), dynamics.velocityRatio(), after) +
                                 dynamics.friction().viscous * (after - leapfrog.speeds());
     double strength = dynamics.friction().viscous.col(0).lpNorm<1>() * std::abs(after[0]);
     for (const FrictionTerm& term : dynamics.friction().terms)
     {
-      strength += term.strength * std::abs(term.slip[0] + dynamics.follow() * term.slip[1]);
+      strength += term.strength * std::abs(term.slip[0] + dynamics.velocityRatio() * term.slip[1]);
     }
     const Eigen::Vector2d off = leapfrog.frictionTorque() - law;
     // A motor at rest takes what it needs of the friction on its shaft, which is the first term.
     const double held = after[0] == 0.0 ? dynamics.friction().terms.front().strength : 0.0;
-    worst = std::max(worst, (std::abs(off[0] + dynamics.follow() * off[1]) - held) / strength);
+    worst = std::max(worst, (std::abs(off[0] + dynamics.velocityRatio() * off[1]) - held) / strength);
   }
   RecordProperty("worst_relative_error", testing::PrintToString(worst));
   // The speeds are found to 1e-11; where the joint sticks, the slope of friction over 1e-6 rad/s magnifies that.
@@ -115,7 +115,7 @@ TEST(Dissipation, IsNeverNegative)
   const Parameters parameters = shippedParameters({}, { "joints/elbow" });
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
-  ASSERT_TRUE(dynamics.settle().ok());
+  ASSERT_TRUE(dynamics.solveAtRest().ok());
   RandomDrive drive(randomDrive(74), parameters);
   Leapfrog leapfrog;
   JointState x = JointState::Zero();
@@ -184,7 +184,7 @@ protected:
   double motorAngleByLeapfrog(int steps)
   {
     JointDynamics dynamics(model_, parameters_.solver);
-    EXPECT_TRUE(dynamics.settle().ok());
+    EXPECT_TRUE(dynamics.solveAtRest().ok());
     Leapfrog leapfrog;
     JointState x = start(dynamics);
     const double dt = DURATION / steps;
@@ -200,7 +200,7 @@ protected:
   double motorAngleByRungeKutta(int steps)
   {
     JointDynamics dynamics(model_, parameters_.solver);
-    EXPECT_TRUE(dynamics.settle().ok());
+    EXPECT_TRUE(dynamics.solveAtRest().ok());
     RungeKutta4 stepper;
     JointState x = start(dynamics);
     const double dt = DURATION / steps;
@@ -255,7 +255,7 @@ TEST(LeapfrogUnderOdeint, MarchesAsTheStepperDoes)
   inputs.load_torque = 15.0;
   JointStepper stepper(parameters, model);
   JointDynamics dynamics(model, parameters.solver);
-  ASSERT_TRUE(dynamics.settle().ok());
+  ASSERT_TRUE(dynamics.solveAtRest().ok());
   dynamics.inputs = inputs;
   JointState x = JointState::Zero();
   x[OUTPUT_ANGLE] = dynamics.ring().position().output_angle;

@@ -42,15 +42,15 @@ struct RatedUse
   RatedUse()
     : parameters(shippedParameters())
     , duty(ratedDuty(parameters.life.grease_temperature))
-    , exposures(parameters, POSITIONS)
-    , ageing(parameters.life, parameters.gear, duty, exposures)
+    , load_map(parameters, POSITIONS)
+    , ageing(parameters.life, parameters.gear, duty, load_map)
   {
-    exposures.cover(duty, {});
+    load_map.cover(duty, {});
   }
 
   Parameters parameters;
   DutyCycle duty;
-  RevolutionLoadMap exposures;
+  RevolutionLoadMap load_map;
   DriveAgeing ageing;
 };
 
@@ -121,8 +121,8 @@ TEST(RevolutionLoadMap, IsTheToothModelAtItsStagesAndNearItBetween)
 {
   const RatedUse& use = ratedUse();
   const RevolutionLoad fresh = RevolutionLoadAnalysis(use.parameters, POSITIONS).under(use.duty.phases[0].load_torque);
-  EXPECT_DOUBLE_EQ(use.exposures.at(use.duty.phases[0].load_torque, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
-  EXPECT_LT(use.exposures.largestError(), 0.05);
+  EXPECT_DOUBLE_EQ(use.load_map.at(use.duty.phases[0].load_torque, 0.0, 0.0).flank_sliding, fresh.flank_sliding);
+  EXPECT_LT(use.load_map.largestError(), 0.05);
 }
 
 TEST(DriveAgeing, NominalWearIsTheClosedFormAsLongAsWearChangesLittle)
@@ -221,7 +221,7 @@ TEST(RemainingLife, IntervalsHoldTheTruthAsOftenAsTheySay)
   const LifeTrialOptions options{ 100, 11, 2000.0, 500, 1e-6, 0.05, true };
   const std::vector<LifeTrial> trials = runLifeTrials(use.parameters, use.ageing, options, 1e6, [](double) {});
   const Coverage all = coverage(trials, 0.0);
-  ASSERT_GT(all.said, 1000);
+  ASSERT_GT(all.forecasts, 1000);
   EXPECT_GT(all.share(), 0.70);
   EXPECT_LT(all.share(), 0.90);
 }
@@ -283,9 +283,9 @@ TEST(UsageHistory, AgesTheDriveAsItsMotionDoes)
     motion.phases.push_back({ 1800.0, 200.0, 3.3 * i, 40.0 });
     record.add(motion.phases.back());
   }
-  RevolutionLoadMap exposures(parameters, 8);
-  exposures.cover(motion, {});
-  const DriveAgeing ageing(parameters.life, parameters.gear, motion, exposures);
+  RevolutionLoadMap load_map(parameters, 8);
+  load_map.cover(motion, {});
+  const DriveAgeing ageing(parameters.life, parameters.gear, motion, load_map);
   const DriveAge age = ageing.live(nominalDrive(parameters.life), 10.0, 10.0, true, {}).age;
   const LifeEstimate estimate = LifeEstimator(parameters).estimate(record);
   EXPECT_NEAR(estimate.hours, 10.0, 1e-9);

@@ -140,8 +140,8 @@ TEST(CircularSpline, EllipticityBendsWithoutStretch)
   EXPECT_NEAR(errors.space_along.maxCoeff(), std::hypot(3e-6, 2e-6), 0.5 * step * step * 3.7e-6);
   for (int k = 0; k < 202; ++k)
   {
-    // A ring keeps its length where the slope of the displacement along it makes up for that outwards. The difference of
-    // neighbours is off by (2 step)^2 / 6.
+    // A ring keeps its length where the slope of the displacement along it makes up for that outwards. The difference
+    // of neighbours is off by (2 step)^2 / 6.
     const double slope = (errors.space_across[(k + 1) % 202] - errors.space_across[(k + 201) % 202]) / (2.0 * step);
     EXPECT_NEAR(slope + errors.space_along[k], 0.0, 1e-3 * 3.7e-6);
   }

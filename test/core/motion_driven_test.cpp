@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The twin driven by a measured motion, and what is identified from one. The robot measured is the twin itself, driven by a
-// servo, with parameters that the identification does not know and with the noise of real sensors.
+// The twin driven by a measured motion, and what is identified from one. The robot measured is the twin itself, driven
+// by a servo, with parameters that the identification does not know and with the noise of real sensors.
 #include <cmath>
 #include <random>
 #include <vector>

@@ -133,8 +133,8 @@ Parameters jointWith(const std::string& assignment)
   return shippedParameters(assignments);
 }
 
-// Every size of the catalogue, inertias from none to a stretched arm, periods from 2 kHz to 100 Hz, one encoder or both: the
-// error of the steady filter dies out.
+// Every size of the catalogue, inertias from none to a stretched arm, periods from 2 kHz to 100 Hz, one encoder or
+// both: the error of the steady filter dies out.
 TEST(Observer, IsStableForEveryStiffness)
 {
   const ObserverParameters noise = shippedParameters().observer;
@@ -272,7 +272,8 @@ TEST(Observer, KnowsThatAMotorThatSticksStandsStill)
 
 TEST(Observer, IsNotHeldByFrictionThatTheRobotDoesNotHave)
 {
-  // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes later.
+  // The robot has lost most of its friction; in the observer it would hold the motor against the torque that comes
+  // later.
   const Parameters believed = shippedParameters(JOINT);
   const Parameters loose = jointWith("bearing.race_preload=0.0");
   for (const Rows& rows : { Rows{}, Rows{ 0.008, Encoders::OUTPUT } })
@@ -289,10 +290,10 @@ TEST(Observer, BeginsAnewAfterAGap)
   Observer observer(joint);
   const double none = std::numeric_limits<double>::quiet_NaN();
   observer.step({ 0.0, 0.0, 0.0, 0.3, none, false });
-  const Observation anew = observer.step({ 50.0, 0.0, 0.0, -1.2, none, true });
-  EXPECT_NEAR(anew.output_angle, -1.2, 1e-9);
-  EXPECT_NEAR(anew.motor_angle, -1.2 * nominalRatio(joint.gear), 0.1);
-  EXPECT_EQ(anew.residual_torque, 0.0);
+  const Observation restarted = observer.step({ 50.0, 0.0, 0.0, -1.2, none, true });
+  EXPECT_NEAR(restarted.output_angle, -1.2, 1e-9);
+  EXPECT_NEAR(restarted.motor_angle, -1.2 * nominalRatio(joint.gear), 0.1);
+  EXPECT_EQ(restarted.residual_torque, 0.0);
 }
 
 TEST(TorsionCurve, HasTheStiffnessOfTheCatalogueInEverySize)

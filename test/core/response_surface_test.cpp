@@ -195,8 +195,8 @@ TEST(ResponseSurface, SaysWhereItEnds)
   EXPECT_FALSE(surface().locate(1e300, 1e300 / 101.0, place));
 }
 
-/// At equal angles: torques within a thousandth of the rated ones, and the angle that the torque's error stands for within
-/// a tenth of a second of arc. The bounds are a tenth of that.
+/// At equal angles: torques within a thousandth of the rated ones, and the angle that the torque's error stands for
+/// within a tenth of a second of arc. The bounds are a tenth of that.
 TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
 {
   const Parameters parameters = surfaceParameters();
@@ -223,12 +223,13 @@ TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
     stiffness_misses +=
         std::abs(response.motor_stiffness - ring.stiffness()(0, 0)) > 0.15 * ring.stiffness()(0, 0) ? 1 : 0;
   }
-  // A second derivative of a table, and it jumps where teeth begin to touch within an interval: it warns of long steps only.
+  // A second derivative of a table, and it jumps where teeth begin to touch within an interval: it warns of long steps
+  // only.
   EXPECT_LE(stiffness_misses, 3);
 }
 
-/// Twins side by side, all teeth and the surface, position-controlled as a robot's drive is, over moves, reversals, jumps of
-/// the load and the brake.
+/// Twins side by side, all teeth and the surface, position-controlled as a robot's drive is, over moves, reversals,
+/// jumps of the load and the brake.
 TEST(SceneAuto, FollowsTheFullRingOverRandomMotions)
 {
   constexpr int STEPS = 10000;
@@ -288,8 +289,8 @@ TEST(SceneAuto, EnergyBalances)
   EXPECT_LT(std::abs(twin.outputs().energy_residual), 2e-4 * through);
 }
 
-/// Overload drives the joint off the surface and the relief brings it back: angles and speeds go on, and no output jumps by
-/// more than it does from step to step anyhow.
+/// Overload drives the joint off the surface and the relief brings it back: angles and speeds go on, and no output
+/// jumps by more than it does from step to step anyhow.
 TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
 {
   Parameters parameters = surfaceParameters();
@@ -297,7 +298,7 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
   const ResponseSurface& narrow = surface();
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
-  ASSERT_TRUE(dynamics.settle().ok());
+  ASSERT_TRUE(dynamics.solveAtRest().ok());
   dynamics.useSurface(&narrow);
   int changes = 0;
   double before = 0.0;
@@ -371,8 +372,8 @@ TEST(SurfaceDeviations, ABrokenToothIsFeltAsOnTheFullRing)
   const Parameters parameters = surfaceParameters();
   const std::optional<SurfaceTables> tables = obtainSurface(parameters, brokenModel(), "broken tooth 40 ", cached());
   ASSERT_TRUE(tables);
-  ASSERT_EQ(tables->departures.pitches.size(), 100u);  // half a turn
-  const ResponseSurface faulty(tables->table, tables->departures);
+  ASSERT_EQ(tables->deviations.pitches.size(), 100u);  // half a turn
+  const ResponseSurface faulty(tables->table, tables->deviations);
   SurfaceRing sound_ring(parameters, JointModel(parameters));
   SurfaceRing faulty_ring(parameters, brokenModel());
   ASSERT_TRUE(sound_ring.insert() && faulty_ring.insert());
@@ -416,7 +417,7 @@ TEST(SurfaceDeviations, AreContinuousFromPitchToPitch)
   const std::optional<SurfaceTables> tables =
       obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
   ASSERT_TRUE(tables);
-  const ResponseSurface faulty(tables->table, tables->departures);
+  const ResponseSurface faulty(tables->table, tables->deviations);
   constexpr double BESIDE = 1e-12;  // rad
   const double pitch = TWO_PI / 200;
   for (int edge = -50; edge < 250; ++edge)
@@ -457,16 +458,16 @@ TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
                                                           { cacheDirectory(), [&](double) { building = true; }, {} });
   ASSERT_TRUE(built && kept);
   EXPECT_FALSE(building);
-  ASSERT_EQ(built->departures.pitches.size(), kept->departures.pitches.size());
-  for (std::size_t i = 0; i < kept->departures.pitches.size(); ++i)
+  ASSERT_EQ(built->deviations.pitches.size(), kept->deviations.pitches.size());
+  for (std::size_t i = 0; i < kept->deviations.pitches.size(); ++i)
   {
-    EXPECT_EQ(built->departures.pitches[i].lines, kept->departures.pitches[i].lines);
-    EXPECT_EQ(built->departures.pitches[i].nodes, kept->departures.pitches[i].nodes);
+    EXPECT_EQ(built->deviations.pitches[i].lines, kept->deviations.pitches[i].lines);
+    EXPECT_EQ(built->deviations.pitches[i].nodes, kept->deviations.pitches[i].nodes);
   }
 }
 
-/// Steady turning under load with a broken tooth: the torsion's departure from the sound gear, on surface and full ring.
-/// Without the cup's friction, whose sticking and slipping under 10 kHz is as large as the effect on either.
+/// Steady turning under load with a broken tooth: the torsion's deviation from the sound gear, on surface and full
+/// ring. Without the cup's friction, whose sticking and slipping under 10 kHz is as large as the effect on either.
 TEST(SceneAuto, ABrokenToothShowsInTheTorsionAsOnTheFullRing)
 {
   constexpr int STEPS = 6000;

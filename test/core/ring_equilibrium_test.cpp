@@ -56,7 +56,7 @@ TEST_F(Ring, SettlesWhereItMovesIfNothingSnaps)
   const Eigen::VectorXd moved = ring_.shape().points;
   const double energy = ring_.forces().energy;
   ASSERT_TRUE(moveTo(0.0, -1.8e-3).ok());
-  ASSERT_TRUE(ring_.settle(at(0.0, -2e-3)).ok());
+  ASSERT_TRUE(ring_.descend(at(0.0, -2e-3)).ok());
   // One minimum of the energy, found twice; forces to 5e-7 N over the softest way of the ring, some 1e4 N/m.
   EXPECT_LT((ring_.shape().points - moved).lpNorm<Eigen::Infinity>(), 1e-10);
   EXPECT_NEAR(ring_.forces().energy, energy, 1e-9 * energy);
@@ -80,7 +80,7 @@ TEST(RingOnASoftWaveGenerator, SettlesDownhillWhereAToothLeavesItsSpace)
     }
     RingForces forces(model.rest.teeth());
     model.forces(ring.shape(), position, forces);
-    const SolveStatus status = ring.settle(position);
+    const SolveStatus status = ring.descend(position);
     ASSERT_TRUE(status.ok()) << position.output_angle;
     EXPECT_LE(status.residual, parameters.solver.force_tolerance);
     EXPECT_LT(ring.forces().energy, forces.energy);
@@ -107,7 +107,7 @@ TEST_F(Ring, IsInEquilibriumWhereItSaysSo)
   }
 }
 
-/// Also where nobody has called followModel().
+/// Also where nobody has called updateModel().
 TEST_F(Ring, IsSolvedAgainOnceItsModelHasChanged)
 {
   ASSERT_TRUE(moveTo(0.3, 0.3 / ratio() - 2e-3).ok());
@@ -119,7 +119,8 @@ TEST_F(Ring, IsSolvedAgainOnceItsModelHasChanged)
   ASSERT_TRUE(fresh.insert({ 0.0, 0.0, parameters_.gear.wave_amplitude }).ok());
   ASSERT_TRUE(fresh.moveTo(ring_.position()).ok());
   EXPECT_NEAR(ring_.forces().energy, fresh.forces().energy, 1e-9 * energy);
-  // Of a tangent at most a Newton step away (see RingEquilibrium::byWaveGenerator); that of the old model is off by 2e-2.
+  // Of a tangent at most a Newton step away (see RingEquilibrium::byWaveGenerator); that of the old model is off by
+  // 2e-2.
   EXPECT_NEAR(ring_.stiffness()(1, 1), fresh.stiffness()(1, 1), 1e-4 * fresh.stiffness()(1, 1));
 }
 

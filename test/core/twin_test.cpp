@@ -51,8 +51,8 @@ std::vector<double> withoutStamp(const JointOutputs& outputs)
   return values;
 }
 
-/// Braked under load the joint comes to rest and stays as it is, to the last bit; a change of load finds it as if no time
-/// had passed, however long it has rested.
+/// Braked under load the joint comes to rest and stays as it is, to the last bit; a change of load finds it as if no
+/// time had passed, however long it has rested.
 TEST(TwinAtRest, StaysAsItIsUntilAnInputChanges)
 {
   std::vector<std::vector<std::vector<double>>> runs;

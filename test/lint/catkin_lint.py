@@ -25,6 +25,6 @@ def lint(root):
 
 
 if __name__ == "__main__":
-    code, said = lint(project.ROOT)
-    print(said, end="")
+    code, text = lint(project.ROOT)
+    print(text, end="")
     sys.exit(code)

@@ -275,7 +275,7 @@ class ClangTidy(Tree):
     def setUp(self):
         super().setUp()
         self.root = os.path.realpath(self.root)
-        self.said = io.StringIO()
+        self.printed = io.StringIO()
         environment = unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME=os.path.join(self.root, "cache"))
         environment.start()
         self.addCleanup(environment.stop)
@@ -286,14 +286,14 @@ class ClangTidy(Tree):
         entry = {"directory": self.root, "file": path,
                  "arguments": ["c++", "-std=c++17", *options, "-o", "one.o", "-c", path]}
         self.write("build/compile_commands.json", json.dumps([entry]))
-        self.said = io.StringIO()
-        with contextlib.redirect_stdout(self.said):
+        self.printed = io.StringIO()
+        with contextlib.redirect_stdout(self.printed):
             return clang_tidy.check(os.path.join(self.root, "build"), self.root)
 
     def assert_checked(self, checked, *arguments):
         """The file is clean; `checked`: the tool had to run to find that out."""
         self.assertEqual(self.problems(*arguments), [])
-        self.assertEqual(self.said.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
+        self.assertEqual(self.printed.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
 
     def test_house_names(self):
         self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
@@ -353,18 +353,18 @@ class CatkinLint(Tree):
                                   "<description>d</description><maintainer email='a@b.cc'>a</maintainer>"
                                   "<license>BSD</license></package>")
         self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.16)\nproject(another)\n")
-        code, said = catkin_lint.lint(self.root)
+        code, note = catkin_lint.lint(self.root)
         self.assertNotEqual(code, 0)
-        self.assertIn("error", said)
+        self.assertIn("error", note)
 
 
 class Run(Tree):
     def test_exit_codes(self):
         for problems, code in [([], 0), (["a.cpp:1: wrong"], 1)]:
-            with self.assertRaises(SystemExit) as ended, contextlib.redirect_stdout(io.StringIO()) as said:
+            with self.assertRaises(SystemExit) as ended, contextlib.redirect_stdout(io.StringIO()) as note:
                 project.run(lambda root, found=problems: found, self.root)
             self.assertEqual(ended.exception.code, code)
-            self.assertEqual(said.getvalue().splitlines()[:-1], problems)
+            self.assertEqual(note.getvalue().splitlines()[:-1], problems)
 
 
 if __name__ == "__main__":

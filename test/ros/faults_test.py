@@ -136,10 +136,10 @@ class FaultsOfANode(unittest.TestCase):
         self.run_clock(2.0 * STEP)
         self.assertEqual(self.active(), [("pitting", 0.3, 7)])
         self.assertEqual(self.health.messages()[-1].motor_torque, self.torque)
-        for said in ("kind = 'rust' is unknown, allowed: interface_wear",
+        for text in ("kind = 'rust' is unknown, allowed: interface_wear",
                      "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
                      "place = 200 [-] of pitting is out of range, allowed: tooth 0 ... 199"):
-            self.assertTrue(said in self.node.output(), said)
+            self.assertTrue(text in self.node.output(), text)
         self.send("pitting", 0.6, 7)
         self.run_clock(STEP)
         self.assertEqual(self.active(), [("pitting", 0.6, 7)])

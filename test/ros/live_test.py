@@ -175,7 +175,7 @@ class Live(unittest.TestCase):
         self.assertEqual(self.diagnostics.level("Input"), WARN)
         self.assertEqual(self.diagnostics.number("Drive", "Motor torque [N.m]"), 0.0)
 
-    def test_reset_starts_anew(self):
+    def test_reset_starts_again(self):
         self.drive(0.5, 0.5)
         wait_until(lambda: abs(self.diagnostics.number("Drive", "Motor angle [rad]")) > 1.0, "the motor to turn")
         self.assertTrue(self.reset().success)

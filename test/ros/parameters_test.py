@@ -37,7 +37,7 @@ class Parameters(unittest.TestCase):
     def check_output(self, *expected):
         output = self.node.output()
         for text in expected:
-            self.assertTrue(text in output, f"not said: {text}; the node's last words: {output[-500:]}")
+            self.assertTrue(text in output, f"missing: {text}; the node's last words: {output[-500:]}")
 
     def check_start(self, files):
         self.start(files)

@@ -169,9 +169,9 @@ class Replay(unittest.TestCase):
             return recorder.poll() is not None
 
         wait_until(publish, "the end of the recorder")
-        said = recorder.communicate()[0]
-        self.assertEqual(recorder.returncode, 1, said)
-        self.assertIn(f"{self.live}.active has {limit} bytes of ", said)
+        note = recorder.communicate()[0]
+        self.assertEqual(recorder.returncode, 1, note)
+        self.assertIn(f"{self.live}.active has {limit} bytes of ", note)
         with rosbag.Bag(f"{self.live}.active", "a", allow_unindexed=True) as bag:
             for _ in bag.reindex():
                 pass

@@ -113,8 +113,8 @@ class SimTime(unittest.TestCase):
         self.waiting_diagnostics.wait_for("Timing", "Clock jumps back", 1)
         self.assertEqual(self.waiting_states.messages(), [], "started again without an input")
         time.sleep(0.5)
-        said = [log.name for log in self.log.messages() if "jumped back" in log.msg]
-        self.assertEqual(sorted(said), [NODE, WAITING_NODE])
+        text = [log.name for log in self.log.messages() if "jumped back" in log.msg]
+        self.assertEqual(sorted(text), [NODE, WAITING_NODE])
 
     def test_6_the_second_lap_gives_the_numbers_of_the_first(self):
         curves = []

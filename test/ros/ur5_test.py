@@ -78,7 +78,7 @@ class UR5(unittest.TestCase):
         robot = {joint: run_robot(cls.directory, joint) for joint in JOINTS}
         cls.publisher = rospy.Publisher("/joint_states", JointState, queue_size=1000)
         cls.load_publisher = rospy.Publisher("/target_moments", JointState, queue_size=1000)
-        wait_until(lambda: cls.load_publisher.get_num_connections() == 1, "the twin that is told its load")
+        wait_until(lambda: cls.load_publisher.get_num_connections() == 1, "the twin that receives its load")
         wait_until(lambda: cls.publisher.get_num_connections() == len(TWINS), "all twins")
         for listener in cls.comparisons.values():
             listener.wait_for_connection()
@@ -167,17 +167,17 @@ class UR5(unittest.TestCase):
     def test_what_was_wrong_with_the_messages_is_told(self):
         for twin in TWINS:
             self.wait_for_rows(twin)
-            told = self.diagnostics[twin].fresh("Input")
-            self.assertEqual(told["Topic"], "/joint_states")
-            self.assertEqual(int(told["Not finite, refused"]), self.sent["not_finite"])
-            self.assertEqual(int(told["Without position or effort, refused"]), self.sent["incomplete"])
-            self.assertEqual(int(told["Unknown joint, refused"]), self.sent["unknown"])
-            self.assertIn("gripper", told["Names in the last of those"])
-            self.assertEqual(int(told["Stamps repeated"]), self.sent["repeated"])
-            self.assertEqual(int(told["Gaps that cut the stream"]), 1)
-            self.assertAlmostEqual(float(told["Period [s]"]), PERIOD, delta=1e-4)
-            self.assertGreaterEqual(float(told["Reception less stamp [s]"]), 0.0)
-            self.assertLess(float(told["Reception less stamp [s]"]), 0.5)
+            values = self.diagnostics[twin].fresh("Input")
+            self.assertEqual(values["Topic"], "/joint_states")
+            self.assertEqual(int(values["Not finite, refused"]), self.sent["not_finite"])
+            self.assertEqual(int(values["Without position or effort, refused"]), self.sent["incomplete"])
+            self.assertEqual(int(values["Unknown joint, refused"]), self.sent["unknown"])
+            self.assertIn("gripper", values["Names in the last of those"])
+            self.assertEqual(int(values["Stamps repeated"]), self.sent["repeated"])
+            self.assertEqual(int(values["Gaps that cut the stream"]), 1)
+            self.assertAlmostEqual(float(values["Period [s]"]), PERIOD, delta=1e-4)
+            self.assertGreaterEqual(float(values["Reception less stamp [s]"]), 0.0)
+            self.assertLess(float(values["Reception less stamp [s]"]), 0.5)
 
     def test_telemetry_that_stops_is_told_and_health_comes_from_it(self):
         twin = ("motion", "base")

@@ -9,7 +9,8 @@
 
 namespace hjt
 {
-/// An empty folder with a name of its own, removed with all its files at the end: tests that run side by side stay apart.
+/// An empty folder with a name of its own, removed with all its files at the end: tests that run side by side stay
+/// apart.
 class TemporaryFolder
 {
 public:

@@ -130,12 +130,12 @@ class Compare(tool.ToolTest):
 
     def test_what_is_not_the_joints_current_is_not_judged(self):
         robot.write_bag(self.path("sound.bag"), 60.0)
-        for name, factor, said in (("zero.bag", 0.0, "it is not the motor's current"),
+        for name, factor, note in (("zero.bag", 0.0, "it is not the motor's current"),
                                    ("torque.bag", robot.GAIN, "expected in A, not in N.m")):
             self.rewrite("sound.bag", name, lambda state, factor=factor: [factor * value for value in state.effort])
             verdict = self.compare(name)["verdict"]
             self.assertEqual(verdict["level"], "NOT JUDGED", verdict)
-            self.assertIn(said, verdict["findings"][0]["text"])
+            self.assertIn(note, verdict["findings"][0]["text"])
             self.assertEqual(verdict["findings"][0]["causes"], [])
 
     def rewrite(self, source, target, efforts):
@@ -162,12 +162,12 @@ class Compare(tool.ToolTest):
     def test_a_bag_that_was_cut_off_is_told_from_one_that_is_none(self):
         robot.write_bag(self.path("a.bag"), 60.0)
         data = tool.read_bytes(self.path("a.bag"))
-        for name, content, said in (("cut.bag", data[:len(data) * 2 // 3], "cut.bag"),
+        for name, content, note in (("cut.bag", data[:len(data) * 2 // 3], "cut.bag"),
                                     ("open.bag", self.without_index(data), "`rosbag reindex` may mend it"),
                                     ("none.bag", b"not a bag", "cannot be read as a bag")):
             with open(self.path(name), "wb") as file:
                 file.write(content)
-            self.fail_with(1, [said], "compare", name, *OPTIONS, "--report", "r_" + name)
+            self.fail_with(1, [note], "compare", name, *OPTIONS, "--report", "r_" + name)
 
     @staticmethod
     def without_index(data):

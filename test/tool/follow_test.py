@@ -45,13 +45,13 @@ def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT, eccentricity=0
                 continue
             current = states[row - behind].effort[0] * RATIO / GAIN
             angle = state.position[1] + eccentricity * math.sin(state.position[1])
-            told = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, angle, 0.2],
+            sent = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, angle, 0.2],
                               velocity=[0.0] * 3, effort=[0.0, current, 0.0])
             if both:
-                told.name.append(joint + "_motor")
-                told.position.append(state.position[0])
-            told.header.stamp = state.header.stamp
-            bag.write("/joint_states", told, state.header.stamp + tool.genpy.Duration(0, 4_000_000))
+                sent.name.append(joint + "_motor")
+                sent.position.append(state.position[0])
+            sent.header.stamp = state.header.stamp
+            bag.write("/joint_states", sent, state.header.stamp + tool.genpy.Duration(0, 4_000_000))
 
 
 class Follow(tool.ToolTest):

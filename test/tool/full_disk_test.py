@@ -33,23 +33,23 @@ class FullDisk(tool.ToolTest):
         self.assertEqual(done.stdout, "")
         return done.stderr
 
-    def check_active(self, name, said):
+    def check_active(self, name, text):
         """The unfinished bag: told, readable once it is indexed, and without its last chunk alone."""
         self.assertFalse(os.path.exists(self.path(name)))
-        self.assertIn(f"{name} cannot be written", said)
-        self.assertIn(f"{name}.active has {LIMIT} bytes of ", said)
-        self.assertIn("rosbag reindex", said)
+        self.assertIn(f"{name} cannot be written", text)
+        self.assertIn(f"{name}.active has {LIMIT} bytes of ", text)
+        self.assertIn("rosbag reindex", text)
         with rosbag.Bag(self.path(name + ".active"), "a", allow_unindexed=True) as bag:
             for _ in bag.reindex():
                 pass
-        told = int(said.split(" bytes of ")[1].split()[0])
+        told = int(text.split(" bytes of ")[1].split()[0])
         self.assertGreater(len(tool.raw_messages(self.path(name + ".active"))), 0.3 * told)
 
     def test_a_simulation_keeps_what_was_recorded(self):
-        said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.bag")
-        self.check_active("out.bag", said)
-        said = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 10, "--out", "out.csv")
-        self.assertIn("out.csv cannot be written", said)
+        text = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.bag")
+        self.check_active("out.bag", text)
+        text = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 10, "--out", "out.csv")
+        self.assertIn("out.csv cannot be written", text)
 
     def test_a_replay_keeps_what_was_recorded(self):
         tool.write_recording(self.path("in.bag"), duration=3.0)
@@ -63,9 +63,9 @@ class FullDisk(tool.ToolTest):
         for name, record in [("hdf5", GROUPS), ("bag", "  format: bag\n")]:
             with self.subTest(name):
                 self.write("plan.yaml", PLAN + record)
-                said = self.fail_at_limit("sweep", "plan.yaml", "--out", name)
-                self.assertIn("run_000000000", said)
-                self.assertIn("cannot be written", said)
+                text = self.fail_at_limit("sweep", "plan.yaml", "--out", name)
+                self.assertIn("run_000000000", text)
+                self.assertIn("cannot be written", text)
                 self.assertEqual(os.listdir(self.path(name + "/runs")), [])
                 self.succeed("sweep", "plan.yaml", "--out", name)  # with space again it goes on
                 shutil.rmtree(self.path(name))

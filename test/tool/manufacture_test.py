@@ -14,10 +14,10 @@ class Tables(tool.ToolTest):
              "--set", "manufacture.circular_spline_pitch_deviation=8.0e-6"]
 
     def test_perfect_gear_has_no_errors(self):
-        said = self.succeed_json("manufacture")
-        self.assertEqual(said["flexspline"]["pitch_deviation"], [0.0] * 200)
+        text = self.succeed_json("manufacture")
+        self.assertEqual(text["flexspline"]["pitch_deviation"], [0.0] * 200)
         for quantity in ("pitch_deviation", "across", "along"):
-            self.assertEqual(said["circular_spline"][quantity], [0.0] * 202)
+            self.assertEqual(text["circular_spline"][quantity], [0.0] * 202)
 
     def test_tables_written_from_seeds_are_read_back_to_the_bit(self):
         seeded = self.succeed_json("manufacture", *self.PITCH, "--flexspline-csv", "teeth.csv", "--circular-spline-csv",

@@ -348,10 +348,10 @@ record:
                 both = [self.start("both.yaml", "both") for _ in range(2)]
                 ends = [(process.communicate(timeout=120)[1].decode(), process.returncode) for process in both]
                 self.assertIn(0, [code for _, code in ends], ends)
-                for said, code in ends:
+                for note, code in ends:
                     if code != 0:
                         self.assertEqual(code, 1)
-                        self.assertIn("is being written by another sweep into both", said)
+                        self.assertIn("is being written by another sweep into both", note)
                 self.assertEqual(tree(self.path("both")), tree(self.path("alone")))
                 for directory in ("alone", "both"):
                     shutil.rmtree(self.path(directory))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One trial as the stress matrix runs it: what the solver said, samples, faults, an advanced profile."""
+"""One trial as the stress matrix runs it: the solver's status, samples, faults, an advanced profile."""
 import tool
 
 PROFILE = "time,motor_torque,load_torque,brake\n0,0,0,1\n0.004,0,40,1\n0.012,0,-40,1\n"
@@ -34,11 +34,11 @@ class Trial(tool.ToolTest):
                               for word in ("--fault", f"tooth_root_crack:1:{tooth}")])["samples"]["output_angle"]
         whole = self.trial()["samples"]["output_angle"]
         self.assertGreater(abs(broken[-1] - whole[-1]), 1e-6)
-        for fault, said in [("flexspline_crack:1:200", ["place = 200", "0 ... 199"]),
+        for fault, text in [("flexspline_crack:1:200", ["place = 200", "0 ... 199"]),
                             ("tooth_wear:1.5", ["severity = 1.5", "0 ... 1"]),
                             ("tooth_were:1", ["unknown kind", "tooth_wear"]),
                             ("tooth_wear", ["expected KIND:SEVERITY"])]:
-            self.fail_with(1, said, "trial", "--profile", "profile.csv", "--duration", "0.02", "--fault", fault)
+            self.fail_with(1, text, "trial", "--profile", "profile.csv", "--duration", "0.02", "--fault", fault)
 
     def test_without_a_profile(self):
         self.fail_with(2, ["--profile"], "trial", "--duration", "0.02")

@@ -29,14 +29,14 @@ class Validate(unittest.TestCase):
     def fails(self, assignments, rows, sections):
         chosen = [word for section in sections for word in ("--section", section)]
         wrong = [word for assignment in assignments for word in ("--set", assignment)]
-        code, failing, said = validate(*wrong, *chosen)
-        self.assertEqual(code, 1, said)
-        self.assertLessEqual(set(rows), failing, said)
+        code, failing, text = validate(*wrong, *chosen)
+        self.assertEqual(code, 1, text)
+        self.assertLessEqual(set(rows), failing, text)
 
     def test_every_fast_row_holds(self):
-        code, failing, said = validate()
-        self.assertEqual((code, failing), (0, set()), said)
-        self.assertRegex(said, r"\d+ rows, \d+ hold, 0 fail")
+        code, failing, text = validate()
+        self.assertEqual((code, failing), (0, set()), text)
+        self.assertRegex(text, r"\d+ rows, \d+ hold, 0 fail")
 
     def test_stiffer_contact_fails_the_insertion(self):
         self.fails(["contact.stiffness=1.1e+8"], ["thesis.force_max", "thesis.operation_force_max"], ["thesis"])
@@ -66,15 +66,15 @@ class Validate(unittest.TestCase):
 
     def test_page_and_exit_codes(self):
         with tempfile.TemporaryDirectory() as out:
-            code, _, said = validate("--section", "catalogue", "--out", out)
-            self.assertEqual(code, 0, said)
+            code, _, text = validate("--section", "catalogue", "--out", out)
+            self.assertEqual(code, 0, text)
             with open(os.path.join(out, "validation.md"), encoding="utf-8") as page:
                 self.assertIn("`catalogue.torsion.48`", page.read())
         self.assertEqual(validate("--section", "nonsense")[0], 2)
         self.assertEqual(validate("--config", "/no/such/file.yaml")[0], 2)
-        code, _, said = validate("--section", "catalogue", "--set", "gear.wings=2")
-        self.assertEqual(code, 1, said)
-        self.assertIn("gear.wings", said)
+        code, _, text = validate("--section", "catalogue", "--set", "gear.wings=2")
+        self.assertEqual(code, 1, text)
+        self.assertIn("gear.wings", text)
 
     def test_printed_commands_hold_no_temporary_path(self):
         with tempfile.TemporaryDirectory() as work:

@@ -54,9 +54,9 @@ struct Assessment
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
-/// WARN: an indicator beyond the baseline's threshold. ERROR: beyond indicators.error_factor times it. The level changes
-/// after indicators.confirm_windows windows in a row that say the same or worse (up), or better (down). While the
-/// operating point has no reference, the last verdict stands.
+/// WARN: an indicator beyond the baseline's threshold. ERROR: beyond indicators.error_factor times it. The level
+/// changes after indicators.confirm_windows windows in a row that say the same or worse (up), or better (down). While
+/// the operating point has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -74,7 +74,7 @@ public:
 
 private:
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
-  void settle(HealthLevel level) noexcept;
+  void updateLevel(HealthLevel level) noexcept;
   void explain(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
 
   const int confirm_windows_;

@@ -11,8 +11,8 @@
 
 namespace hjt
 {
-/// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1 forward),
-/// steps of three eighths of the gear's rated torque and of 10 K. What is not measured counts as 0.
+/// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1
+/// forward), steps of three eighths of the gear's rated torque and of 10 K. What is not measured counts as 0.
 struct OperatingBin
 {
   int speed{};

@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// What may be wrong with the drive: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of the
-/// circular spline.
+/// What may be wrong with the drive: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of
+/// the circular spline.
 enum class Cause : std::uint8_t
 {
   NONE,

@@ -8,8 +8,9 @@
 
 namespace hjt
 {
-/// Lines by cycles per turn of the motor, flexspline held, circular spline turning. The first PHASE_LOCKED of them follow
-/// from the two angles alone, so that their phase stays from window to window; rolling elements creep, theirs does not.
+/// Lines by cycles per turn of the motor, flexspline held, circular spline turning. The first PHASE_LOCKED of them
+/// follow from the two angles alone, so that their phase stays from window to window; rolling elements creep, theirs
+/// does not.
 enum class Line : std::size_t
 {
   WAVE_GENERATOR_1,   ///< once a turn: eccentric wave generator

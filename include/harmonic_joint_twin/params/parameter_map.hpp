@@ -12,7 +12,8 @@
 
 namespace hjt
 {
-/// One configured value and where it came from, for the error text ("config/gear.yaml:12", "--set", "parameter server").
+/// One configured value and where it came from, for the error text ("config/gear.yaml:12", "--set", "parameter
+/// server").
 struct ParameterValue
 {
   std::variant<bool, std::int64_t, double, std::string, std::vector<double>> value;
@@ -36,8 +37,8 @@ void readYamlFile(const std::string& path, ParameterMap& map);
 /// @throws ParameterError naming file and line.
 void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 
-/// The value of one scalar of a YAML file, by rosparam's rules; a quoted one is a text whatever it looks like. `key` and
-/// `origin` are for the error text. @throws ParameterError.
+/// The value of one scalar of a YAML file, by rosparam's rules; a quoted one is a text whatever it looks like. `key`
+/// and `origin` are for the error text. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
 
 /// The number that a value is, or that a text spells: on the parameter server 1e-3 is a text. Nothing if it is none.
@@ -50,7 +51,8 @@ std::string valueText(const ParameterValue& value);
 void readAssignment(const std::string& assignment, ParameterMap& map);
 
 /// Fills and checks the parameters.
-/// @throws ParameterError on a missing, unknown, mistyped or out-of-range key, and where two keys contradict each other.
+/// @throws ParameterError on a missing, unknown, mistyped or out-of-range key, and where two keys contradict each
+/// other.
 Parameters parseParameters(const ParameterMap& map);
 
 /// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.

@@ -16,8 +16,8 @@ struct SurfaceSource
   std::function<void(double)> progress{};            ///< of building, 0 ... 1
   std::function<void(const std::string&)> notice{};  ///< why there is no surface, or why it could not be kept
   std::shared_ptr<SurfacePool> pool{};               ///< asked before the cache; may be none
-  /// The twin does not wait for it but solves the full ring until it is there. From when on the surface is used then depends
-  /// on how long that takes. `progress` and `notice` are called from another thread.
+  /// The twin does not wait for it but solves the full ring until it is there. From when on the surface is used then
+  /// depends on how long that takes. `progress` and `notice` are called from another thread.
   bool background{};
 };
 

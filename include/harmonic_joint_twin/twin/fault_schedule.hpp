@@ -31,8 +31,8 @@ public:
   void clear() noexcept;
   /// `fault` valid. @returns false if it is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
-  /// Takes the earliest with a stamp not after `instant`. False: there is none. One that comes late, after a newer one of
-  /// its kind and place was taken, is dropped.
+  /// Takes the earliest with a stamp not after `instant`. False: there is none. One that comes late, after a newer one
+  /// of its kind and place was taken, is dropped.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:

@@ -89,13 +89,14 @@ struct TwinCounters
 ///
 /// Time is the time of the messages: instants are whole multiples of the solver step, so that the same stamped inputs
 /// give the same numbers live, replayed and offline, in one go or in chunks.
-/// After construction no member throws or allocates except where said. No question asked of the twin changes a bit of its
+/// After construction no member throws or allocates unless stated. No question asked of the twin changes a bit of its
 /// run.
 class Twin
 {
 public:
-  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response surface of the drive
-  /// with the faults it starts with (seconds) or takes it from the cache, unless that is to be done beside the running twin.
+  /// Inserts the wave generator (some milliseconds). With solver.scene = auto also builds the response surface of the
+  /// drive with the faults it starts with (seconds) or takes it from the cache, unless that is to be done beside the
+  /// running twin.
   /// @throws ParameterError if the parameters, or the faults that the twin starts with, have no equilibrium.
   explicit Twin(const Parameters& parameters, const SurfaceSource& surface_source = {});
   ~Twin();
@@ -115,8 +116,8 @@ public:
   void commandBrake(Stamp stamp, bool engaged) noexcept;
   void setTemperature(Stamp stamp, double temperature) noexcept;  ///< of the drive, kept within its range [degC]
 
-  /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one that
-  /// is not valid is refused and counted. While any is active all teeth are solved at every step.
+  /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one
+  /// that is not valid is refused and counted. While any is active all teeth are solved at every step.
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;
 
@@ -138,8 +139,8 @@ public:
   /// Fills the arrays at the current instant; on the response surface this solves a full ring of its own. False: that
   /// found no equilibrium and the arrays stay as they were.
   bool toothForces(ToothForces& forces) noexcept;
-  /// At the current instant. The solver's state is that of the steps after `since` [ns]; of all since the reset if `since`
-  /// is not before the current instant.
+  /// At the current instant. The solver's state is that of the steps after `since` [ns]; of all since the reset if
+  /// `since` is not before the current instant.
   HealthReport health(Stamp since = std::numeric_limits<Stamp>::min()) const noexcept;
 
   /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with

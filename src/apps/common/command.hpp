@@ -43,8 +43,8 @@ private:
   CLI::Option& option_;
 };
 
-/// A command while its options are declared. Names with dashes are options, else arguments. Numbers must be finite; what
-/// a field holds at the declaration is the default, shown in the help.
+/// A command while its options are declared. Names with dashes are options, else arguments. Numbers must be finite;
+/// what a field holds at the declaration is the default, shown in the help.
 class Command
 {
 public:
@@ -77,8 +77,8 @@ enum class Subject
   DATA_SET
 };
 
-/// A subcommand of the tool. A static object of this type, at the end of the file that has its code, is all it takes to add
-/// one. "life age" is the subcommand `age` of the subcommand `life`.
+/// A subcommand of the tool. A static object of this type, at the end of the file that has its code, is all it takes to
+/// add one. "life age" is the subcommand `age` of the subcommand `life`.
 class Subcommand
 {
 public:

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// Of the node when nothing else is said.
+/// Of the node by default.
 constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
 
 /// What every subcommand of the tool takes.

@@ -8,7 +8,8 @@
 
 namespace hjt
 {
-/// Start of the simulated time where no recording gives one, so that stamps are valid ROS times: 2001-09-09 01:46:40 UTC.
+/// Start of the simulated time where no recording gives one, so that stamps are valid ROS times: 2001-09-09 01:46:40
+/// UTC.
 constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
 
 /// How a run of the twin ended, for the user and for programs.

@@ -25,8 +25,9 @@ struct ComparisonRecord
   Verdict verdict;
 };
 
-/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum, teeth, health, and
-/// where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads of the recording.
+/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
+/// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
+/// of the recording.
 /// @throws InputError if a file cannot be written.
 void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);

@@ -7,19 +7,19 @@
 
 namespace hjt
 {
-/// Every so-manieth of a stream of any length, at least MOST / 2 of it once there are as many, never more than MOST.
+/// Every nth of a stream of any length, at least MAX_ROWS / 2 of it once there are as many, never more than MAX_ROWS.
 template <class Row>
 class Decimated
 {
 public:
-  static constexpr std::size_t MOST = 16000;
+  static constexpr std::size_t MAX_ROWS = 16000;
 
   void add(const Row& row)
   {
     if (seen_++ % stride_ == 0)
     {
       rows_.push_back(row);
-      if (rows_.size() == MOST)
+      if (rows_.size() == MAX_ROWS)
       {
         halve();
       }
@@ -31,11 +31,11 @@ public:
 private:
   void halve()
   {
-    for (std::size_t i = 0; i < MOST / 2; ++i)
+    for (std::size_t i = 0; i < MAX_ROWS / 2; ++i)
     {
       rows_[i] = rows_[2 * i];
     }
-    rows_.resize(MOST / 2);
+    rows_.resize(MAX_ROWS / 2);
     stride_ *= 2;
   }
 

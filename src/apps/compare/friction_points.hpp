@@ -29,8 +29,8 @@ public:
 
   std::vector<FrictionPoint> points() const;  ///< by speed, ascending
 
-  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong goes
-  /// out. NaN: no point.
+  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong
+  /// goes out. NaN: no point.
   double ratio() const;
 
 private:

@@ -16,9 +16,9 @@ struct SpectrumLine
 
 /// What repeats with the joint's angle in a residual, in orders of the motor's turn.
 ///
-/// The residual is averaged over narrow bins of the joint's angle, both ways apart; so memory does not grow, time needs not be
-/// even and what does not stay in place goes out. The amplitude at order o is |2 / n sum r exp(-i o theta)| over the bins
-/// that were visited; where these do not fill a turn of the joint, neighbouring orders leak into each other.
+/// The residual is averaged over narrow bins of the joint's angle, both ways apart; so memory does not grow, time needs
+/// not be even and what does not stay in place goes out. The amplitude at order o is |2 / n sum r exp(-i o theta)| over
+/// the bins that were visited; where these do not fill a turn of the joint, neighbouring orders leak into each other.
 class ResidualSpectrum
 {
 public:
@@ -29,7 +29,8 @@ public:
   /// `angle` and `speed` of the joint [rad], [rad/s].
   void add(double angle, double speed, double residual);
 
-  /// At every whole order of the joint's turn; amplitudes in the residual's unit. Empty: less than a motor turn was visited.
+  /// At every whole order of the joint's turn; amplitudes in the residual's unit. Empty: less than a motor turn was
+  /// visited.
   std::vector<SpectrumLine> lines() const;
 
 private:

@@ -26,8 +26,8 @@ public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit TorsionPoints(const Parameters& parameters);
 
-  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position` of the
-  /// joint [rad], `speed` [rad/s].
+  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position`
+  /// of the joint [rad], `speed` [rad/s].
   void add(double torque, double torsion, double position, double speed);
 
   std::uint64_t rows() const { return rows_; }
@@ -35,8 +35,8 @@ public:
   /// By torque, ascending, in steps; zero is where the twin's curve has it.
   std::vector<TorsionMean> means() const;
 
-  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning; NaN
-  /// if the torque hardly varied.
+  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning;
+  /// NaN if the torque hardly varied.
   double compliance() const;
   double twinAmplitude() const;  ///< standard deviation of the twin's torsion under the same torques [rad]
 

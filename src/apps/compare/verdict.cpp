@@ -28,7 +28,7 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
 
-/// Part of a fault's signature, a unit vector, from which on the fault is said to move a feature.
+/// Part of a fault's signature, a unit vector, from which on a fault counts as moving a feature.
 constexpr double MIN_PART = 0.2;
 
 /// @param sign +1: up, -1: down.
@@ -107,18 +107,18 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
 /// Why the recorded current cannot be that of the joint's motor in this motion; empty: it can.
 std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parameters& parameters)
 {
-  constexpr double LEAST = 0.02;  // of the predicted current, rms
-  constexpr double MOST = 4.0;
+  constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
+  constexpr double MAX_RATIO = 4.0;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = comparison.currentRms();
   const double predicted = comparison.predictedRms();
-  if (predicted > noticeable && measured < LEAST * predicted)
+  if (predicted > noticeable && measured < MIN_RATIO * predicted)
   {
     return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
            rounded(predicted, 2) + " A: it is not the motor's current.";
   }
-  if (measured > noticeable && measured > MOST * predicted && comparison.residualSpread() > SPREAD * predicted)
+  if (measured > noticeable && measured > MAX_RATIO * predicted && comparison.residualSpread() > SPREAD * predicted)
   {
     return "The recorded effort is " + rounded(measured / predicted, 1) +
            " times the current that this motion takes: it is expected in A, not in N.m; or "

@@ -32,9 +32,8 @@ private:
   Close close_{};
 };
 
-/// A run as an HDF5 file: a group for each rate with a data set a column, the indicators of each window, the faults, the
-/// parameters, the record.
-/// docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
+/// A run as an HDF5 file: a group for each rate with a data set a column, the indicators of each window, the faults,
+/// the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
 class Hdf5RunFile : public RunFile
 {
 public:

@@ -37,8 +37,8 @@ struct RunSpec
 
 /// A plan of many runs: what is fixed, laid out on grids and drawn.
 ///
-/// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one fastest,
-/// then the repeats. After construction all members may be called from any thread.
+/// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
+/// fastest, then the repeats. After construction all members may be called from any thread.
 class Plan
 {
 public:

@@ -25,7 +25,7 @@ struct SweepResult
 {
   std::uint64_t done{};     ///< runs finished by this call
   std::uint64_t present{};  ///< runs that stood there finished before
-  std::uint64_t damaged{};  ///< of those done, runs whose file was not what the index said
+  std::uint64_t damaged{};  ///< of those done, runs whose file did not match the index
   std::uint64_t failed{};   ///< of this shard's, of those and of the others
 };
 

@@ -101,8 +101,8 @@ std::string fileHash(const std::string& path)
   return hexadecimal(hash);
 }
 
-/// Locks or unlocks one byte, whether it is in the file or not. False: another process holds it. A file system that knows
-/// no locks refuses none.
+/// Locks or unlocks one byte, whether it is in the file or not. False: another process holds it. A file system that
+/// knows no locks refuses none.
 bool lockByte(int file, std::uint64_t place, int command, short kind)
 {
   struct flock lock

@@ -27,7 +27,7 @@ SurfaceSource sharedSurfaces(unsigned jobs)
   struct Remarks
   {
     std::mutex mutex;
-    std::set<std::string> said;
+    std::set<std::string> shown;
     Progress building{ "building response surfaces" };
   };
   const auto remarks = std::make_shared<Remarks>();
@@ -39,7 +39,7 @@ SurfaceSource sharedSurfaces(unsigned jobs)
   const auto tell = [remarks](const std::string& what)
   {
     const std::lock_guard<std::mutex> lock(remarks->mutex);
-    if (remarks->said.insert(what).second)
+    if (remarks->shown.insert(what).second)
     {
       std::cerr << "warning: " << what << '\n';
     }

@@ -54,21 +54,21 @@ struct LifeBench
   explicit LifeBench(const LifeOptions& options)
     : parameters(loadParameters(options))
     , duty(DutyCycle::fromFile(options.duty))
-    , exposures(measure(parameters, duty, options.positions))
-    , ageing(parameters.life, parameters.gear, duty, exposures)
+    , load_map(measure(parameters, duty, options.positions))
+    , ageing(parameters.life, parameters.gear, duty, load_map)
   {
   }
 
   static RevolutionLoadMap measure(const Parameters& parameters, const DutyCycle& duty, int positions)
   {
-    RevolutionLoadMap exposures(parameters, positions);
-    exposures.cover(duty, showProgress("measuring wear"));
-    return exposures;
+    RevolutionLoadMap load_map(parameters, positions);
+    load_map.cover(duty, showProgress("measuring wear"));
+    return load_map;
   }
 
   Parameters parameters;
   DutyCycle duty;
-  RevolutionLoadMap exposures;
+  RevolutionLoadMap load_map;
   DriveAgeing ageing;
 };
 
@@ -98,14 +98,14 @@ const std::vector<Column<AgeRow>> AGE_COLUMNS{ { "hours", &AgeRow::hours },
 struct FreshPhase
 {
   DutyPhase phase;
-  RevolutionLoad exposure;
+  RevolutionLoad revolution_load;
 };
 const std::vector<Column<FreshPhase>> PHASE_COLUMNS{
   { "load_torque", [](const FreshPhase& fresh) { return fresh.phase.load_torque; } },
   { "turns_per_cycle", [](const FreshPhase& fresh) { return fresh.phase.turns(); } },
-  { "flank_sliding", [](const FreshPhase& fresh) { return fresh.exposure.flank_sliding; } },
-  { "interface_sliding", [](const FreshPhase& fresh) { return fresh.exposure.interface_sliding; } },
-  { "rim_stress_range", [](const FreshPhase& fresh) { return fresh.exposure.rim_stress_range; } }
+  { "flank_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.flank_sliding; } },
+  { "interface_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.interface_sliding; } },
+  { "rim_stress_range", [](const FreshPhase& fresh) { return fresh.revolution_load.rim_stress_range; } }
 };
 
 int age(const AgeOptions& options)
@@ -130,7 +130,7 @@ int age(const AgeOptions& options)
   std::vector<FreshPhase> phases;
   for (const DutyPhase& phase : bench.duty.phases)
   {
-    phases.push_back({ phase, bench.exposures.at(phase.load_torque, 0.0, 0.0) });
+    phases.push_back({ phase, bench.load_map.at(phase.load_torque, 0.0, 0.0) });
   }
   std::vector<ReportLine> lines{
     { "hours", "hours of use", life.hours, "h" },
@@ -144,7 +144,7 @@ int age(const AgeOptions& options)
   };
   if (options.check)
   {
-    lines.push_back({ "map_error", "largest error of the exposure map", bench.exposures.largestError() });
+    lines.push_back({ "map_error", "largest error of the map of loads", bench.load_map.largestError() });
   }
   printReport(options.json, lines);
   return EXIT_DONE;
@@ -198,7 +198,7 @@ int trials(const TrialsOptions& options)
                               { "root_crack", "ended by a root crack", ends[2] },
                               { "bearing", "ended by the bearing", ends[3] },
                               { "unended", "still in use at the end", unended },
-                              { "forecasts", "forecasts", all.said },
+                              { "forecasts", "forecasts", all.forecasts },
                               { "coverage_80", "", all.share() },
                               { "coverage_80_from_half_life", "", later.share() },
                               { "", "the 80 % interval held the truth", 100.0 * all.share(), "%" },

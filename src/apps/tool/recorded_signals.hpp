@@ -28,8 +28,8 @@ struct SignalSource
 
 /// Gives every sample of a CSV file or a bag to `take`, in order of time, until that returns false.
 /// CSV: a column that is not there is not measured; time, torque and one angle must be.
-/// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort of
-/// NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
+/// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort
+/// of NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
 /// @throws InputError
 void readSignals(const std::string& path, const SignalSource& source,
                  const std::function<bool(const SignalSample&)>& take);

@@ -97,7 +97,7 @@ void checkSpan(const rosbag::Bag& bag, const std::string& path)
   }
 }
 
-/// The torques of the bag. If it commands one joint only and the user has not said which, `parameters` takes its name.
+/// The torques of the bag. If it commands one joint only and the user has not named one, `parameters` takes its name.
 BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const ParameterMap& map,
                         Parameters& parameters)
 {

@@ -108,8 +108,8 @@ void degradeLubricant(const Fault& fault, const Parameters& parameters, JointMod
 
 // The teeth.
 
-/// Stiffness of a tooth pair, to that of a sound one, whose flexspline tooth has `bending` of its stiffness in bending left:
-/// that part of the pair's compliance grows, the rest stays.
+/// Stiffness of a tooth pair, to that of a sound one, whose flexspline tooth has `bending` of its stiffness in bending
+/// left: that part of the pair's compliance grows, the rest stays.
 double softened(double bending, double share) noexcept
 {
   return bending / (bending + share * (1.0 - bending));
@@ -122,8 +122,8 @@ double thinned(double loss) noexcept
   return left * left * left;
 }
 
-/// The same of one that a crack along its middle has split over `length` of its height from the tip on: there two leaves of
-/// half its thickness bend, four times as much, under a force at the tip.
+/// The same of one that a crack along its middle has split over `length` of its height from the tip on: there two
+/// leaves of half its thickness bend, four times as much, under a force at the tip.
 double split(double length) noexcept
 {
   return 1.0 / (1.0 + 3.0 * length * length * length);

@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// Keeps a joint with the faults that are active. It is made anew from the sound joint, so a fault that has gone leaves
-/// nothing behind. Allocates on construction only.
+/// Keeps a joint with the faults that are active. It is made again from the sound joint, so a fault that has gone
+/// leaves nothing behind. Allocates on construction only.
 class JointFaults
 {
 public:
