@@ -125,20 +125,30 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::OFFSET, "offset of the current", "telemetry.current_offset", "A", p.telemetry.current_offset,
       found(FrictionFit::OFFSET), width(FrictionFit::OFFSET));
   p.telemetry.current_offset = found(FrictionFit::OFFSET);
-  // Without inertia beside the load, all of it is in the load.
+  // Without inertia beside the load, all of it is in the load. Neither part can be negative.
+  const double inertia = found(FrictionFit::INERTIA);
+  const auto addInertia = [&](const char* name, const char* key, double value, double& parameter)
+  {
+    add(FrictionFit::INERTIA, name, key, "kg.m^2", parameter, value, width(FrictionFit::INERTIA));
+    if (value >= 0.0)
+    {
+      parameter = value;
+      return;
+    }
+    IdentifiedValue& refused = result.values.back();
+    refused.value = parameter;
+    refused.half_width = 0.0;
+    refused.refusal = "its estimate is negative";
+  };
   if (load_recorded)
   {
-    const double held = Motor(p.motor).inertia() - found(FrictionFit::INERTIA);
-    add(FrictionFit::INERTIA, "motor's inertia that the load holds", "telemetry.inertia_in_load", "kg.m^2",
-        p.telemetry.inertia_in_load, held, width(FrictionFit::INERTIA));
-    p.telemetry.inertia_in_load = held;
+    addInertia("motor's inertia that the load holds", "telemetry.inertia_in_load", Motor(p.motor).inertia() - inertia,
+               p.telemetry.inertia_in_load);
   }
   else
   {
-    const double rotor = found(FrictionFit::INERTIA) - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load;
-    add(FrictionFit::INERTIA, "rotor inertia", "motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, rotor,
-        width(FrictionFit::INERTIA));
-    p.motor.rotor_inertia = rotor;
+    addInertia("rotor inertia", "motor.rotor_inertia",
+               inertia - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load, p.motor.rotor_inertia);
   }
   add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
       found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));

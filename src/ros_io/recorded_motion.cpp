@@ -2,7 +2,9 @@
 #include "ros_io/recorded_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <set>
 
@@ -44,6 +46,14 @@ public:
     time_ = time;
     position_ = position;
     velocity_ = velocity;
+  }
+
+  /// Takes over what `other` has seen.
+  void include(const VelocityCheck& other)
+  {
+    products_ += other.products_;
+    squares_ += other.squares_;
+    rows_ += other.rows_;
   }
 
   double ratio() const { return rows_ >= MIN_ROWS ? products_ / squares_ : 0.0; }
@@ -121,6 +131,7 @@ public:
   }
 
   MotionCount count() const { return count_; }
+  const VelocityCheck& check() const { return check_; }
   const std::set<std::string>& others() const { return others_; }
 
 private:
@@ -234,19 +245,251 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   return rows.count();
 }
 
+/// Rows of the joints of an arm, put side by side by their times.
+class SideBySide
+{
+public:
+  SideBySide(std::size_t joints, const std::function<bool(const std::vector<MotionRow>&)>& visit)
+    : waiting_(joints), rows_(joints), visit_(visit)
+  {
+  }
+
+  /// False: the visitor has had enough.
+  bool add(std::size_t joint, const MotionRow& row)
+  {
+    waiting_[joint].push_back(row);
+    while (const std::optional<double> time = nextTime())
+    {
+      bool is_complete = true;
+      for (std::size_t i = 0; i < waiting_.size(); ++i)
+      {
+        rows_[i] = waiting_[i].front();
+        is_complete = is_complete && rows_[i].time > *time - SAME_TIME;
+      }
+      for (std::deque<MotionRow>& rows : waiting_)
+      {
+        if (is_complete || rows.front().time < *time - SAME_TIME)
+        {
+          rows.pop_front();
+        }
+      }
+      dropped_ += is_complete ? 0 : 1;
+      complete_ += is_complete ? 1 : 0;
+      if (is_complete && !visit_(rows_))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::uint64_t complete() const { return complete_; }
+  std::uint64_t dropped() const { return dropped_; }
+
+private:
+  static constexpr double SAME_TIME = 1e-6;  // [s]
+
+  /// The latest of the first rows that wait; none: a joint has no row.
+  std::optional<double> nextTime() const
+  {
+    double latest = -HUGE_VAL;
+    for (const std::deque<MotionRow>& rows : waiting_)
+    {
+      if (rows.empty())
+      {
+        return std::nullopt;
+      }
+      latest = std::max(latest, rows.front().time);
+    }
+    return latest;
+  }
+
+  std::vector<std::deque<MotionRow>> waiting_;
+  std::vector<MotionRow> rows_;
+  const std::function<bool(const std::vector<MotionRow>&)>& visit_;
+  std::uint64_t complete_{};
+  std::uint64_t dropped_{};
+};
+
+std::string listOf(const std::vector<std::string>& names)
+{
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text.empty() ? "none" : text;
+}
+
+MotionCount readArmBag(const MotionSource& source, const std::vector<std::string>& names,
+                       const std::function<bool(const std::vector<MotionRow>&)>& visit,
+                       const std::function<void(double)>& progress)
+{
+  rosbag::Bag bag;
+  openForReading(bag, source.path);
+  if (rosbag::View(bag, rosbag::TopicQuery(source.topic)).size() == 0)
+  {
+    throw InputError(source.path + " has no messages on " + source.topic + "; it holds:" + listTopics(bag));
+  }
+  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+
+  struct Joint
+  {
+    MotionSource source;
+    std::function<bool(const MotionRow&)> visit;
+    std::optional<BagRows> rows;
+  };
+  SideBySide side_by_side(names.size(), visit);
+  std::optional<double> start;  // of the first joint that has a row; times count from there
+  std::vector<Joint> joints(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    joints[i].source = source;
+    joints[i].source.joint = names[i];
+    joints[i].visit = [&, i](const MotionRow& row)
+    {
+      const double own_start = joints[i].rows->count().start;
+      start = start.value_or(own_start);
+      MotionRow shifted = row;
+      shifted.time += own_start - *start;
+      shifted.received += own_start - *start;
+      return side_by_side.add(i, shifted);
+    };
+    joints[i].rows.emplace(joints[i].source, joints[i].visit);
+  }
+  const double total = view.size();
+  double done = 0.0;
+  bool more = true;
+  for (auto instance = view.begin(); more && instance != view.end(); ++instance)
+  {
+    for (Joint& joint : joints)
+    {
+      more = more && joint.rows->read(*instance);
+    }
+    progress(++done / total);
+  }
+  for (Joint& joint : joints)
+  {
+    more = more && joint.rows->flush();
+  }
+
+  std::vector<std::string> missing;
+  std::set<std::string> found;
+  VelocityCheck check;
+  for (const Joint& joint : joints)
+  {
+    found.insert(joint.rows->others().begin(), joint.rows->others().end());
+    if (joint.rows->count().rows == 0)
+    {
+      missing.push_back(joint.source.joint);
+    }
+    check.include(joint.rows->check());
+  }
+  if (!missing.empty())
+  {
+    throw InputError(source.topic + " never contains angle and effort of " + listOf(missing) +
+                     "; joints found: " + listOf({ found.begin(), found.end() }));
+  }
+  if (side_by_side.complete() == 0)
+  {
+    throw InputError(source.topic + " never contains all joints of the arm in one message: " + listOf(names));
+  }
+  MotionCount count = joints.front().rows->count();
+  count.rows = side_by_side.complete();
+  count.start = *start;
+  count.corrupt += side_by_side.dropped();
+  count.velocity_ratio = check.ratio();
+  return count;
+}
+
+constexpr std::size_t CSV_JOINTS = 6;
+
+MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string>& names,
+                       const std::function<bool(const std::vector<MotionRow>&)>& visit,
+                       const std::function<void(double)>& progress)
+{
+  if (names.size() != CSV_JOINTS)
+  {
+    throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(CSV_JOINTS) +
+                     " joints, the arm has " + std::to_string(names.size()));
+  }
+  constexpr std::array<const char*, 4> QUANTITIES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_" };
+  constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * CSV_JOINTS;
+  const auto column = [](std::size_t quantity, std::size_t joint) { return 1 + quantity * CSV_JOINTS + joint; };
+  NumberTable<COLUMNS>::Names columns{ "timestamp" };
+  for (std::size_t i = 0; i < CSV_JOINTS; ++i)
+  {
+    for (std::size_t quantity = 0; quantity < QUANTITIES.size(); ++quantity)
+    {
+      columns[column(quantity, i)] = QUANTITIES[quantity] + std::to_string(i);
+    }
+  }
+  NumberTable<COLUMNS> table(source.path, columns, COLUMNS - 1);
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < CSV_JOINTS; ++i)
+  {
+    if (!table.hasColumn(column(0, i)) || !table.hasColumn(column(1, i)))
+    {
+      missing.push_back(names[i] + " (" + columns[column(0, i)] + ", " + columns[column(1, i)] + ")");
+    }
+  }
+  if (!missing.empty())
+  {
+    throw InputError(source.path + ":1: without angle and current of " + listOf(missing));
+  }
+
+  MotionCount count;
+  std::array<VelocityCheck, CSV_JOINTS> checks;
+  std::array<double, COLUMNS> values{};
+  std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
+  std::vector<MotionRow> rows(CSV_JOINTS);
+  while (table.read(values))
+  {
+    if (count.rows++ == 0)
+    {
+      count.start = values[0];
+    }
+    const double time = values[0] - count.start;
+    count.duration = std::max(count.duration, time);
+    for (std::size_t i = 0; i < CSV_JOINTS; ++i)
+    {
+      rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
+      rows[i].received = time;
+      checks[i].add(time, rows[i].position, values[column(3, i)]);
+    }
+    if (!visit(rows))
+    {
+      break;
+    }
+  }
+  progress(1.0);
+  if (count.rows == 0)
+  {
+    throw InputError(source.path + " has no rows");
+  }
+  VelocityCheck check;
+  for (const VelocityCheck& joint : checks)
+  {
+    check.include(joint);
+  }
+  count.velocity_ratio = check.ratio();
+  return count;
+}
+
 using CsvTable = NumberTable<5>;
 
-CsvTable openCsv(const MotionSource& source)
+CsvTable openCsv(const MotionSource& source, std::size_t optional)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
   return CsvTable(source.path,
-                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n }, 2);
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n },
+                  optional);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                     const std::function<void(double)>& progress)
 {
-  CsvTable table = openCsv(source);
+  CsvTable table = openCsv(source, 2);
   MotionCount count;
   VelocityCheck check;
   std::array<double, 5> row{};
@@ -287,7 +530,7 @@ bool recordsLoad(const MotionSource& source)
 {
   if (isCsv(source))
   {
-    return openCsv(source).hasColumn(3);
+    return openCsv(source, 4).hasColumn(3);  // what else is missing is for the reader to say
   }
   rosbag::Bag bag;
   openForReading(bag, source.path);
@@ -298,5 +541,12 @@ MotionCount readMotion(const MotionSource& source, const std::function<bool(cons
                        const std::function<void(double)>& progress)
 {
   return isCsv(source) ? readCsv(source, visit, progress) : readBag(source, visit, progress);
+}
+
+MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
+                          const std::function<bool(const std::vector<MotionRow>&)>& visit,
+                          const std::function<void(double)>& progress)
+{
+  return isCsv(source) ? readArmCsv(source, names, visit, progress) : readArmBag(source, names, visit, progress);
 }
 }  // namespace hjt

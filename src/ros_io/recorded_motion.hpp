@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tracking/motion_differentiator.hpp"
 
@@ -57,4 +58,12 @@ bool recordsLoad(const MotionSource& source);
 /// @throws InputError if the file, the topic or the joint is not there; it names those that are.
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress);
+
+/// The same for all joints of an arm: `visit` gets a row for each of `names`, all of one time. `source` names recording
+/// and topics; its joint counts for nothing. CSV: the columns of joints 0 to 5, in the order of the names. Rows that
+/// hold not all of the joints are left out and counted as corrupt.
+/// @throws InputError likewise; it names the joints that are missing.
+MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
+                          const std::function<bool(const std::vector<MotionRow>&)>& visit,
+                          const std::function<void(double)>& progress);
 }  // namespace hjt

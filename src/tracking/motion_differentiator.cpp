@@ -33,7 +33,7 @@ std::optional<MotionSample> MotionDifferentiator::pop(bool at_end) noexcept
     return std::nullopt;
   }
   const Held& newest = at(end_ - 1);
-  const bool known = newest.segment != at(next_).segment || newest.row.time >= at(next_).row.time + HALF_WIDTH;
+  const bool known = newest.segment != at(next_).segment || newest.row.time >= at(next_).row.time + half_width_;
   if (!known && !at_end)
   {
     return std::nullopt;
@@ -54,7 +54,7 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   int rows = 0;
   const auto take = [&](const Held& held)
   {
-    const double t = (held.row.time - centre.row.time) / HALF_WIDTH;
+    const double t = (held.row.time - centre.row.time) / half_width_;
     if (held.segment != centre.segment || std::abs(t) > 1.0)
     {
       return false;
@@ -74,8 +74,8 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   if (rows >= MIN_ROWS)
   {
     const Eigen::Vector3d parabola = normal.ldlt().solve(right);
-    sample.velocity = parabola[1] / HALF_WIDTH;
-    sample.acceleration = 2.0 * parabola[2] / (HALF_WIDTH * HALF_WIDTH);
+    sample.velocity = parabola[1] / half_width_;
+    sample.acceleration = 2.0 * parabola[2] / (half_width_ * half_width_);
   }
   return sample;
 }

@@ -30,14 +30,18 @@ struct MotionSample : MotionRow
 
 /// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
 ///
-/// A parabola is laid through the rows within HALF_WIDTH of each by least squares, their own stamps counting. A sample
-/// comes out when the rows after it are known, so at most HALF_WIDTH late. Memory is fixed; nothing allocates.
+/// A parabola is laid through the rows within a half width of each by least squares, their own stamps counting. A
+/// sample comes out when the rows after it are known, so at most the half width late. Memory is fixed; nothing
+/// allocates.
 class MotionDifferentiator
 {
 public:
   static constexpr double HALF_WIDTH = 0.05;  ///< [s]
   static constexpr double MAX_GAP = 0.1;      ///< longer ones cut the stream [s]
   static constexpr double MIN_STEP = 0.5e-3;  ///< rows that follow sooner tell nothing new [s]
+
+  /// @param half_width up to 0.12 [s]
+  explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}
 
   /// False: the row is not later than the one before, or not finite, and is left out.
   bool push(const MotionRow& row) noexcept;
@@ -60,6 +64,7 @@ private:
   const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
   MotionSample fit(std::uint64_t index) const noexcept;
 
+  double half_width_;
   std::array<Held, ROOM> rows_{};
   std::uint64_t next_{};  // next to come out
   std::uint64_t end_{};   // one past the last

@@ -22,17 +22,18 @@ SEES = {
     "health": ["gear"],
     "twin": ["surface", "sensors", "health"],
     "tracking": ["twin"],
+    "arm": ["tracking"],
     "identification": ["tracking"],
     "life": ["twin"],
     "studies": ["twin", "life"],
     "ros_io": ["tracking", "life"],
-    "apps/common": ["ros_io"],
+    "apps/common": ["arm", "ros_io"],
     "apps/sweep": ["apps/common"],
     "apps/compare": ["apps/common"],
     "apps/tool": ["apps/common", "apps/compare", "apps/sweep", "identification", "studies"],
     "apps": ["apps/sweep", "apps/tool"],
     "bench": ["studies"],
-    "test/core": ["identification", "studies"],
+    "test/core": ["arm", "identification", "studies"],
     "test/ros": ["ros_io"],
     "test/outside": ["twin"],
     "test/support": [],
@@ -43,10 +44,11 @@ LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/stat|time
                        r"(Eigen|boost|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
 # Libraries that one folder alone may use.
 OWN_LIBRARIES = {
+    "arm": re.compile(r"<(kdl|kdl_parser)/[\w/.-]+>$"),
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "bench": re.compile(r"<(CLI|arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
                         r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
-    "test/core": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
+    "test/core": re.compile(r"<(g(mock|test)|kdl|kdl_parser)/[\w/.-]+>$"),
     "test/support": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
 }
 INCLUDE = re.compile(r'\s*#\s*include\s*(<[^>]+>|"[^"]+")')

@@ -95,24 +95,45 @@ void addNamespaceOption(Command& command, std::string& joint_namespace)
           });
 }
 
-ParameterMap loadParameterMap(const CommonOptions& options)
+fs::path configDirectory(const CommonOptions& options)
 {
-  const fs::path directory = findConfigDirectory(options);
+  fs::path directory = findConfigDirectory(options);
   if (!fs::exists(directory / STAGES))
   {
     throw ParameterError("no default configuration in '" + directory.string() +
                          "': name its directory with --config-dir or HJT_CONFIG_DIR");
   }
+  return directory;
+}
+
+ParameterMap defaultParameterMap(const CommonOptions& options)
+{
   ParameterMap map;
-  readDefaultConfiguration(directory.string(), map);
+  readDefaultConfiguration(configDirectory(options).string(), map);
+  return map;
+}
+
+void readOverlay(const CommonOptions& options, const std::string& name, ParameterMap& map)
+{
+  readYamlFile(findOverlay(name, fs::absolute(configDirectory(options))).string(), map);
+}
+
+void addOverlays(const CommonOptions& options, ParameterMap& map)
+{
   for (const std::string& overlay : options.configs)
   {
-    readYamlFile(findOverlay(overlay, fs::absolute(directory)).string(), map);
+    readOverlay(options, overlay, map);
   }
   for (const std::string& assignment : options.assignments)
   {
     readAssignment(assignment, map);
   }
+}
+
+ParameterMap loadParameterMap(const CommonOptions& options)
+{
+  ParameterMap map = defaultParameterMap(options);
+  addOverlays(options, map);
   return map;
 }
 

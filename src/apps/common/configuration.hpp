@@ -38,6 +38,15 @@ void addCommonOptions(Command& command, CommonOptions& options);
 
 void addNamespaceOption(Command& command, std::string& joint_namespace);
 
+/// Where the default configuration lies. @throws ParameterError if there is none.
+std::filesystem::path configDirectory(const CommonOptions& options);
+
+/// Steps of loadParameterMap: the default configuration, one overlay as given or beside it, those of the options.
+/// @throws ParameterError.
+ParameterMap defaultParameterMap(const CommonOptions& options);
+void readOverlay(const CommonOptions& options, const std::string& name, ParameterMap& map);
+void addOverlays(const CommonOptions& options, ParameterMap& map);
+
 /// The default configuration with the overlays and assignments over it. @throws ParameterError.
 ParameterMap loadParameterMap(const CommonOptions& options);
 

@@ -52,7 +52,9 @@ MotionSource motionSource(const MotionOptions& options)
   return source;
 }
 
-void addMotionOptions(Command& command, MotionOptions& options)
+namespace
+{
+CommandOption addAll(Command& command, MotionOptions& options)
 {
   options.joint_namespace = DEFAULT_NAMESPACE;
   options.topic = "/joint_states";
@@ -60,13 +62,23 @@ void addMotionOptions(Command& command, MotionOptions& options)
       .required()
       .type("IN.bag|IN.csv")
       .bagOrCsv();
-  command
-      .add("--joint", options.joint,
-           "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages")
-      .required();
+  const CommandOption joint = command.add(
+      "--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
   command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
   addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
+  return joint;
+}
+}  // namespace
+
+void addRecordingOptions(Command& command, MotionOptions& options)
+{
+  addAll(command, options);
+}
+
+void addMotionOptions(Command& command, MotionOptions& options)
+{
+  addAll(command, options).required();
 }
 
 void warnOfStamps(const MotionCount& count)

@@ -30,6 +30,8 @@ struct UrJoint
 /// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
 std::optional<UrJoint> findUrJoint(const std::string& name);
 
+/// `addMotionOptions` leaves `--joint` no choice.
+void addRecordingOptions(Command& command, MotionOptions& options);
 void addMotionOptions(Command& command, MotionOptions& options);
 
 /// The recording and joint they name.

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <cstdint>
+#include <deque>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/common/arm_recording.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
@@ -27,7 +30,7 @@ const std::map<std::string, InputMode> MODES{ { "torque", InputMode::TORQUE },
                                               { "motion", InputMode::MOTION },
                                               { "observer", InputMode::OBSERVER } };
 
-struct FollowOptions : MotionOptions
+struct FollowOptions : ArmOptions
 {
   std::string mode;
   std::string out;
@@ -144,7 +147,7 @@ void print(const FollowSummary& summary, bool json)
               { "solver_failures", "", summary.counters.solver_failures } });
 }
 
-int follow(const FollowOptions& options)
+int followJoint(const FollowOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   requireWritable(options.out, options.force, options.recording);
@@ -178,13 +181,174 @@ int follow(const FollowOptions& options)
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }
 
+/// One joint of an arm beside its twin.
+class ArmFollower
+{
+public:
+  ArmFollower(const Parameters& parameters, const FollowOptions& options, bool uses_recorded, const std::string& out)
+    : has_arm_load_(!uses_recorded), tracker_(ofLinks(parameters), MODES.at(options.mode), surfaceSource())
+  {
+    if (!out.empty())
+    {
+      csv_.emplace(out, COLUMNS);
+    }
+  }
+
+  void add(const ArmJointRow& joint, bool has_recorded_load)
+  {
+    if (has_arm_load_)
+    {
+      motor_parts_.push_back({ joint.row.time, joint.motor_part });
+      if (has_recorded_load)
+      {
+        load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
+      }
+    }
+    tracker_.pushLoad(joint.row.time, joint.row.load);
+    tracker_.push(joint.row);
+    take(false);
+  }
+
+  void finish()
+  {
+    take(true);
+    if (csv_)
+    {
+      csv_->close();
+    }
+  }
+
+  TrackerCounters counters() const { return tracker_.counters(); }
+  const Rms& current() const { return current_; }
+  const Rms& residual() const { return residual_; }
+  const Rms& loadError() const { return load_error_; }
+
+private:
+  /// The load of the links holds nothing of the motor.
+  Parameters ofLinks(Parameters parameters) const
+  {
+    if (has_arm_load_)
+    {
+      parameters.telemetry.inertia_in_load = 0.0;
+    }
+    return parameters;
+  }
+
+  void take(bool at_end)
+  {
+    while (std::optional<Comparison> now = tracker_.pop(at_end))
+    {
+      // The column is the torque of a controller, whichever load is taken.
+      while (!motor_parts_.empty() && motor_parts_.front().time < now->time)
+      {
+        motor_parts_.pop_front();
+      }
+      if (!motor_parts_.empty())
+      {
+        now->load_torque += motor_parts_.front().torque;
+      }
+      current_.add(now->current.measured);
+      residual_.add(now->current.residual());
+      if (csv_)
+      {
+        csv_->write(*now);
+      }
+    }
+  }
+
+  struct MotorPart
+  {
+    double time;
+    double torque;
+  };
+
+  bool has_arm_load_;
+  Tracker tracker_;
+  std::optional<TableFile<Comparison>> csv_;
+  std::deque<MotorPart> motor_parts_;  // of rows whose comparison is to come
+  Rms current_;
+  Rms residual_;
+  Rms load_error_;
+};
+
+struct ArmLine
+{
+  std::string joint;
+  const ArmFollower* follower;
+  bool has_load_error;
+};
+
+const std::vector<Column<ArmLine>> ARM_COLUMNS{
+  { "joint", &ArmLine::joint, "joint" },
+  { "rows", [](const ArmLine& line) { return line.follower->counters().compared; }, "rows" },
+  { "current_rms", [](const ArmLine& line) { return line.follower->current().value(); }, "current, rms [A]" },
+  { "current_residual_rms", [](const ArmLine& line) { return line.follower->residual().value(); },
+    "less predicted [A]" },
+  { "outside", [](const ArmLine& line) { return line.follower->counters().outside; }, "rows outside" },
+  { "load_difference_rms",
+    [](const ArmLine& line) { return line.has_load_error ? Json(line.follower->loadError().value()) : Json(); },
+    "load less recorded [N.m]" }
+};
+
+int followArm(const FollowOptions& options)
+{
+  const ArmRecording recording(options);
+  if (!options.out.empty())
+  {
+    std::filesystem::create_directories(options.out);
+  }
+  std::vector<std::unique_ptr<ArmFollower>> followers;
+  std::vector<ArmLine> lines;
+  const bool has_load_error = recording.hasRecordedLoad() && !recording.usesRecordedLoad();
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    const std::string& name = recording.joints()[i].short_name;
+    const std::string out = options.out.empty() ? "" : (std::filesystem::path(options.out) / (name + ".csv")).string();
+    if (!out.empty())
+    {
+      requireWritable(out, options.force, options.recording);
+    }
+    followers.push_back(
+        std::make_unique<ArmFollower>(recording.parameters(i), options, recording.usesRecordedLoad(), out));
+    lines.push_back({ name, followers.back().get(), has_load_error });
+  }
+  const MotionFindings found = recording.read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          followers[i]->add(rows[i], recording.hasRecordedLoad());
+        }
+      });
+  for (const std::unique_ptr<ArmFollower>& follower : followers)
+  {
+    follower->finish();
+  }
+  warnOfStamps(found);
+  printReport(options.json,
+              { { "rows", "rows", found.rows },
+                { "duration", "duration", found.duration, "s" },
+                { "unreadable", "messages unreadable or incomplete", found.corrupt },
+                { "refused", "rows repeated, out of order or not finite", found.refused },
+                { "gaps", "gaps that cut the recording", found.gaps },
+                { "load", "load", options.load } },
+              { { "joints", Table(ARM_COLUMNS, lines) } });
+  return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
+}
+
+int follow(const FollowOptions& options)
+{
+  return options.arm.empty() ? followJoint(options) : followArm(options);
+}
+
 void declare(Command& command, FollowOptions& options)
 {
-  addMotionOptions(command, options);
+  addArmOptions(command, options);
   options.mode = "motion";
   command.add("--mode", options.mode, "input of the twin: the recorded current, motion, or both")
       .choice({ "motion", "observer", "torque" });
-  command.add("--out", options.out, "every row, measured and predicted").type("FILE.csv");
+  command.add("--out", options.out, "every row, measured and predicted; of an arm a directory, a file for each joint")
+      .type("FILE.csv|DIR");
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "apps/common/arm_recording.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
 
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
 
 namespace hjt
@@ -23,7 +25,7 @@ namespace
 {
 constexpr double PAST_THE_END = 1.0;  // [s]
 
-struct IdentifyOptions : MotionOptions
+struct IdentifyOptions : ArmOptions
 {
   std::string out;
   std::vector<double> train;
@@ -31,10 +33,13 @@ struct IdentifyOptions : MotionOptions
   int folds{};
 };
 
-/// The identified parameters as an overlay: section by section, each with its interval.
-void writeOverlay(const IdentifyOptions& options, const Identification& found)
+/// Entries of an overlay by section.
+using Sections = std::map<std::string, std::string>;
+
+/// The identified parameters, each with its interval.
+Sections identifiedSections(const Identification& found)
 {
-  std::map<std::string, std::string> sections;
+  Sections sections;
   const auto add = [&](const std::string& key, const std::string& value, const std::string& comment)
   {
     const std::size_t dot = key.find('.');
@@ -64,13 +69,19 @@ void writeOverlay(const IdentifyOptions& options, const Identification& found)
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
   add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
+  return sections;
+}
+
+void writeOverlay(const IdentifyOptions& options, const std::string& joint, const std::string& path,
+                  const Sections& sections)
+{
   std::string text =
-      "# Overlay: results of `joint_twin identify` for joint  " + options.joint + " in\n# " + options.recording + "\n";
+      "# Overlay: results of `joint_twin identify` for joint  " + joint + " in\n# " + options.recording + "\n";
   for (const auto& [section, entries] : sections)
   {
     text += "\n" + section + ":\n" + entries;
   }
-  writeTextFile(options.out, text);
+  writeTextFile(path, text);
 }
 
 const std::vector<Column<IdentifiedValue>> VALUE_COLUMNS{
@@ -243,27 +254,160 @@ int identifyJoint(const IdentifyOptions& options)
   }
   if (!options.out.empty())
   {
-    writeOverlay(options, report.found);
+    writeOverlay(options, options.joint, options.out, identifiedSections(report.found));
   }
   return EXIT_DONE;
 }
 
+constexpr int ARM_FOLDS = 5;
+
+/// Fits an arm's joint to all of its samples; the pieces left out in turn judge. @throws InputError if it hardly moves.
+IdentifyReport identifyArmJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
+                                const std::vector<MotionSample>& samples)
+{
+  const Span whole{ 0.0, samples.back().time + PAST_THE_END };
+  const auto span = [&](const std::vector<double>& given) {
+    return given.empty() ? whole : Span{ given[0], given[1] };
+  };
+  IdentifyReport report;
+  report.train = span(options.train);
+  report.judge = span(options.judge);
+  const JudgedPart judge{ samplesWithin(samples, { -HUGE_VAL, report.judge.to }), report.judge.from };
+  report.found = identify(parameters, samplesWithin(samples, report.train), judge, load_recorded);
+  report.left_out =
+      leaveOneOut(parameters, samples, report.train, options.folds > 0 ? options.folds : ARM_FOLDS, load_recorded);
+  return report;
+}
+
+struct IdentifiedJoint
+{
+  std::string name;
+  JudgedErrors left_out;
+  Json found;           // the identified values
+  std::string refusal;  // why the joint stays as configured; empty: it does not
+};
+
+const std::vector<Column<IdentifiedJoint>> JOINT_COLUMNS{
+  { "joint", &IdentifiedJoint::name, "joint" },
+  { "signal", [](const IdentifiedJoint& joint) { return joint.left_out.identified.signal; }, "current, rms [A]" },
+  { "configured", [](const IdentifiedJoint& joint) { return joint.left_out.configured.all; }, "as configured [A]" },
+  { "identified", [](const IdentifiedJoint& joint) { return joint.left_out.identified.all; }, "identified [A]" },
+  { "identified_moving", [](const IdentifiedJoint& joint) { return joint.left_out.identified.moving; }, "moving [A]" },
+  { "gain_coulomb_viscous", [](const IdentifiedJoint& joint) { return joint.left_out.gain_coulomb_viscous.all; },
+    "gain, Coulomb, viscous [A]" },
+  { "values", &IdentifiedJoint::found },
+  { "refusal", &IdentifiedJoint::refusal, "stays as configured" }
+};
+
+int identifyArm(const IdentifyOptions& options)
+{
+  const ArmRecording recording(options);
+  const std::size_t count = recording.joints().size();
+  const auto path = [&](std::size_t joint)
+  { return (std::filesystem::path(options.out) / (recording.joints()[joint].short_name + ".yaml")).string(); };
+  if (!options.out.empty())
+  {
+    std::filesystem::create_directories(options.out);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      requireWritable(path(i), options.force, options.recording);
+    }
+  }
+  std::vector<std::vector<MotionSample>> samples(count);
+  std::vector<MotionDifferentiator> differentiators(count);
+  const auto take = [&](bool at_end)
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      while (const std::optional<MotionSample> sample = differentiators[i].pop(at_end))
+      {
+        samples[i].push_back(*sample);
+      }
+    }
+  };
+  const MotionFindings found = recording.read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        for (std::size_t i = 0; i < count; ++i)
+        {
+          differentiators[i].push(rows[i].row);
+        }
+        take(false);
+      });
+  take(true);
+  warnOfStamps(found);
+  if (interruptSignal() != 0)
+  {
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+
+  std::vector<IdentifiedJoint> joints;
+  bool any = false;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const ArmJoint& arm_joint = recording.joints()[i];
+    IdentifiedJoint joint{ arm_joint.short_name, {}, {}, {} };
+    Parameters parameters = recording.parameters(i);
+    if (!recording.usesRecordedLoad())
+    {
+      parameters.telemetry.inertia_in_load = 0.0;  // that of the links holds nothing of the motor
+    }
+    Sections sections;
+    try
+    {
+      const IdentifyReport report = identifyArmJoint(options, parameters, recording.usesRecordedLoad(), samples[i]);
+      joint.left_out = report.left_out;
+      joint.found = Table(VALUE_COLUMNS, report.found.values).rows();
+      if (report.left_out.identified.all > report.left_out.configured.all)
+      {
+        joint.refusal = "what was identified predicts pieces left out worse";
+      }
+      else
+      {
+        sections = identifiedSections(report.found);
+      }
+    }
+    catch (const InputError& error)
+    {
+      joint.refusal = error.what();
+    }
+    any = any || joint.refusal.empty();
+    if (!options.out.empty())
+    {
+      sections["joint"] = "  # Name of the joint in JointState messages.\n  name: " + arm_joint.name + "\n";
+      writeOverlay(options, arm_joint.short_name, path(i), sections);
+    }
+    joints.push_back(joint);
+  }
+  printReport(options.json, { { "rows", "rows", found.rows }, { "load", "load", options.load } },
+              { { "joints", Table(JOINT_COLUMNS, joints) } });
+  return any ? EXIT_DONE : EXIT_FAILED;
+}
+
+int identifyRecording(const IdentifyOptions& options)
+{
+  return options.arm.empty() ? identifyJoint(options) : identifyArm(options);
+}
+
 void declare(Command& command, IdentifyOptions& options)
 {
-  addMotionOptions(command, options);
-  command.add("--out", options.out, "the overlay").type("FILE.yaml");
-  command.add("--train", options.train, "from,to: part to identify on; default: the first third [s]").pair();
-  command.add("--judge", options.judge, "from,to: part to test on; default: the rest [s]").pair();
+  addArmOptions(command, options);
+  command.add("--out", options.out, "the overlay; of an arm a directory, an overlay for each joint")
+      .type("FILE.yaml|DIR");
+  command.add("--train", options.train, "from,to: part to identify on; default: the first third, of an arm all [s]")
+      .pair();
+  command.add("--judge", options.judge, "from,to: part to test on; default: the rest, of an arm all [s]").pair();
   command
       .add("--folds", options.folds,
-           "cuts the part to identify on into this many pieces and predicts each from the others")
+           "cuts the part to identify on into this many pieces and predicts each from the others; of an arm 5 by "
+           "default")
       .range(2, 100);
 }
 
 const Subcommand IDENTIFY{
   Subject::RECORDING, "identify",
   "gain, friction, inertia and ripple of a joint from its recorded motion and current, as an overlay", declare,
-  identifyJoint
+  identifyRecording
 };
 }  // namespace
 }  // namespace hjt

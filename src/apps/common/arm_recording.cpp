@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/common/arm_recording.hpp"
+
+#include <filesystem>
+
+#include "apps/common/interrupt.hpp"
+#include "apps/common/progress.hpp"
+
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr const char* FROM_ARM = "arm";
+constexpr const char* FROM_RECORDING = "target_moment";
+
+/// A file as given, else the arm of that name in the configuration.
+std::string findArm(const ArmOptions& options)
+{
+  if (fs::exists(options.arm) && !fs::is_directory(options.arm))
+  {
+    return options.arm;
+  }
+  const fs::path shipped = configDirectory(options) / "arms" / (options.arm + ".yaml");
+  if (!fs::exists(shipped))
+  {
+    throw ParameterError("--arm " + options.arm + ": neither a file nor an arm in " + shipped.parent_path().string());
+  }
+  return shipped.string();
+}
+
+Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
+{
+  ParameterMap map = defaultParameterMap(options);
+  for (const std::string& overlay : joint.overlays)
+  {
+    readOverlay(options, overlay, map);
+  }
+  for (const std::string& parameter : joint.parameters)
+  {
+    readAssignment(parameter, map);
+  }
+  map["joint.name"] = { joint.name, options.arm };
+  // The load comes with each row, all in all.
+  readAssignment("telemetry.load=target_moment", map);
+  if (!options.identified.empty())
+  {
+    readYamlFile((fs::path(options.identified) / (joint.short_name + ".yaml")).string(), map);
+  }
+  addOverlays(options, map);
+  Parameters parameters = parseParameters(map);
+  addFaults(options, parameters);
+  if (parameters.telemetry.load != LoadSource::TARGET_MOMENT)
+  {
+    throw ParameterError("telemetry.load: the load of an arm is chosen by --load");
+  }
+  return parameters;
+}
+}  // namespace
+
+void addArmOptions(Command& command, ArmOptions& options)
+{
+  addRecordingOptions(command, options);
+  options.load = FROM_ARM;
+  command
+      .add("--arm", options.arm, "all joints of an arm in place of one: ur5, ur5e, or a file as config/arms/ur5.yaml")
+      .type("NAME|FILE.yaml");
+  command
+      .add("--load", options.load,
+           "load of an arm's joints: of its links and payload by rigid-body dynamics, or as recorded")
+      .choice({ FROM_ARM, FROM_RECORDING })
+      .needs("--arm");
+  command
+      .add("--identified", options.identified,
+           "overlays of an arm's joints, as `joint_twin identify --arm` writes them, over the arm's own")
+      .type("DIR")
+      .existingDirectory()
+      .needs("--arm");
+  command.oneOf({ "--joint", "--arm" });  // last: it takes them out of the reach of `needs`
+}
+
+ArmRecording::ArmRecording(const ArmOptions& options)
+  : source_(motionSource(options))
+  , arm_(readArmDescription(findArm(options)))
+  , has_load_(recordsLoad(source_))
+  , uses_recorded_(options.load == FROM_RECORDING)
+{
+  if (uses_recorded_ && !has_load_)
+  {
+    throw InputError(source_.path + " holds no load; --load arm needs none");
+  }
+  for (const ArmJoint& joint : arm_.joints)
+  {
+    parameters_.push_back(parametersOf(joint, options));
+  }
+}
+
+MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const
+{
+  std::vector<std::string> names;
+  std::vector<double> held;  // the motor's inertia in a controller's torque, at the joint [kg.m^2]
+  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  {
+    const double ratio = nominalRatio(parameters_[i].gear);
+    names.push_back(arm_.joints[i].name);
+    held.push_back(parameters_[i].telemetry.inertia_in_load * ratio * ratio);
+  }
+  ArmLoad load(arm_);
+  std::vector<ArmJointRow> rows(names.size());
+  MotionFindings findings;
+  findings.has_load = has_load_;
+  Progress progress("reading");
+  const auto forward = [&](bool at_end)
+  {
+    while (const ArmSample* sample = load.pop(at_end))
+    {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        rows[i].row = sample->joints[i];
+        rows[i].recorded_load = sample->joints[i].load;
+        rows[i].motor_part = held[i] * sample->joints[i].acceleration;
+        if (!uses_recorded_)
+        {
+          rows[i].row.load = sample->torques[i];
+        }
+      }
+      findings.gaps += sample->joints.front().after_gap ? 1 : 0;
+      visit(rows);
+    }
+  };
+  static_cast<MotionCount&>(findings) = readArmMotion(
+      source_, names,
+      [&](const std::vector<MotionRow>& motion)
+      {
+        findings.refused += load.push(motion) ? 0 : 1;
+        forward(false);
+        return interruptSignal() == 0;
+      },
+      [&](double done) { progress.update(done); });
+  forward(true);
+  return findings;
+}
+}  // namespace hjt

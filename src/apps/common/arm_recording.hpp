@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/common/motion_options.hpp"
+
+#include "arm/arm_load.hpp"
+
+namespace hjt
+{
+/// What subcommands on the recording of a whole arm take.
+struct ArmOptions : MotionOptions
+{
+  std::string arm;         ///< name in config/arms, or a file; empty: one joint
+  std::string load;        ///< arm or target_moment
+  std::string identified;  ///< directory of overlays, SHORT_NAME.yaml; empty: none
+};
+
+/// `--joint` or `--arm`, and what goes with them.
+void addArmOptions(Command& command, ArmOptions& options);
+
+/// One joint of the arm at the time of a row.
+struct ArmJointRow
+{
+  MotionRow row;           ///< its load the one chosen, at the output
+  double recorded_load{};  ///< [N.m]
+  double motor_part{};     ///< what of the motor's inertia a controller's torque holds beside the arm's load [N.m]
+};
+
+/// The recording of an arm, and the twin's parameters of each of its joints.
+class ArmRecording
+{
+public:
+  /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
+  explicit ArmRecording(const ArmOptions& options);
+
+  const std::vector<ArmJoint>& joints() const { return arm_.joints; }
+  const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
+  bool hasRecordedLoad() const { return has_load_; }
+  /// The load is the recorded one.
+  bool usesRecordedLoad() const { return uses_recorded_; }
+
+  /// Calls `visit` for each time with a row of each joint, in memory that does not grow. @throws InputError.
+  MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const;
+
+private:
+  MotionSource source_;
+  ArmDescription arm_;
+  std::vector<Parameters> parameters_;
+  bool has_load_;
+  bool uses_recorded_;
+};
+}  // namespace hjt

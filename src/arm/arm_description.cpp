@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_description.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <sstream>
+
+#include <yaml-cpp/yaml.h>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::string textOf(const std::filesystem::path& path)
+{
+  std::ifstream file(path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf()))
+  {
+    throw ParameterError(path.string() + " cannot be read, or is empty");
+  }
+  return text.str();
+}
+
+/// One map of the file; `place` is its name in error texts.
+class Section
+{
+public:
+  Section(std::string place, const YAML::Node& node, std::initializer_list<const char*> keys)
+    : place_(std::move(place)), node_(node)
+  {
+    if (!node.IsMap())
+    {
+      throw ParameterError(place_ + ": keys and values expected");
+    }
+    for (const auto& entry : node)
+    {
+      const auto& key = entry.first.Scalar();
+      if (std::none_of(keys.begin(), keys.end(), [&](const char* known) { return key == known; }))
+      {
+        throw ParameterError(place_ + ": unknown key '" + key + "'");
+      }
+    }
+  }
+
+  YAML::Node at(const char* key) const
+  {
+    const YAML::Node value = node_[key];
+    if (!value || value.IsNull())
+    {
+      throw ParameterError(place_ + ": " + key + " is missing");
+    }
+    return value;
+  }
+
+  template <class T>
+  T value(const char* key) const
+  {
+    try
+    {
+      return at(key).as<T>();
+    }
+    catch (const YAML::Exception&)
+    {
+      throw ParameterError(place_ + ": " + key + " is not of the form expected");
+    }
+  }
+
+  const std::string& place() const { return place_; }
+
+private:
+  std::string place_;
+  YAML::Node node_;
+};
+
+ArmJoint readJoint(const std::string& place, const YAML::Node& node)
+{
+  const Section section(place, node, { "name", "short_name", "overlays", "parameters" });
+  ArmJoint joint;
+  joint.name = section.value<std::string>("name");
+  joint.short_name = section.value<std::string>("short_name");
+  joint.overlays = section.value<std::vector<std::string>>("overlays");
+  for (const auto& entry : section.at("parameters"))
+  {
+    joint.parameters.push_back(entry.first.Scalar() + "=" + entry.second.Scalar());
+  }
+  return joint;
+}
+}  // namespace
+
+ArmDescription readArmDescription(const std::string& path)
+{
+  const std::string text = textOf(path);
+  YAML::Node root;
+  try
+  {
+    root = YAML::Load(text);
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw ParameterError(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+  }
+  const Section section(path, root, { "description", "base", "tip", "gravity", "payload", "joints" });
+  ArmDescription arm;
+  arm.origin = path;
+  arm.urdf = textOf(std::filesystem::path(path).parent_path() / section.value<std::string>("description"));
+  arm.base = section.value<std::string>("base");
+  arm.tip = section.value<std::string>("tip");
+  arm.gravity = section.value<std::array<double, 3>>("gravity");
+  const Section payload(path + ": payload", section.at("payload"), { "mass", "centre" });
+  arm.payload.mass = payload.value<double>("mass");
+  arm.payload.centre = payload.value<std::array<double, 3>>("centre");
+  for (const auto& node : section.at("joints"))
+  {
+    arm.joints.push_back(readJoint(path + ": joint " + std::to_string(arm.joints.size()), node));
+  }
+  if (arm.joints.empty())
+  {
+    throw ParameterError(path + ": joints is an empty list");
+  }
+  return arm;
+}
+}  // namespace hjt

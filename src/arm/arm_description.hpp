@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace hjt
+{
+/// One joint of an arm and the drive in it.
+struct ArmJoint
+{
+  std::string name;                     ///< in the messages and in the URDF
+  std::string short_name;               ///< of files and namespaces
+  std::vector<std::string> overlays;    ///< configuration files of its drive, later wins
+  std::vector<std::string> parameters;  ///< section.key=value, over the overlays
+};
+
+/// Mass at the tip of an arm.
+struct Payload
+{
+  double mass{};                   ///< [kg]
+  std::array<double, 3> centre{};  ///< in the frame of the tip [m]
+};
+
+/// An arm as its YAML file describes it, and the URDF that the file names.
+struct ArmDescription
+{
+  std::string origin;               ///< path of the YAML file, for error texts
+  std::string urdf;                 ///< text of the description
+  std::string base;                 ///< link that stands still
+  std::string tip;                  ///< link that carries the payload
+  std::array<double, 3> gravity{};  ///< in the frame of the base [m/s^2]
+  Payload payload;
+  std::vector<ArmJoint> joints;  ///< from the base on; at least one
+};
+
+/// @throws ParameterError naming file and line or key: unreadable, missing, unknown or mistyped.
+ArmDescription readArmDescription(const std::string& path);
+}  // namespace hjt

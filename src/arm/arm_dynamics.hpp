@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "arm/arm_description.hpp"
+
+namespace hjt
+{
+/// Motion of one joint of an arm.
+struct JointMotion
+{
+  double position{};      ///< [rad]
+  double velocity{};      ///< [rad/s]
+  double acceleration{};  ///< [rad/s^2]
+};
+
+/// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
+/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing throws or
+/// allocates.
+class ArmDynamics
+{
+public:
+  /// @throws ParameterError if the URDF cannot be read, has no chain from base to tip, or has other joints than the
+  /// description names.
+  explicit ArmDynamics(const ArmDescription& arm);
+  ~ArmDynamics();
+  ArmDynamics(ArmDynamics&&) noexcept;
+
+  std::size_t joints() const noexcept;
+
+  /// `torques` at the output of each joint that make the motion, > 0 resists positive motion [N.m]. Both have an entry
+  /// for each joint.
+  void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
+
+private:
+  struct Solver;
+  std::unique_ptr<Solver> solver_;
+};
+}  // namespace hjt

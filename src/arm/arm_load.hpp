@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "arm/arm_dynamics.hpp"
+#include "tracking/motion_differentiator.hpp"
+
+namespace hjt
+{
+/// All joints of an arm at the time of one row.
+struct ArmSample
+{
+  std::vector<MotionSample> joints;
+  /// Of the links and the payload at the output of each joint, the motor's own inertia not in it, > 0 resists positive
+  /// motion [N.m].
+  std::vector<double> torques;
+};
+
+/// Load of each joint of an arm from a stream of the angles of all, rows of one time each.
+///
+/// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
+/// and have no phase, and a row comes out at most HALF_WIDTH late. Live and offline alike. After construction nothing
+/// throws; nothing allocates.
+class ArmLoad
+{
+public:
+  /// Twice that of a joint's own rates: coupling multiplies the noise of six accelerations [s].
+  static constexpr double HALF_WIDTH = 0.1;
+  /// Stamps that go back by more are a new stream [s].
+  static constexpr double RESTART = 1.0;
+
+  /// @throws ParameterError as ArmDynamics.
+  explicit ArmLoad(const ArmDescription& arm);
+
+  /// One row for each joint, all of one time. False: the row is not later than the one before, or not finite, and is
+  /// left out.
+  bool push(const std::vector<MotionRow>& rows) noexcept;
+
+  /// The next sample that is ready, none: nullptr. Valid until the next call. With `at_end` also those that wait for
+  /// later rows.
+  const ArmSample* pop(bool at_end = false) noexcept;
+
+private:
+  ArmDynamics dynamics_;
+  std::vector<MotionDifferentiator> differentiators_;  // one a joint, all with rows of the same times
+  ArmSample sample_;
+  std::vector<JointMotion> motion_;
+  double last_time_{ -std::numeric_limits<double>::infinity() };
+};
+}  // namespace hjt

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`--arm`: all joints of a recorded arm at once, their load from the angles of all.
+
+The synthetic arm's currents are those that the twin predicts; recordings of a UR5 are used where they are at hand, in
+HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
+"""
+import csv
+import glob
+import math
+import os
+import unittest
+
+import genpy
+import numpy as np
+import rosbag
+from sensor_msgs.msg import JointState
+
+import tool
+
+SHORT_NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+PERIOD = 0.008
+DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
+RECORDINGS = sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))
+# Rms difference from the controller's torque that is allowed [N.m]: slow motions 1.0, of fast ones 5 % of the range.
+SLOW, FAST_SHARE = 1.0, 0.05
+
+
+def angles(time):
+    """Of the six joints [rad]: a second in the stretched, level pose, then each swings."""
+    swing = 0.0 if time < 1.0 else 0.5 * (1.0 - math.cos(1.3 * (time - 1.0)))
+    return [0.6 * swing, -0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
+
+
+def arm_csv(currents=None, seconds=20.0, without=()):
+    """A controller's recording as text. `currents`: six for each row, else none flows."""
+    rows = round(seconds / PERIOD)
+    columns = ["timestamp"] + [f"{quantity}_{joint}" for quantity in ("actual_q", "actual_current")
+                               for joint in range(6)]
+    kept = [i for i, name in enumerate(columns) if name not in without]
+    lines = [",".join(columns[i] for i in kept)]
+    for row in range(rows):
+        values = [row * PERIOD] + angles(row * PERIOD) + (currents[row] if currents else [0.0] * 6)
+        lines.append(",".join(f"{values[i]:.17g}" for i in kept))
+    return "\n".join(lines) + "\n"
+
+
+def arm_bag(path, joints, seconds=20.0):
+    """As a driver publishes it: the elbow first, another joint between, no velocity."""
+    order = [joint for joint in [2, 1, 0, 5, 4, 3] if joint in joints]
+    with rosbag.Bag(path, "w") as bag:
+        for row in range(round(seconds / PERIOD)):
+            at = genpy.Time(tool.START) + genpy.Duration.from_sec(row * PERIOD)
+            position = angles(row * PERIOD)
+            state = JointState(name=["finger_joint"] + [tool.JOINT_NAMES[joint] for joint in order],
+                               position=[0.3] + [position[joint] for joint in order],
+                               effort=[9.0] + [0.0] * len(order))
+            state.header.stamp = at
+            bag.write("/joint_states", state, at + genpy.Duration(0, 2_000_000))
+
+
+class Arm(tool.ToolTest):
+    def columns(self, path):
+        with open(self.path(path)) as file:
+            rows = list(csv.DictReader(file))
+        return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+    def test_load_is_that_of_all_joints_however_they_are_recorded(self):
+        self.write("arm.csv", arm_csv())
+        arm_bag(self.path("arm.bag"), range(6))
+        self.succeed("follow", "arm.csv", "--arm", "ur5", "--out", "from_csv")
+        own_file = os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml")
+        self.succeed("follow", "arm.bag", "--arm", own_file, "--out", "from_bag")
+        self.assertEqual(sorted(os.listdir(self.path("from_csv"))), sorted(f"{name}.csv" for name in SHORT_NAMES))
+        for name in SHORT_NAMES:
+            columns = self.columns(f"from_csv/{name}.csv")
+            self.assertEqual(len(columns["time"]), 2500)
+            np.testing.assert_allclose(self.columns(f"from_bag/{name}.csv")["load_torque"], columns["load_torque"],
+                                       atol=1e-4)
+        wrists = 2.0 * 1.219 + 0.1879
+        elbow = 9.82 * (2.275 * 0.27232 + wrists * 0.39225)
+        shoulder = elbow + 9.82 * (8.393 * 0.2125 + (2.275 + wrists) * 0.425)
+        weights = [self.columns(f"from_csv/{name}.csv")["load_torque"][50] for name in ("base", "shoulder", "elbow")]
+        np.testing.assert_allclose(np.abs(weights), [0.0, shoulder, elbow], atol=0.05)
+
+    def identify(self, *changes):
+        """Identifies a robot that is the twin with these changes: robot.csv, found/."""
+        self.write("still.csv", arm_csv())
+        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", *changes)
+        predicted = np.array([self.columns(f"robot/{name}.csv")["current_predicted"] for name in SHORT_NAMES]).T
+        self.write("robot.csv", arm_csv(predicted.tolist()))
+        self.succeed("identify", "robot.csv", "--arm", "ur5", "--out", "found")
+
+    def test_no_overlay_is_out_of_range(self):
+        # A motor lighter than the wave generator alone is taken to be.
+        self.identify("--set", "motor.rotor_inertia=1.0e-9", "--set", "motor.wave_generator_inertia=1.0e-6",
+                      "--set", "telemetry.torque_per_current=9.6")
+        self.succeed("follow", "robot.csv", "--arm", "ur5", "--identified", "found")
+
+    def test_identified_parameters_are_taken_over(self):
+        self.identify("--set", "telemetry.torque_per_current=9.6")
+        self.assertEqual(sorted(os.listdir(self.path("found"))), sorted(f"{name}.yaml" for name in SHORT_NAMES))
+        before = self.succeed_json("follow", "robot.csv", "--arm", "ur5")["joints"]
+        after = self.succeed_json("follow", "robot.csv", "--arm", "ur5", "--identified", "found")["joints"]
+        for joint in (1, 2):
+            self.assertEqual(after[joint]["joint"], SHORT_NAMES[joint])
+            self.assertGreater(before[joint]["current_residual_rms"], 0.1)
+            self.assertLess(after[joint]["current_residual_rms"], 0.15 * before[joint]["current_residual_rms"])
+
+    def test_a_joint_that_is_not_there_is_named(self):
+        arm_bag(self.path("short.bag"), [0, 1, 2, 3, 5])
+        self.fail_with(1, ["never contains angle and effort of wrist_2_joint", "elbow_joint"], "follow", "short.bag",
+                       "--arm", "ur5")
+        self.write("short.csv", arm_csv(without=("actual_q_3", "actual_current_0")))
+        self.fail_with(1, ["wrist_1_joint (actual_q_3", "shoulder_pan_joint (actual_q_0"], "follow", "short.csv",
+                       "--arm", "ur5")
+        self.write("arm.csv", arm_csv())
+        self.fail_with(1, ["holds no load"], "follow", "arm.csv", "--arm", "ur5", "--load", "target_moment")
+        self.fail_with(1, ["--arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
+        self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_load_agrees_with_the_controller_of_a_ur5(self):
+        for path in RECORDINGS:
+            with open(path) as file:
+                header, *lines = file.read().splitlines()
+            names = header.split(",")
+            joints = self.succeed_json("follow", path, "--arm", "ur5")["joints"]
+            for number, joint in enumerate(joints):
+                column = names.index(f"target_moment_{number}")
+                told = [float(line.split(",")[column]) for line in lines]
+                difference = joint["load_difference_rms"]
+                span = max(told) - min(told)
+                print(f"{os.path.basename(path):22} {joint['joint']:9} {difference:.3f} N.m of {span:.1f}")
+                self.assertLess(difference, max(SLOW, FAST_SHARE * span), (path, joint["joint"]))
+
+
+if __name__ == "__main__":
+    tool.main()
