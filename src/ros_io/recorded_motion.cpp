@@ -311,16 +311,6 @@ private:
   std::uint64_t dropped_{};
 };
 
-std::string listOf(const std::vector<std::string>& names)
-{
-  std::string text;
-  for (const std::string& name : names)
-  {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text.empty() ? "none" : text;
-}
-
 MotionCount readArmBag(const MotionSource& source, const std::vector<std::string>& names,
                        const std::function<bool(const std::vector<MotionRow>&)>& visit,
                        const std::function<void(double)>& progress)
@@ -387,12 +377,12 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   }
   if (!missing.empty())
   {
-    throw InputError(source.topic + " never contains angle and effort of " + listOf(missing) +
-                     "; joints found: " + listOf({ found.begin(), found.end() }));
+    throw InputError(source.topic + " never contains angle and effort of " + joined(missing) +
+                     "; joints found: " + (found.empty() ? "none" : joined(found)));
   }
   if (side_by_side.complete() == 0)
   {
-    throw InputError(source.topic + " never contains all joints of the arm in one message: " + listOf(names));
+    throw InputError(source.topic + " never contains all joints of the arm in one message: " + joined(names));
   }
   MotionCount count = joints.front().rows->count();
   count.rows = side_by_side.complete();
@@ -435,7 +425,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   }
   if (!missing.empty())
   {
-    throw InputError(source.path + ":1: without angle and current of " + listOf(missing));
+    throw InputError(source.path + ":1: without angle and current of " + joined(missing));
   }
 
   MotionCount count;
