@@ -126,7 +126,9 @@ def configuration_files(joint="elbow", overlays=()):
 
 
 def all_configuration_files():
-    return sorted(glob.glob(package_path("config", "**", "*.yaml"), recursive=True))
+    """Of a joint; files of arms have keys of their own."""
+    files = glob.glob(package_path("config", "**", "*.yaml"), recursive=True)
+    return sorted(file for file in files if os.path.basename(os.path.dirname(file)) != "arms")
 
 
 def load_parameters(node, files, changes=None):

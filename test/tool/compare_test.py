@@ -138,6 +138,19 @@ class Compare(tool.ToolTest):
             self.assertIn(note, verdict["findings"][0]["text"])
             self.assertEqual(verdict["findings"][0]["causes"], [])
 
+    def test_a_load_that_does_not_fit_is_not_judged(self):
+        robot.write_bag(self.path("sound.bag"), 60.0, with_load=False)
+        # A weight that hangs on another axis: neither friction nor a constant.
+        self.rewrite("sound.bag", "other.bag",
+                     lambda state: [value + 5.0 * math.sin(2.0 * state.position[1]) for value in state.effort])
+        verdict = self.compare("other.bag")["verdict"]
+        self.assertEqual(verdict["level"], "NOT JUDGED", verdict)
+        self.assertEqual({finding["level"] for finding in verdict["findings"]}, {"NOT JUDGED"})
+        self.assertIn("neither predicted nor explained by another friction", verdict["findings"][0]["text"])
+        # Twice the friction fits: it is what is judged.
+        robot.write_bag(self.path("worn.bag"), 60.0, friction=2.0)
+        self.assertEqual(self.compare("worn.bag")["verdict"]["level"], "ERROR")
+
     def rewrite(self, source, target, efforts):
         with rosbag.Bag(self.path(source)) as given, rosbag.Bag(self.path(target), "w") as changed:
             for topic, message, time in given.read_messages():

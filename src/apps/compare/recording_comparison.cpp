@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "gear/ratio.hpp"
 #include "tracking/plausible.hpp"
 
@@ -45,8 +47,9 @@ void RecordingComparison::update(const MotionSample& sample)
   course_.add(row);
   current_squares_ += sample.current * sample.current;
   predicted_squares_ += row.predicted.current * row.predicted.current;
-  residual_squares_ += row.residual() * row.residual();
-  residual_sum_ += row.residual();
+  const Eigen::Vector3d terms(1.0, row.predicted.friction_torque / parameters_.telemetry.torque_per_current,
+                              row.residual());
+  products_ += terms * terms.transpose();
   ++loads_[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   if (reach_.rows++ == 0)
   {
@@ -127,14 +130,22 @@ double RecordingComparison::predictedRms() const
 
 double RecordingComparison::residualRms() const
 {
-  return reach_.rows == 0 ? 0.0 : std::sqrt(residual_squares_ / static_cast<double>(reach_.rows));
+  return reach_.rows == 0 ? 0.0 : std::sqrt(products_(2, 2) / static_cast<double>(reach_.rows));
 }
 
 double RecordingComparison::residualSpread() const
 {
   const double rows = std::max(static_cast<double>(reach_.rows), 1.0);
-  const double mean = residual_sum_ / rows;
-  return std::sqrt(std::max(residual_squares_ / rows - mean * mean, 0.0));
+  const double mean = products_(0, 2) / rows;
+  return std::sqrt(std::max(products_(2, 2) / rows - mean * mean, 0.0));
+}
+
+double RecordingComparison::unexplainedRms() const
+{
+  const Eigen::Vector2d with = products_.topRightCorner<2, 1>();
+  const Eigen::Vector2d best = products_.topLeftCorner<2, 2>().ldlt().solve(with);
+  const double rows = std::max(static_cast<double>(reach_.rows), 1.0);
+  return std::sqrt(std::max(products_(2, 2) - best.dot(with), 0.0) / rows);
 }
 
 double RecordingComparison::loadQuantile(double share) const

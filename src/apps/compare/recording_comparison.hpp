@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "apps/compare/decimated.hpp"
 #include "apps/compare/friction_points.hpp"
 #include "apps/compare/residual_spectrum.hpp"
@@ -73,6 +75,9 @@ public:
   double residualRms() const;   ///< [A]
   /// Standard deviation of the residual about its mean: an unknown constant load does not count [A].
   double residualSpread() const;
+  /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
+  /// constant load nor worn or cold grease counts, rms [A].
+  double unexplainedRms() const;
   double typicalLoad() const;  ///< median of its magnitude [N.m]
   double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
 
@@ -101,8 +106,7 @@ private:
   std::vector<std::uint64_t> loads_;  // histogram of magnitudes
   double current_squares_{};
   double predicted_squares_{};
-  double residual_squares_{};
-  double residual_sum_{};
+  Eigen::Matrix3d products_{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
 
   SignalWatch health_;
   const bool baseline_given_;

@@ -95,11 +95,12 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
-/// Why the recorded current cannot be that of the joint's motor in this motion; empty: it can.
-std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parameters& parameters)
+/// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
+std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters, bool has_load)
 {
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
+  constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = comparison.currentRms();
@@ -114,6 +115,13 @@ std::string whyNotItsCurrent(const RecordingComparison& comparison, const Parame
     return "The recorded effort is " + rounded(measured / predicted, 1) +
            " times the current that this motion takes: it is expected in A, not in N.m; or "
            "telemetry.torque_per_current is wrong.";
+  }
+  const double unexplained = comparison.unexplainedRms();
+  if (unexplained > noticeable && unexplained > MAX_UNEXPLAINED * measured)
+  {
+    return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
+           " A are neither predicted nor explained by another friction or a constant: the load is not the one that " +
+           (has_load ? "was recorded." : "is configured. Give the load of the whole arm (docs/arm.md), or record it.");
   }
   return {};
 }
@@ -317,7 +325,7 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),
                        judgeSignals(comparison) };
-  const std::string why_not = whyNotItsCurrent(comparison, parameters);
+  const std::string why_not = whyItDoesNotFit(comparison, parameters, has_load);
   for (Finding& finding : verdict.findings)
   {
     if (!why_not.empty())
