@@ -21,8 +21,8 @@ using Radau5 = void (*)(int*, Rates, double*, double*, double*, double*, double*
 /// package is not installed.
 Radau5 loadRadau5()
 {
-  static void* const library = dlopen("/usr/lib/R/site-library/deSolve/libs/deSolve.so", RTLD_NOW | RTLD_LOCAL);
-  return library == nullptr ? nullptr : reinterpret_cast<Radau5>(dlsym(library, "radau5_"));
+  static void* const LIBRARY = dlopen("/usr/lib/R/site-library/deSolve/libs/deSolve.so", RTLD_NOW | RTLD_LOCAL);
+  return LIBRARY == nullptr ? nullptr : reinterpret_cast<Radau5>(dlsym(LIBRARY, "radau5_"));
 }
 
 /// RADAU5, told that half of the states are the derivatives of the other half; analytic Jacobian, dense factorisation.
@@ -67,7 +67,7 @@ public:
     int one = 1;
     int none = 0;
     int result = 0;
-    active_ = this;
+    g_active = this;
     radau5_(&n, rates, &time, state_.data(), &due, &step_, relative_.data(), absolute_.data(), &one, jacobian, &one,
             &half, &half, nullptr, &none, &none, &none, stepDone, &one, reals_.data(), &real_size, integers_.data(),
             &integer_size, nullptr, nullptr, &result);
@@ -94,13 +94,13 @@ private:
 
   static void rates(int* /*n*/, double* time, double* state, double* derivative, double*, int*)
   {
-    active_->ring_.rates(state, *time, derivative);
+    g_active->ring_.rates(state, *time, derivative);
   }
 
   /// Of the speeds' derivatives only: the others are known.
   static void jacobian(int* /*n*/, double* time, double* state, int*, int*, double* values, int* rows, double*, int*)
   {
-    DynamicRing& ring = active_->ring_;
+    DynamicRing& ring = g_active->ring_;
     Eigen::VectorXd derivative(ring.states());
     ring.rates(state, *time, derivative.data());
     Eigen::Map<Eigen::MatrixXd>(values, *rows, ring.states()) =
@@ -110,12 +110,12 @@ private:
   static void stepDone(int* /*count*/, double* /*before*/, double* time, double* state, double*, int*, int*, double*,
                        int*, int* go_on)
   {
-    DynamicRing& ring = active_->ring_;
+    DynamicRing& ring = g_active->ring_;
     ring.pairTeeth(Eigen::Map<const Eigen::VectorXd>(state, ring.coordinates()), *time);
     *go_on = 0;
   }
 
-  static inline Radau* active_ = nullptr;  // the code passes no pointer of ours on
+  static inline Radau* g_active = nullptr;  // the code passes no pointer of ours on
 
   Radau5 radau5_;
   DynamicRing ring_;

@@ -127,7 +127,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   p.telemetry.current_offset = found(FrictionFit::OFFSET);
   // Without inertia beside the load, all of it is in the load. Neither part can be negative.
   const double inertia = found(FrictionFit::INERTIA);
-  const auto addInertia = [&](const char* name, const char* key, double value, double& parameter)
+  const auto add_inertia = [&](const char* name, const char* key, double value, double& parameter)
   {
     add(FrictionFit::INERTIA, name, key, "kg.m^2", parameter, value, width(FrictionFit::INERTIA));
     if (value >= 0.0)
@@ -142,13 +142,13 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   };
   if (load_recorded)
   {
-    addInertia("motor's inertia that the load holds", "telemetry.inertia_in_load", Motor(p.motor).inertia() - inertia,
-               p.telemetry.inertia_in_load);
+    add_inertia("motor's inertia that the load holds", "telemetry.inertia_in_load", Motor(p.motor).inertia() - inertia,
+                p.telemetry.inertia_in_load);
   }
   else
   {
-    addInertia("rotor inertia", "motor.rotor_inertia",
-               inertia - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load, p.motor.rotor_inertia);
+    add_inertia("rotor inertia", "motor.rotor_inertia",
+                inertia - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load, p.motor.rotor_inertia);
   }
   add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
       found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));
