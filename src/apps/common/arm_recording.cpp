@@ -95,19 +95,22 @@ ArmRecording::ArmRecording(const ArmOptions& options)
   }
   for (const ArmJoint& joint : arm_.joints)
   {
-    parameters_.push_back(parametersOf(joint, options));
+    Parameters& parameters = parameters_.emplace_back(parametersOf(joint, options));
+    const double ratio = nominalRatio(parameters.gear);
+    inertias_in_load_.push_back(parameters.telemetry.inertia_in_load * ratio * ratio);
+    if (!uses_recorded_)
+    {
+      parameters.telemetry.inertia_in_load = 0.0;  // the load of the links holds nothing of the motor
+    }
   }
 }
 
 MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const
 {
   std::vector<std::string> names;
-  std::vector<double> held;  // the motor's inertia in a controller's torque, at the joint [kg.m^2]
-  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  for (const ArmJoint& joint : arm_.joints)
   {
-    const double ratio = nominalRatio(parameters_[i].gear);
-    names.push_back(arm_.joints[i].name);
-    held.push_back(parameters_[i].telemetry.inertia_in_load * ratio * ratio);
+    names.push_back(joint.name);
   }
   ArmLoad load(arm_);
   std::vector<ArmJointRow> rows(names.size());
@@ -122,7 +125,7 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
       {
         rows[i].row = sample->joints[i];
         rows[i].recorded_load = sample->joints[i].load;
-        rows[i].motor_part = held[i] * sample->joints[i].acceleration;
+        rows[i].motor_part = inertias_in_load_[i] * sample->joints[i].acceleration;
         if (!uses_recorded_)
         {
           rows[i].row.load = sample->torques[i];

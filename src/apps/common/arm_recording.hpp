@@ -38,6 +38,7 @@ public:
   explicit ArmRecording(const ArmOptions& options);
 
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
+  /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.
@@ -50,6 +51,7 @@ private:
   MotionSource source_;
   ArmDescription arm_;
   std::vector<Parameters> parameters_;
+  std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
   bool has_load_;
   bool uses_recorded_;
 };

@@ -186,7 +186,7 @@ class ArmFollower
 {
 public:
   ArmFollower(const Parameters& parameters, const FollowOptions& options, bool uses_recorded, const std::string& out)
-    : has_arm_load_(!uses_recorded), tracker_(ofLinks(parameters), MODES.at(options.mode), surfaceSource())
+    : has_arm_load_(!uses_recorded), tracker_(parameters, MODES.at(options.mode), surfaceSource())
   {
     if (!out.empty())
     {
@@ -224,16 +224,6 @@ public:
   const Rms& loadError() const { return load_error_; }
 
 private:
-  /// The load of the links holds nothing of the motor.
-  Parameters ofLinks(Parameters parameters) const
-  {
-    if (has_arm_load_)
-    {
-      parameters.telemetry.inertia_in_load = 0.0;
-    }
-    return parameters;
-  }
-
   void take(bool at_end)
   {
     while (std::optional<Comparison> now = tracker_.pop(at_end))

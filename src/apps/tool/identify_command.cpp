@@ -347,15 +347,11 @@ int identifyArm(const IdentifyOptions& options)
   {
     const ArmJoint& arm_joint = recording.joints()[i];
     IdentifiedJoint joint{ arm_joint.short_name, {}, {}, {} };
-    Parameters parameters = recording.parameters(i);
-    if (!recording.usesRecordedLoad())
-    {
-      parameters.telemetry.inertia_in_load = 0.0;  // that of the links holds nothing of the motor
-    }
     Sections sections;
     try
     {
-      const IdentifyReport report = identifyArmJoint(options, parameters, recording.usesRecordedLoad(), samples[i]);
+      const IdentifyReport report =
+          identifyArmJoint(options, recording.parameters(i), recording.usesRecordedLoad(), samples[i]);
       joint.left_out = report.left_out;
       joint.found = Table(VALUE_COLUMNS, report.found.values).rows();
       if (report.left_out.identified.all > report.left_out.configured.all)
