@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a
-directory.
+directory; of an arm a page of each joint, and one of the arm.
 
 Each figure is drawn twice, for wide and for narrow screens; both lie beside the page and inside it."""
 import argparse
 import base64
+import concurrent.futures
 import json
 import os
 import sys
@@ -227,39 +228,41 @@ def draw_all(directory, data):
     return pictures
 
 
-def reason(verdict):
-    """Text at the head of the page: the deviations with possible faults, or that there are none."""
-    if verdict["level"] == "NOT JUDGED":
-        return "This recording does not tell whether the joint is sound."
-    if verdict["level"] != "OK":
-        found = [f"{finding['title'].lower()} ({' or '.join(finding['causes']) or 'no fault in the list does this'})"
-                 for finding in verdict["findings"] if finding["level"] in ("WARN", "ERROR")]
-        return f"Not as in a sound joint: {'; '.join(found)}."
-    judged = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] == "OK"]
-    others = [finding["title"].lower() for finding in verdict["findings"] if finding["level"] != "OK"]
-    return (f"As a sound joint has it: {', '.join(judged)}."
-            + (f" This recording does not tell: {', '.join(others)}." if others else ""))
+def read_record(directory, name):
+    with open(os.path.join(directory, name), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def write_page(directory, template, **values):
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(os.path.dirname(os.path.abspath(__file__))),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["short"] = lambda value: "" if value is None else f"{value:.3g}"
+    with open(os.path.join(directory, "report.html"), "w", encoding="utf-8") as file:
+        file.write(environment.get_template(template).render(**values))
+
+
+def make_joint_page(directory):
+    record = read_record(directory, "comparison.json")
+    data = {name: read_table(directory, name) for name in ("course", "friction", "friction_twin", "spectrum", "torsion",
+                                                           "torsion_twin", "teeth", "twin_states", "windows")}
+    data["record"] = record
+    pictures = draw_all(directory, data)
+    health = sorted(record["health"], key=lambda row: -abs(row["score"]))
+    write_page(directory, "comparison_page.html", record=record, pictures=pictures, health=health,
+               shown=SHOWN_INDICATORS, twin_beside=data["twin_states"] is not None)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("directory", help="that `joint_twin compare --report` has written to")
     directory = parser.parse_args().directory
-    with open(os.path.join(directory, "comparison.json"), encoding="utf-8") as file:
-        record = json.load(file)
-    data = {name: read_table(directory, name) for name in ("course", "friction", "friction_twin", "spectrum", "torsion",
-                                                           "torsion_twin", "teeth", "twin_states", "windows")}
-    data["record"] = record
-    pictures = draw_all(directory, data)
-    health = sorted(record["health"], key=lambda row: -abs(row["score"]))
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(os.path.dirname(os.path.abspath(__file__))),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    environment.filters["short"] = lambda value: "" if value is None else f"{value:.3g}"
-    page = environment.get_template("comparison_page.html").render(
-        record=record, pictures=pictures, reason=reason(record["verdict"]), health=health, shown=SHOWN_INDICATORS,
-        twin_beside=data["twin_states"] is not None)
-    with open(os.path.join(directory, "report.html"), "w", encoding="utf-8") as file:
-        file.write(page)
+    if not os.path.exists(os.path.join(directory, "arm.json")):
+        make_joint_page(directory)
+        return
+    arm = read_record(directory, "arm.json")
+    with concurrent.futures.ProcessPoolExecutor() as pool:
+        list(pool.map(make_joint_page, [os.path.join(directory, joint["joint"]) for joint in arm["joints"]]))
+    write_page(directory, "arm_page.html", arm=arm)
 
 
 if __name__ == "__main__":

@@ -105,6 +105,14 @@ ArmRecording::ArmRecording(const ArmOptions& options)
   }
 }
 
+MotionSource ArmRecording::source(std::size_t joint) const
+{
+  MotionSource source = source_;
+  source.joint = arm_.joints[joint].name;
+  source.csv_joint = static_cast<int>(joint);
+  return source;
+}
+
 MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const
 {
   std::vector<std::string> names;

@@ -38,6 +38,7 @@ public:
   explicit ArmRecording(const ArmOptions& options);
 
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
+  MotionSource source(std::size_t joint) const;  ///< of that joint alone
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   bool hasRecordedLoad() const { return has_load_; }

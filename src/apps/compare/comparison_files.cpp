@@ -167,7 +167,7 @@ Json contentsJson(const RecordingContents& contents)
 
 Json verdictJson(const Verdict& verdict)
 {
-  const auto level = [](const auto& judged) { return judged.judged ? levelName(judged.level) : "NOT JUDGED"; };
+  const auto level = [](const Finding& finding) { return finding.judged ? levelName(finding.level) : NOT_JUDGED; };
   const std::vector<Column<Finding>> columns{ { "title", &Finding::title },
                                               { "level", level },
                                               { "text", &Finding::text },
@@ -180,7 +180,8 @@ Json verdictJson(const Verdict& verdict)
                                                   }
                                                   return Json(names);
                                                 } } };
-  return { { "level", level(verdict) },
+  return { { "level", verdictName(verdict) },
+           { "reason", verdict.reason },
            { "findings", Table(columns, verdict.findings).rows() },
            { "cannot_show", verdict.cannot_show } };
 }

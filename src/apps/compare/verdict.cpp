@@ -2,7 +2,9 @@
 #include "apps/compare/verdict.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 #include "base/joined.hpp"
@@ -53,6 +55,7 @@ struct Ratio
   const char* what;
   double value;
   double own;           ///< when the joint was sound; NaN: not known
+  double of_arm;        ///< multiple that all joints of the arm have in common
   double of_kind;       ///< share by which sound joints differ from the twin
   Feature feature;      ///< that it moves
   double when_larger;   ///< the feature moves up: +1, down: -1
@@ -64,7 +67,8 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
 {
   const bool known = std::isfinite(ratio.own);
   const double tolerance = known ? parameters.comparison.repeat_tolerance : ratio.of_kind;
-  const double value = known ? ratio.value / ratio.own : ratio.value;
+  const double of_own = known ? ratio.value / ratio.own : ratio.value;
+  const double value = of_own / ratio.of_arm;
   finding.judged = true;
   finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
   // As many digits as it takes to see on which side of the bound the value lies.
@@ -77,10 +81,12 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
     ++digits;
   }
   const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
-  finding.text =
-      std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
-      (known ? " and " + rounded(value, digits) + " times this joint's own when it was sound (" + sound + ")." :
-               " (" + sound + ").");
+  finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
+                 (known ? " and " + rounded(of_own, digits) + " times this joint's own when it was sound" : "") +
+                 (ratio.of_arm == 1.0 ? "" :
+                                        ", " + rounded(value, digits) + " times what the " +
+                                            rounded(ratio.of_arm, digits) + " times of the whole arm make") +
+                 " (" + sound + ").";
   if (finding.level != HealthLevel::OK)
   {
     finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
@@ -95,8 +101,23 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
+/// What to say of a load that is not the joint's.
+const char* wrongLoad(LoadOrigin load)
+{
+  switch (load)
+  {
+    case LoadOrigin::CONFIGURED:
+      break;
+    case LoadOrigin::RECORDED:
+      return "the load is not the one that was recorded.";
+    case LoadOrigin::ARM:
+      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
+  }
+  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
+}
+
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
-std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters, bool has_load)
+std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters, LoadOrigin load)
 {
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
@@ -120,8 +141,7 @@ std::string whyItDoesNotFit(const RecordingComparison& comparison, const Paramet
   if (unexplained > noticeable && unexplained > MAX_UNEXPLAINED * measured)
   {
     return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
-           " A are neither predicted nor explained by another friction or a constant: the load is not the one that " +
-           (has_load ? "was recorded." : "is configured. Give the load of the whole arm (docs/arm.md), or record it.");
+           " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(load);
   }
   return {};
 }
@@ -144,30 +164,37 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
   return 0.0;
 }
 
-Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
-                      bool has_load)
+/// Why the recording does not show the joint's friction; empty: it does.
+std::string whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
-  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
-  const std::vector<FrictionPoint> points = comparison.friction().points();
   if (points.empty())
   {
-    finding.text = "The joint never moves steadily for long enough to measure its friction.";
-    return finding;
+    return "The joint never moves steadily for long enough to measure its friction.";
   }
-  if (!movesBothWays(points) && !has_load)
+  if (!movesBothWays(points) && load == LoadOrigin::CONFIGURED)
   {
-    finding.text = "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
-    return finding;
+    return "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
   }
   if (const double way = impossibleWay(points); way != 0.0)
   {
-    finding.text = std::string("Friction would push the joint along in ") + (way > 0.0 ? "positive" : "negative") +
-                   " motion, which it cannot: the load is not the one that " +
-                   (has_load ? "was recorded." : "is configured; record it.");
+    return std::string("Friction would push the joint along in ") + (way > 0.0 ? "positive" : "negative") +
+           " motion, which it cannot: " + wrongLoad(load);
+  }
+  return {};
+}
+
+Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
+{
+  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
+  const std::vector<FrictionPoint> points = comparison.friction().points();
+  finding.text = whyNoFriction(points, context.load);
+  if (!finding.text.empty())
+  {
     return finding;
   }
-  judgeRatio({ "Friction", comparison.friction().ratio(), own.friction_ratio, parameters.comparison.friction_tolerance,
-               Feature::RUNNING_TORQUE, +1.0, "grease at another temperature, another preload, a wrong gain" },
+  judgeRatio({ "Friction", comparison.friction().ratio(), context.own.friction_ratio, context.arm_friction,
+               parameters.comparison.friction_tolerance, Feature::RUNNING_TORQUE, +1.0,
+               "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
   finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
                   " to " + rounded(points.back().speed, 2) + " rad/s.";
@@ -194,9 +221,10 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / comparison.ratio() / std::sqrt(2.0)) /
                               twin;
-  judgeRatio({ "Torsion", compliance, own.compliance_ratio, parameters.comparison.compliance_tolerance + eccentricity,
-               Feature::STIFFNESS, -1.0, "a wrong load, eccentric encoders" },
-             parameters, finding);
+  judgeRatio(
+      { "Torsion", compliance, own.compliance_ratio, 1.0, parameters.comparison.compliance_tolerance + eccentricity,
+        Feature::STIFFNESS, -1.0, "a wrong load, eccentric encoders" },
+      parameters, finding);
   constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
   if (!std::isfinite(own.compliance_ratio) && finding.level != HealthLevel::OK && turn > MIN_TURN)
   {
@@ -214,7 +242,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   return finding;
 }
 
-Finding judgeSignals(const RecordingComparison& comparison)
+Finding judgeSignals(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
 {
   Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
   const std::string reference = comparison.baselineGiven() ? "the reference given" :
@@ -229,8 +257,15 @@ Finding judgeSignals(const RecordingComparison& comparison)
                            " windows at one operating point).";
     return finding;
   }
-  finding.judged = true;
   const Assessment& assessment = comparison.worst()->assessment;
+  if (assessment.level != HealthLevel::OK && comparison.baselineGiven() &&
+      std::abs(context.arm_friction - 1.0) > parameters.comparison.repeat_tolerance)
+  {
+    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
+                   " times that of the reference: its signals are of another temperature or gain.";
+    return finding;
+  }
+  finding.judged = true;
   finding.level = assessment.level;
   const std::string windows = std::to_string(comparison.assessedWindows()) + " windows compared with " + reference;
   if (assessment.level == HealthLevel::OK)
@@ -267,8 +302,8 @@ double highestOrder(const RecordingComparison& comparison, double duration)
   return turns > 0.0 ? RESOLVED * static_cast<double>(comparison.reach().rows) / turns : 0.0;
 }
 
-std::vector<std::string> cannotShow(const RecordingComparison& comparison, const Parameters& parameters, bool has_load,
-                                    double duration)
+std::vector<std::string> cannotShow(const RecordingComparison& comparison, const Parameters& parameters,
+                                    const JointContext& context)
 {
   const MotionReach& reach = comparison.reach();
   std::vector<std::string> missing;
@@ -278,7 +313,12 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
         "Torsion, stiffness, lost motion, kinematic error, ratcheting: the recording has one angle a "
         "joint; the motor's is needed too.");
   }
-  if (!has_load)
+  if (context.load == LoadOrigin::ARM)
+  {
+    missing.emplace_back(
+        "Whether the payload is as configured, and contact: no torque was recorded; both look like current.");
+  }
+  if (context.load == LoadOrigin::CONFIGURED)
   {
     missing.emplace_back(
         "Whether the load is as configured: no load was recorded, so weight and inertia of the "
@@ -307,7 +347,7 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
     missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
                          rounded(reach.most_load - reach.least_load, 1) + " N.m.");
   }
-  const double order = highestOrder(comparison, duration);
+  const double order = highestOrder(comparison, context.duration);
   if (order > 0.0)
   {
     missing.emplace_back(
@@ -317,15 +357,85 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
   }
   return missing;
 }
+std::string lowerTitle(const Finding& finding)
+{
+  std::string title = finding.title;
+  title.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
+  return title;
+}
+
+/// The deviations with possible faults, or that there are none.
+std::string reasonOf(const Verdict& verdict)
+{
+  std::vector<std::string> departing;
+  std::vector<std::string> sound;
+  std::vector<std::string> open;
+  for (const Finding& finding : verdict.findings)
+  {
+    if (finding.level != HealthLevel::OK)
+    {
+      departing.push_back(
+          lowerTitle(finding) + " (" +
+          (finding.causes.empty() ? "no fault in the list does this" : joined(finding.causes, " or ", causeName)) +
+          ")");
+    }
+    else
+    {
+      (finding.judged ? sound : open).push_back(lowerTitle(finding));
+    }
+  }
+  if (!departing.empty())
+  {
+    return "Not as in a sound joint: " + joined(departing, "; ") + ".";
+  }
+  return sound.empty() ? "This recording does not show whether the joint is sound. " + verdict.findings.front().text :
+                         "As in a sound joint: " + joined(sound) + "." +
+                             (open.empty() ? "" : " This recording does not show: " + joined(open) + ".");
+}
 }  // namespace
 
-Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
-              bool has_load, double duration)
+std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
+                                    const JointContext& context)
+{
+  if (!whyItDoesNotFit(comparison, parameters, context.load).empty() ||
+      !whyNoFriction(comparison.friction().points(), context.load).empty())
+  {
+    return std::nullopt;
+  }
+  const double own = context.own.friction_ratio;
+  return comparison.friction().ratio() / (std::isfinite(own) ? own : 1.0);
+}
+
+double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance)
+{
+  constexpr std::size_t MIN_JOINTS = 3;
+  std::vector<double> known;
+  for (const std::optional<double>& ratio : ratios)
+  {
+    if (ratio)
+    {
+      known.push_back(*ratio);
+    }
+  }
+  if (known.size() < MIN_JOINTS)
+  {
+    return 1.0;
+  }
+  std::sort(known.begin(), known.end());
+  const std::size_t half = known.size() / 2;
+  const double median = known.size() % 2 == 1 ? known[half] : 0.5 * (known[half - 1] + known[half]);
+  const auto agree = std::count_if(known.begin(), known.end(),
+                                   [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; });
+  return 2 * static_cast<std::size_t>(agree) > known.size() ? median : 1.0;
+}
+
+Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
 {
   Verdict verdict;
-  verdict.findings = { judgeFriction(comparison, parameters, own, has_load), judgeTorsion(comparison, parameters, own),
-                       judgeSignals(comparison) };
-  const std::string why_not = whyItDoesNotFit(comparison, parameters, has_load);
+  verdict.findings = { judgeFriction(comparison, parameters, context),
+                       judgeTorsion(comparison, parameters, context.own),
+                       judgeSignals(comparison, parameters, context) };
+  const std::string why_not = whyItDoesNotFit(comparison, parameters, context.load);
   for (Finding& finding : verdict.findings)
   {
     if (!why_not.empty())
@@ -335,8 +445,9 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
     verdict.level = std::max(verdict.level, finding.level);
     verdict.judged = verdict.judged || finding.judged;
   }
-  verdict.highest_order = highestOrder(comparison, duration);
-  verdict.cannot_show = cannotShow(comparison, parameters, has_load, duration);
+  verdict.reason = reasonOf(verdict);
+  verdict.highest_order = highestOrder(comparison, context.duration);
+  verdict.cannot_show = cannotShow(comparison, parameters, context);
   return verdict;
 }
 }  // namespace hjt

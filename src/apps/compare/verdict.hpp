@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,24 @@ struct OwnReference
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };
 };
 
+/// Where the load of the samples comes from.
+enum class LoadOrigin
+{
+  CONFIGURED,  ///< weight and inertia of the joint's parameters
+  RECORDED,
+  ARM  ///< links and payload, by rigid-body dynamics
+};
+
+/// What is known of a joint besides its samples.
+struct JointContext
+{
+  OwnReference own;
+  LoadOrigin load{};
+  double duration{};  ///< of the recording [s]
+  /// Multiple of the reference's friction that the joints of an arm have in common: temperature or gain, no fault.
+  double arm_friction{ 1.0 };
+};
+
 /// One thing that was judged, in words.
 struct Finding
 {
@@ -26,17 +45,31 @@ struct Finding
   std::vector<Cause> causes;  ///< that would show like this; none at level OK
 };
 
+constexpr const char* NOT_JUDGED = "NOT JUDGED";
+
 /// Findings of a recording.
 struct Verdict
 {
   HealthLevel level{};
-  bool judged{};  ///< false: no finding is
+  bool judged{};       ///< false: no finding is
+  std::string reason;  ///< in a sentence or two
   std::vector<Finding> findings;
   double highest_order{};  ///< of the motor's turn that the rows resolve at the highest speed; 0: it does not move [-]
   std::vector<std::string> cannot_show;  ///< by this recording, each with the reason
 };
 
-/// `duration` of the recording [s].
-Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own,
-              bool has_load, double duration);
+/// For people and documents.
+inline const char* verdictName(const Verdict& verdict)
+{
+  return verdict.judged ? levelName(verdict.level) : NOT_JUDGED;
+}
+
+Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context);
+
+/// Friction as a multiple of the joint's own when sound, else of the twin's; none: the recording does not show it.
+std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
+                                    const JointContext& context);
+
+/// Multiple that most joints of an arm agree on within `tolerance`; 1: fewer than three joints, or they do not agree.
+double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt

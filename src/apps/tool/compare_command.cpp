@@ -2,17 +2,23 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "apps/common/arm_recording.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
@@ -20,6 +26,8 @@
 #include "apps/compare/recording_comparison.hpp"
 #include "apps/compare/verdict.hpp"
 
+#include "base/joined.hpp"
+#include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/conversions.hpp"
@@ -35,8 +43,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* PYTHON = "/usr/bin/python3";
 constexpr const char* PAGE = "report.html";
+constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
 
-struct CompareOptions : MotionOptions
+constexpr const char* ARM_FILE = "arm.json";
+
+struct CompareOptions : ArmOptions
 {
   std::string report;
   std::string reference;
@@ -52,21 +63,27 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
   { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
 };
 
-void prepareDirectory(const CompareOptions& options)
+/// @throws InputError if one of the files that the page is made of cannot be written to `directory`.
+void prepareDirectory(const CompareOptions& options, const std::string& directory, const char* data_file)
+{
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error)
+  {
+    throw InputError(directory + " cannot be made a directory: " + error.message());
+  }
+  for (const char* name : { data_file, PAGE })
+  {
+    requireWritable((fs::path(directory) / name).string(), options.force, options.recording);
+  }
+}
+
+void refuseReferenceAsReport(const CompareOptions& options)
 {
   std::error_code error;
   if (fs::equivalent(options.report, options.reference, error))
   {
     throw InputError("--report and --reference are the same directory: the reference would be lost");
-  }
-  fs::create_directories(options.report, error);
-  if (error)
-  {
-    throw InputError(options.report + " cannot be made a directory: " + error.message());
-  }
-  for (const char* name : { COMPARISON_FILE, PAGE })
-  {
-    requireWritable((fs::path(options.report) / name).string(), options.force, options.recording);
   }
 }
 
@@ -102,7 +119,7 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
   {
     printWrapped((line.found ? "found   " : "missing ") + line.name + " (" + line.gives + ")", 0);
   }
-  std::cout << '\n' << (verdict.judged ? levelName(verdict.level) : "NOT JUDGED") << '\n';
+  std::cout << '\n' << verdictName(verdict) << '\n';
   for (const Finding& finding : verdict.findings)
   {
     printWrapped(
@@ -115,36 +132,74 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
                        { "", "measured less predicted current, rms", comparison.residualRms(), "A" } });
 }
 
-int compare(const CompareOptions& options)
+/// A joint that is compared, its source, and the directory of its report.
+class ComparedJoint
+{
+public:
+  /// `reference`: directory of an earlier report; empty: none.
+  ComparedJoint(const Parameters& parameters, MotionSource source, const std::string& directory,
+                const std::string& reference)
+    : parameters_(parameters)
+    , source_(std::move(source))
+    , directory_(directory)
+    , sound_(reference.empty() ? SoundJoint() : readSoundJoint(reference, parameters))
+    , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
+    , comparison_(parameters, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
+  {
+    source_.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
+  }
+
+  void update(const MotionSample& sample) { comparison_.update(sample); }
+
+  const MotionSource& source() const { return source_; }
+  const RecordingComparison& comparison() const { return comparison_; }
+
+  /// Friction as a multiple of the reference's; none: the recording does not show it.
+  std::optional<double> frictionRatio(LoadOrigin load) const
+  {
+    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, load });
+  }
+
+  /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
+  ComparisonRecord write(const MotionFindings& found, LoadOrigin load, double arm_friction,
+                         const std::string& twin_topic)
+  {
+    windows_.close();
+    ComparisonRecord record;
+    record.recording = source_.path;
+    record.joint = source_.joint;
+    record.made_with = MADE_WITH;
+    record.found = found;
+    record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows, found.has_load);
+    record.twin_states = readTwinStates(source_, twin_topic, found.start);
+    record.verdict = judge(comparison_, parameters_, { sound_.own, load, found.duration, arm_friction });
+    writeComparison(directory_, comparison_, parameters_, record);
+    return record;
+  }
+
+private:
+  const Parameters parameters_;
+  MotionSource source_;
+  const std::string directory_;
+  const SoundJoint sound_;
+  TableFile<JudgedWindow> windows_;
+  RecordingComparison comparison_;
+};
+
+int compareJoint(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
-  const SoundJoint sound = options.reference.empty() ? SoundJoint() : readSoundJoint(options.reference, parameters);
-  prepareDirectory(options);
-  MotionSource source = motionSource(options);
-  source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
-  const std::string twin_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
-
-  TableFile<JudgedWindow> windows((fs::path(options.report) / "windows.csv").string(), WINDOW_COLUMNS);
-  RecordingComparison comparison(parameters, sound.baseline,
-                                 [&](const JudgedWindow& window) { windows.write(window); });
+  prepareDirectory(options, options.report, COMPARISON_FILE);
+  ComparedJoint joint(parameters, motionSource(options), options.report, options.reference);
   const MotionFindings found =
-      visitMotion(source, comparison.twin(), [&](const MotionSample& sample) { comparison.update(sample); });
-  windows.close();
+      visitMotion(joint.source(), joint.comparison().twin(), [&](const MotionSample& sample) { joint.update(sample); });
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  ComparisonRecord record;
-  record.recording = options.recording;
-  record.joint = source.joint;
-  record.made_with = "joint_twin " HJT_VERSION;
-  record.found = found;
-  record.contents = readContents(source, twin_topic, found, comparison.reach().motor_rows, found.has_load);
-  record.twin_states = readTwinStates(source, twin_topic, found.start);
-  record.verdict = judge(comparison, parameters, sound.own, found.has_load, found.duration);
-  writeComparison(options.report, comparison, parameters, record);
+  const ComparisonRecord record = joint.write(found, found.has_load ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
+                                              1.0, options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
-  const std::string page = (fs::path(options.report) / PAGE).string();
   if (options.json)
   {
     std::ifstream data(fs::path(options.report) / COMPARISON_FILE);
@@ -152,24 +207,175 @@ int compare(const CompareOptions& options)
   }
   else
   {
-    print(record, comparison);
-    std::cout << "written: " << page << '\n';
+    print(record, joint.comparison());
+    std::cout << "written: " << (fs::path(options.report) / PAGE).string() << '\n';
   }
   return EXIT_DONE;
 }
 
+/// One joint in the summary of an arm.
+struct ArmLine
+{
+  std::string joint;
+  Verdict verdict;
+  std::optional<double> friction_ratio;
+  double current_rms{};
+  double residual_rms{};
+};
+
+const std::vector<Column<ArmLine>> ARM_COLUMNS{
+  { "joint", &ArmLine::joint, "joint" },
+  { "level", [](const ArmLine& line) { return verdictName(line.verdict); }, "verdict" },
+  { "reason", [](const ArmLine& line) { return line.verdict.reason; } },
+  { "friction_ratio", &ArmLine::friction_ratio, "friction [-]" },
+  { "current_rms", &ArmLine::current_rms, "current, rms [A]" },
+  { "current_residual_rms", &ArmLine::residual_rms, "less predicted [A]" }
+};
+
+/// Joints of the worst level, and what they have in common.
+std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, double arm_friction, double tolerance)
+{
+  std::string reason;
+  if (std::abs(arm_friction - 1.0) > tolerance)
+  {
+    reason = "Friction of the whole arm is " + shortNumber(arm_friction) +
+             " times the reference's: another temperature or gain, not a fault of one joint. ";
+  }
+  std::vector<std::string> unjudged;
+  for (const ArmLine& line : lines)
+  {
+    if (level != HealthLevel::OK && line.verdict.level == level)
+    {
+      reason += line.joint + ": " + line.verdict.reason + " ";
+    }
+    if (!line.verdict.judged)
+    {
+      unjudged.push_back(line.joint);
+    }
+  }
+  if (level == HealthLevel::OK && unjudged.size() < lines.size())
+  {
+    reason += "No joint departs from a sound one. ";
+  }
+  if (!unjudged.empty())
+  {
+    reason += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
+  }
+  reason.pop_back();
+  return reason;
+}
+
+int compareArm(const CompareOptions& options)
+{
+  const ArmRecording recording(options);
+  prepareDirectory(options, options.report, ARM_FILE);
+  std::vector<std::unique_ptr<ComparedJoint>> joints;
+  std::vector<MotionDifferentiator> differentiators(recording.joints().size());
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    const fs::path name = recording.joints()[i].short_name;
+    const std::string directory = (fs::path(options.report) / name).string();
+    prepareDirectory(options, directory, COMPARISON_FILE);
+    joints.push_back(std::make_unique<ComparedJoint>(
+        recording.parameters(i), recording.source(i), directory,
+        options.reference.empty() ? std::string() : (fs::path(options.reference) / name).string()));
+  }
+  const auto forward = [&](std::size_t i, bool at_end)
+  {
+    while (const std::optional<MotionSample> sample = differentiators[i].pop(at_end))
+    {
+      joints[i]->update(*sample);
+    }
+  };
+  const MotionFindings found = recording.read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          differentiators[i].push(rows[i].row);
+          forward(i, false);
+        }
+      });
+  if (interruptSignal() != 0)
+  {
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  warnOfStamps(found);
+  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
+  std::vector<std::optional<double>> ratios;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    forward(i, true);
+    ratios.push_back(joints[i]->frictionRatio(load));
+  }
+  const Parameters& parameters = recording.parameters(0);
+  const double tolerance = parameters.comparison.repeat_tolerance;
+  const double arm_friction = commonFriction(ratios, tolerance);
+  std::vector<ArmLine> lines;
+  HealthLevel level = HealthLevel::OK;
+  bool judged = false;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    const std::string& name = recording.joints()[i].short_name;
+    const RecordingComparison& comparison = joints[i]->comparison();
+    ComparisonRecord record =
+        joints[i]->write(found, load, arm_friction, "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
+    level = std::max(level, record.verdict.level);
+    judged = judged || record.verdict.judged;
+    lines.push_back({ name, std::move(record.verdict), ratios[i], comparison.currentRms(), comparison.residualRms() });
+  }
+  const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
+  const std::string reason = reasonOf(lines, level, arm_friction, tolerance);
+  const Table table(ARM_COLUMNS, lines);
+  const Json all{ { "recording", options.recording },
+                  { "arm", options.arm },
+                  { "made_with", MADE_WITH },
+                  { "level", level_name },
+                  { "reason", reason },
+                  { "load", options.load },
+                  { "temperature", parameters.input.temperature },
+                  { "rows", found.rows },
+                  { "duration", found.duration },
+                  { "friction_ratio", arm_friction },
+                  { "joints", table.rows() } };
+  writeTextFile((fs::path(options.report) / ARM_FILE).string(), all.dump() + "\n");
+  makePage(options.report);
+  if (options.json)
+  {
+    std::cout << all.dump() << '\n';
+    return EXIT_DONE;
+  }
+  std::cout << level_name << '\n';
+  printWrapped(reason, 0);
+  std::cout << '\n';
+  table.print();
+  std::cout << "\nwritten: " << (fs::path(options.report) / PAGE).string() << '\n';
+  return EXIT_DONE;
+}
+
+int compare(const CompareOptions& options)
+{
+  refuseReferenceAsReport(options);
+  return options.arm.empty() ? compareJoint(options) : compareArm(options);
+}
+
 void declare(Command& command, CompareOptions& options)
 {
-  addMotionOptions(command, options);
-  command.add("--report", options.report, "directory of the page, its figures and data").required().type("DIR");
-  command.add("--reference", options.reference, "an earlier report of this joint in sound condition, for comparison")
+  addArmOptions(command, options);
+  command
+      .add("--report", options.report,
+           "directory of the page, its figures and data; of an arm a directory for each joint")
+      .required()
+      .type("DIR");
+  command
+      .add("--reference", options.reference,
+           "an earlier report of this joint or arm in sound condition, for comparison")
       .type("DIR")
       .existingDirectory();
 }
 
 const Subcommand COMPARE{ Subject::RECORDING, "compare",
-                          "compares a recorded joint with the twin: verdict, figures and data as a "
-                          "page",
+                          "compares a recorded joint or arm with the twin: verdict, figures and data as a page",
                           declare, compare };
 }  // namespace
 }  // namespace hjt
