@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+#include <vector>
+
 #include <ros/ros.h>
 
+#include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "params/configuration_files.hpp"
 #include "ros_io/parameter_server.hpp"
 #include "ros_io/shutdown_signals.hpp"
 #include "ros_io/tracker_node.hpp"
@@ -10,13 +15,65 @@
 
 namespace
 {
-template <class Node>
-void run(ros::NodeHandle& handle, const hjt::Parameters& parameters)
+template <class Node, class... Arguments>
+void run(ros::NodeHandle& handle, const Arguments&... arguments)
 {
-  const Node node(handle, parameters);
+  const Node node(handle, arguments...);
   ros::AsyncSpinner spinner(2);
   spinner.start();
   ros::waitForShutdown();
+}
+
+void runJoint(ros::NodeHandle& node)
+{
+  const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
+  ROS_INFO_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
+  if (parameters.input.mode == hjt::InputMode::COMMANDS)
+  {
+    run<hjt::TwinNode>(node, parameters);
+  }
+  else
+  {
+    run<hjt::TrackerNode>(node, parameters);
+  }
+}
+
+/// All joints of the arm `name`: its files, then the parameters of this node over those of every joint.
+void runArm(ros::NodeHandle& node, const std::string& name)
+{
+  const auto directory = hjt::configurationDirectory("");
+  hjt::ArmDescription arm = hjt::readArmDescription(hjt::findArm(name, directory));
+  const std::string description = node.param<std::string>(hjt::DESCRIPTION, "");
+  if (!description.empty() && !node.getParam(description, arm.urdf))
+  {
+    throw hjt::ParameterError("~description: no URDF on the parameter server under " + description);
+  }
+  const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
+  const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());
+  ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified));
+  std::vector<hjt::Parameters> parameters;
+  for (const hjt::ArmJoint& joint : arm.joints)
+  {
+    hjt::ParameterMap map = hjt::armJointParameters(joint, directory, identified);
+    for (const auto& [key, value] : overrides)
+    {
+      map[key] = value;
+    }
+    parameters.push_back(hjt::parseParameters(map));
+    hjt::Parameters& drive = parameters.back();
+    if (drive.input.mode == hjt::InputMode::COMMANDS)
+    {
+      throw hjt::ParameterError("input.mode = commands: an arm's twins are beside a robot; torque, motion or observer");
+    }
+    if (drive.telemetry.load == hjt::LoadSource::ARM)
+    {
+      hjt::takeInertiaInLoad(drive);
+    }
+    ROS_INFO_STREAM(joint.short_name << " is " << joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
+                                     << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
+                                     << " degC");
+  }
+  run<hjt::TrackerNode>(node, arm, parameters);
 }
 }  // namespace
 
@@ -28,16 +85,8 @@ int main(int argc, char** argv)
   ros::NodeHandle node("~");
   try
   {
-    const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
-    ROS_INFO_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
-    if (parameters.input.mode == hjt::InputMode::COMMANDS)
-    {
-      run<hjt::TwinNode>(node, parameters);
-    }
-    else
-    {
-      run<hjt::TrackerNode>(node, parameters);
-    }
+    const std::string arm = node.param<std::string>(hjt::ARM, "");
+    arm.empty() ? runJoint(node) : runArm(node, arm);
   }
   catch (const hjt::ParameterError& error)
   {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "tracking/plausible.hpp"
+
 namespace hjt
 {
 ArmLoad::ArmLoad(const ArmDescription& arm)
@@ -15,22 +17,23 @@ ArmLoad::ArmLoad(const ArmDescription& arm)
 {
 }
 
+void ArmLoad::reset() noexcept
+{
+  std::fill(differentiators_.begin(), differentiators_.end(), MotionDifferentiator(HALF_WIDTH));
+  last_time_ = -std::numeric_limits<double>::infinity();
+}
+
 bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
 {
   const double time = rows.front().time;
   if (time < last_time_ - RESTART)
   {
-    std::fill(differentiators_.begin(), differentiators_.end(), MotionDifferentiator(HALF_WIDTH));
-    last_time_ = -std::numeric_limits<double>::infinity();
+    reset();
   }
   // Refused for one joint is refused for all: their rows stay side by side.
-  const bool is_finite = std::all_of(rows.begin(), rows.end(),
-                                     [](const MotionRow& row)
-                                     {
-                                       return std::isfinite(row.time) && std::isfinite(row.position) &&
-                                              std::isfinite(row.current) && std::isfinite(row.load);
-                                     });
-  if (!is_finite || time < last_time_ + MotionDifferentiator::MIN_STEP)
+  const bool is_plausible = std::all_of(
+      rows.begin(), rows.end(), [](const MotionRow& row) { return isPlausible(row) && std::isfinite(row.load); });
+  if (!is_plausible || time < last_time_ + MotionDifferentiator::MIN_STEP)
   {
     return false;
   }

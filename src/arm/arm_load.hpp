@@ -35,8 +35,11 @@ public:
   /// @throws ParameterError as ArmDynamics.
   explicit ArmLoad(const ArmDescription& arm);
 
-  /// One row for each joint, all of one time. False: the row is not later than the one before, or not finite, and is
-  /// left out.
+  /// What follows is a new stream.
+  void reset() noexcept;
+
+  /// One row for each joint, all of one time. False: the row is not later than the one before, or one that no joint can
+  /// have, and is left out.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
   /// The next sample that is ready, none: nullptr. Valid until the next call. With `at_end` also those that wait for

@@ -48,10 +48,11 @@ constexpr ChoiceNames<InputMode, 4> choiceNames(InputMode)
              { "observer", InputMode::OBSERVER } } };
 }
 
-constexpr ChoiceNames<LoadSource, 3> choiceNames(LoadSource)
+constexpr ChoiceNames<LoadSource, 4> choiceNames(LoadSource)
 {
   return { { { "model", LoadSource::MODEL },
              { "load_torque", LoadSource::LOAD_TORQUE },
-             { "target_moment", LoadSource::TARGET_MOMENT } } };
+             { "target_moment", LoadSource::TARGET_MOMENT },
+             { "arm", LoadSource::ARM } } };
 }
 }  // namespace hjt

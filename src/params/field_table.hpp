@@ -336,7 +336,8 @@ void visitFields(P& p, Visitor&& visit)
   visit(
       "telemetry.load", p.telemetry.load,
       ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: weight and inertia plus "
-               "the received load torque; target_moment: only the received torque"));
+               "the received load torque; target_moment: only the received torque; arm: of links and payload, from the "
+               "motion of all joints"));
 
   visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
         ofOthers("of the measured joint angle, rms"));

@@ -36,6 +36,17 @@ inline Parameters withEqualTeeth(Parameters parameters)
   return parameters;
 }
 
+/// Whether each tooth meets with what any other does, a pitch of the wave generator's turn later.
+inline bool teethAreAlike(const Parameters& parameters)
+{
+  const ManufactureParameters& errors = parameters.manufacture;
+  const auto is_even = [](const PitchParameters& pitch) { return pitch.deviation == 0.0 && pitch.table == NO_FILE; };
+  const auto is_zero = [](const auto& vector) { return vector[0] == 0.0 && vector[1] == 0.0; };
+  return is_even(errors.flexspline_pitch) && is_even(errors.circular_spline_pitch) &&
+         is_zero(errors.circular_spline_eccentricity) && is_zero(errors.circular_spline_ellipticity) &&
+         parameters.faults.empty();
+}
+
 /// The gear as drawn.
 inline Parameters withoutErrors(const Parameters& parameters)
 {

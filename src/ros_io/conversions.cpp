@@ -82,15 +82,20 @@ bool fillJointStates(Twin& twin, Stamp /*since*/, sensor_msgs::JointState& messa
 bool fillEncoders(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Encoders& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
-  const EncoderReadings readings = twin.encoders();
-  message.header.stamp = toRosTime(outputs.stamp);
+  fillEncoders(outputs.stamp, twin.encoders(), outputs.motor_angle, outputs.output_angle, message);
+  return true;
+}
+
+void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_angle, double output_angle,
+                  harmonic_joint_twin::Encoders& message) noexcept
+{
+  message.header.stamp = toRosTime(stamp);
   message.motor_count = readings.motor_count;
   message.motor_angle = readings.motor_angle;
-  message.motor_angle_true = outputs.motor_angle;
+  message.motor_angle_true = motor_angle;
   message.output_count = readings.output_count;
   message.output_angle = readings.output_angle;
-  message.output_angle_true = outputs.output_angle;
-  return true;
+  message.output_angle_true = output_angle;
 }
 
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters)
@@ -104,27 +109,41 @@ harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameter
   return message;
 }
 
+namespace
+{
+void swapArrays(ToothForces& forces, harmonic_joint_twin::ContactForces& message) noexcept
+{
+  forces.wave_generator_force.swap(message.wave_generator_force);
+  forces.rim_tension.swap(message.rim_tension);
+  forces.bending_force.swap(message.bending_force);
+  forces.mesh_force.swap(message.mesh_force);
+  forces.tooth_x.swap(message.tooth_x);
+  forces.tooth_y.swap(message.tooth_y);
+}
+}  // namespace
+
 bool fillContactForces(Twin& twin, Stamp /*since*/, harmonic_joint_twin::ContactForces& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
   message.header.stamp = toRosTime(outputs.stamp);
   message.wave_generator_angle = outputs.motor_angle;
   message.output_angle = outputs.output_angle;
-  // The twin writes into the message's own arrays.
   ToothForces forces;
-  const auto swap_arrays = [&forces, &message]
-  {
-    forces.wave_generator_force.swap(message.wave_generator_force);
-    forces.rim_tension.swap(message.rim_tension);
-    forces.bending_force.swap(message.bending_force);
-    forces.mesh_force.swap(message.mesh_force);
-    forces.tooth_x.swap(message.tooth_x);
-    forces.tooth_y.swap(message.tooth_y);
-  };
-  swap_arrays();
+  swapArrays(forces, message);  // the twin writes into the message's own
   const bool found = twin.toothForces(forces);
-  swap_arrays();
+  swapArrays(forces, message);
   return found;
+}
+
+void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept
+{
+  message.header.stamp = toRosTime(stamp);
+  message.wave_generator_angle = gear.motorAngle();
+  message.output_angle = gear.position();
+  ToothForces forces;
+  swapArrays(forces, message);
+  gear.fill(forces);
+  swapArrays(forces, message);
 }
 
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept

@@ -13,6 +13,7 @@
 #include "harmonic_joint_twin/Health.h"
 #include "harmonic_joint_twin/Indicators.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "tracking/measured_gear.hpp"
 
 namespace hjt
 {
@@ -48,11 +49,15 @@ sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 bool fillJointStates(Twin& twin, Stamp since, sensor_msgs::JointState& message) noexcept;
 
 bool fillEncoders(Twin& twin, Stamp since, harmonic_joint_twin::Encoders& message) noexcept;
+/// The angles are the true ones [rad].
+void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_angle, double output_angle,
+                  harmonic_joint_twin::Encoders& message) noexcept;
 
 /// One entry per tooth in every array.
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
 /// False: the full ring found no equilibrium.
 bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForces& message) noexcept;
+void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept;
 
 /// The solver's state is that of the steps after `since`.
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;

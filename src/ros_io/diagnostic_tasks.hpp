@@ -11,7 +11,6 @@
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <ros/this_node.h>
 #include <ros/time.h>
 
 #include "ros_io/time.hpp"
@@ -47,8 +46,10 @@ class DiagnosticTasks
 public:
   static constexpr double LOOK_PERIOD = 0.05;  ///< between two calls of `look` [s]
 
-  explicit DiagnosticTasks(const std::string& hardware_id)
-    : hardware_id_(hardware_id)
+  /// `name`: of the twin, before that of each task.
+  DiagnosticTasks(const std::string& name, const std::string& hardware_id)
+    : name_(name)
+    , hardware_id_(hardware_id)
     , period_(ros::NodeHandle("~").param("diagnostic_period", 1.0))
     , publisher_(ros::NodeHandle().advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1))
   {
@@ -59,7 +60,7 @@ public:
   void add(const std::string& name, const Owner* owner, DiagnosticVerdict (Owner::*judge)() const,
            void (Owner::*report)(diagnostic_updater::DiagnosticStatusWrapper&) const)
   {
-    tasks_.push_back({ ros::this_node::getName().substr(1) + ": " + name,
+    tasks_.push_back({ name_ + ": " + name,
                        [=] { return (owner->*judge)(); },
                        [=](auto& status) { (owner->*report)(status); },
                        {} });
@@ -108,6 +109,7 @@ private:
     publisher_.publish(message);
   }
 
+  const std::string name_;
   const std::string hardware_id_;
   double period_;  // [s]
   std::vector<Task> tasks_;

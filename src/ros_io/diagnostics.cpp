@@ -66,7 +66,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
   , command_timeout_(parameters.input.command_timeout)
   , deadline_(parameters.realtime.deadline)
   , clock_moved_(ros::WallTime::now())
-  , tasks_(parameters.joint.hardware_id)
+  , tasks_(node.getNamespace().substr(1), parameters.joint.hardware_id)
 {
   tasks_.add("Drive", this, &Diagnostics::judgeDrive, &Diagnostics::reportDrive);
   tasks_.add("Input", this, &Diagnostics::judgeInput, &Diagnostics::reportInput);

@@ -105,7 +105,7 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
     {
       addFaults(value, origin + '/' + name, map);
     }
-    else if (key != DIAGNOSTIC_PERIOD)
+    else if (key != DIAGNOSTIC_PERIOD && key != ARM && key != IDENTIFIED && key != DESCRIPTION)
     {
       addLeaf(key, value, origin + '/' + name, map);
     }

@@ -7,7 +7,13 @@
 
 namespace hjt
 {
-/// Reads every parameter below `parameter_namespace` (`section/key`) from the parameter server; types are kept as they
+/// Parameters of an arm's node beside those of its drives: name or file of the arm; directory of overlays that
+/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it.
+constexpr const char* ARM = "arm";
+constexpr const char* IDENTIFIED = "identified";
+constexpr const char* DESCRIPTION = "description";
+
+/// Reads every other parameter below `parameter_namespace` (`section/key`) from the parameter server; types are kept as they
 /// are. Nothing is left out, so that `parseParameters` finds unknown keys; nothing is defaulted.
 /// @throws ParameterError on a value that no parameter can have, e.g. a list with a text in it.
 ParameterMap readParameterServer(const std::string& parameter_namespace);

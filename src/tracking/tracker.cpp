@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/number_text.hpp"
 #include "gear/ratio.hpp"
@@ -18,6 +19,13 @@ namespace
 {
 /// Half width of a band, in deviations.
 constexpr double DEVIATIONS = 3.0;
+
+/// The load is all that acts at the output, weight and inertia too.
+bool holdsAll(LoadSource source)
+{
+  return source == LoadSource::TARGET_MOMENT || source == LoadSource::ARM;
+}
+
 class TorqueFollower : public Tracker::Follower
 {
 public:
@@ -94,11 +102,11 @@ std::unique_ptr<Tracker::Follower> makeFollower(const Parameters& parameters, In
   {
     return std::make_unique<MotionFollower>(parameters);
   }
-  if (parameters.telemetry.load == LoadSource::TARGET_MOMENT && parameters.output.gravity_torque != 0.0)
+  if (holdsAll(parameters.telemetry.load) && parameters.output.gravity_torque != 0.0)
   {
     throw ParameterError(
-        "telemetry.load = target_moment holds the weight already, but output.gravity_torque = " +
-        numberText(parameters.output.gravity_torque) +
+        std::string("telemetry.load = ") + (parameters.telemetry.load == LoadSource::ARM ? "arm" : "target_moment") +
+        " holds the weight already, but output.gravity_torque = " + numberText(parameters.output.gravity_torque) +
         " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
         "joint's own file");
   }
@@ -193,7 +201,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   restarted_ = false;
 
   const std::optional<double> received = loadAt(sample->time);
-  const bool is_all = received && load_source_ == LoadSource::TARGET_MOMENT;
+  const bool is_all = received && holdsAll(load_source_);
+  const bool is_known = received || load_source_ == LoadSource::MODEL;
   sample->load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
   // What of the motor's inertia a controller reckons with is not there a second time.
   const double external =
@@ -208,9 +217,16 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.load_provided = received.has_value();
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
+  if (!is_known)
+  {
+    now.current.band = 0.0;  // what the load makes of the current cannot be judged
+  }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  watch_.update(*sample);
+  if (is_known)
+  {
+    watch_.update(*sample);
+  }
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
@@ -221,7 +237,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   last_compared_ = now.time;
   ++counters_.compared;
   counters_.outside += now.isOutside() ? 1 : 0;
-  counters_.without_load += load_source_ != LoadSource::MODEL && !received ? 1 : 0;
+  counters_.without_load += is_known ? 0 : 1;
   return now;
 }
 

@@ -38,7 +38,8 @@ struct Comparison
   double joint_torque{};     ///< what the joint gives to the arm: measured, less friction and the rotor's inertia [N.m]
   double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
-  bool load_provided{};      ///< a load was received; else weight and inertia as configured
+  bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
+                             ///< expects one, no band
   bool sticking{};           ///< friction holds the joint: any current within the band fits
   bool after_gap{};          ///< first after a gap in the telemetry
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "twin/tooth_forces.hpp"
 #include "twin/twin_impl.hpp"
 
 namespace hjt
@@ -150,18 +151,7 @@ bool Twin::toothForces(ToothForces& out) noexcept
   {
     return false;
   }
-  const RingModel& model = ring->model();
-  const RingForces& forces = ring->forces();
-  const RingShape& shape = ring->shape();
-  for (int i = 0; i < shape.teeth(); ++i)
-  {
-    out.wave_generator_force[i] = forces.of<WaveGeneratorContact>().force[i];
-    out.rim_tension[i] = model.of<RimTension>().tension(shape, i);
-    out.bending_force[i] = model.of<RimBending>().bendingForce(shape, forces.of<RimBending>(), i);
-    out.mesh_force[i] = forces.of<ToothMesh>().flank_force[i];
-    out.tooth_x[i] = shape.points[2 * i];
-    out.tooth_y[i] = shape.points[2 * i + 1];
-  }
+  fillToothForces(*ring, 0, out);
   return true;
 }
 }  // namespace hjt

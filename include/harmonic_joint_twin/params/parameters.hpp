@@ -268,7 +268,8 @@ enum class LoadSource
 {
   MODEL,         ///< weight and inertia as configured below output
   LOAD_TORQUE,   ///< the same plus the received external torque
-  TARGET_MOMENT  ///< only the received torque, as a controller's rigid-body torque
+  TARGET_MOMENT,  ///< only the received torque, as a controller's rigid-body torque
+  ARM             ///< of links and payload, from the motion of all joints of the arm
 };
 
 struct InputParameters

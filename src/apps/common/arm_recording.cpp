@@ -1,60 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/arm_recording.hpp"
 
-#include <filesystem>
-
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
 
-#include "gear/ratio.hpp"
+#include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 constexpr const char* FROM_ARM = "arm";
 constexpr const char* FROM_RECORDING = "target_moment";
 
-/// A file as given, else the arm of that name in the configuration.
-std::string findArm(const ArmOptions& options)
-{
-  if (fs::exists(options.arm) && !fs::is_directory(options.arm))
-  {
-    return options.arm;
-  }
-  const fs::path shipped = configDirectory(options) / "arms" / (options.arm + ".yaml");
-  if (!fs::exists(shipped))
-  {
-    throw ParameterError("--arm " + options.arm + ": neither a file nor an arm in " + shipped.parent_path().string());
-  }
-  return shipped.string();
-}
-
 Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
 {
-  ParameterMap map = defaultParameterMap(options);
-  for (const std::string& overlay : joint.overlays)
-  {
-    readOverlay(options, overlay, map);
-  }
-  for (const std::string& parameter : joint.parameters)
-  {
-    readAssignment(parameter, map);
-  }
-  map["joint.name"] = { joint.name, options.arm };
-  // The load comes with each row, all in all.
-  readAssignment("telemetry.load=target_moment", map);
-  if (!options.identified.empty())
-  {
-    readYamlFile((fs::path(options.identified) / (joint.short_name + ".yaml")).string(), map);
-  }
+  ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
+  readAssignment("telemetry.load=" + options.load, map);
   addOverlays(options, map);
   Parameters parameters = parseParameters(map);
   addFaults(options, parameters);
-  if (parameters.telemetry.load != LoadSource::TARGET_MOMENT)
+  const LoadSource load = parameters.telemetry.load;
+  if (load != LoadSource::TARGET_MOMENT && load != LoadSource::ARM)
   {
     throw ParameterError("telemetry.load: the load of an arm is chosen by --load");
   }
@@ -85,7 +53,7 @@ void addArmOptions(Command& command, ArmOptions& options)
 
 ArmRecording::ArmRecording(const ArmOptions& options)
   : source_(motionSource(options))
-  , arm_(readArmDescription(findArm(options)))
+  , arm_(readArmDescription(findArm(options.arm, configDirectory(options))))
   , has_load_(recordsLoad(source_))
   , uses_recorded_(options.load == FROM_RECORDING)
 {
@@ -96,11 +64,11 @@ ArmRecording::ArmRecording(const ArmOptions& options)
   for (const ArmJoint& joint : arm_.joints)
   {
     Parameters& parameters = parameters_.emplace_back(parametersOf(joint, options));
-    const double ratio = nominalRatio(parameters.gear);
-    inertias_in_load_.push_back(parameters.telemetry.inertia_in_load * ratio * ratio);
+    Parameters drive = parameters;
+    inertias_in_load_.push_back(takeInertiaInLoad(drive));
     if (!uses_recorded_)
     {
-      parameters.telemetry.inertia_in_load = 0.0;  // the load of the links holds nothing of the motor
+      parameters = drive;
     }
   }
 }

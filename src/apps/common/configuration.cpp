@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/configuration.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
 
 namespace hjt
 {
@@ -14,45 +14,7 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* GROUP = "Common options";
-
-/// List of the default configuration's files, in their directory.
-constexpr const char* STAGES = "stages";
-
-fs::path findConfigDirectory(const CommonOptions& options)
-{
-  if (!options.config_dir.empty())
-  {
-    return options.config_dir;
-  }
-  if (const char* from_environment = std::getenv("HJT_CONFIG_DIR"))
-  {
-    return from_environment;
-  }
-  return packageDirectory() / "config";
-}
-
-/// As given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from anywhere.
-fs::path findOverlay(const std::string& name, const fs::path& config_directory)
-{
-  for (const fs::path& candidate : { fs::path(name), config_directory.parent_path() / name, config_directory / name })
-  {
-    if (fs::exists(candidate))
-    {
-      return candidate;
-    }
-  }
-  return name;
-}
 }  // namespace
-
-fs::path packageDirectory()
-{
-  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin.
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
-  return fs::exists(installed / "config" / STAGES) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
-}
 
 void addFaultOption(Command& command, CommonOptions& options)
 {
@@ -97,13 +59,7 @@ void addNamespaceOption(Command& command, std::string& joint_namespace)
 
 fs::path configDirectory(const CommonOptions& options)
 {
-  fs::path directory = findConfigDirectory(options);
-  if (!fs::exists(directory / STAGES))
-  {
-    throw ParameterError("no default configuration in '" + directory.string() +
-                         "': name its directory with --config-dir or HJT_CONFIG_DIR");
-  }
-  return directory;
+  return configurationDirectory(options.config_dir);
 }
 
 ParameterMap defaultParameterMap(const CommonOptions& options)
@@ -115,7 +71,7 @@ ParameterMap defaultParameterMap(const CommonOptions& options)
 
 void readOverlay(const CommonOptions& options, const std::string& name, ParameterMap& map)
 {
-  readYamlFile(findOverlay(name, fs::absolute(configDirectory(options))).string(), map);
+  readYamlFile(findConfiguration(name, configDirectory(options)), map);
 }
 
 void addOverlays(const CommonOptions& options, ParameterMap& map)

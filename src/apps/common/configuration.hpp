@@ -25,9 +25,6 @@ struct CommonOptions
   bool force{};
 };
 
-/// Where config/ and scripts/ lie: of the installation, else of the checkout.
-std::filesystem::path packageDirectory();
-
 /// `--fault`, for the commands that march the joint.
 void addFaultOption(Command& command, CommonOptions& options);
 

@@ -2,11 +2,14 @@
 #include "apps/compare/comparison_files.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 
 #include "apps/common/report.hpp"
 
+#include "base/number_table.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
@@ -18,6 +21,8 @@ namespace hjt
 {
 namespace
 {
+constexpr const char* FRICTION_FILE = "friction.csv";
+
 void writeCourse(const std::string& path, const RecordingComparison& comparison)
 {
   const std::vector<Column<ComparedRow>> columns{
@@ -41,7 +46,7 @@ void writeFriction(const std::string& directory, const RecordingComparison& comp
                                                     { "twin", &FrictionPoint::twin },
                                                     { "rows", &FrictionPoint::rows } };
   const std::vector<FrictionPoint> points = comparison.friction().points();
-  writeTable(directory + "/friction.csv", columns, points);
+  writeTable(directory + "/" + FRICTION_FILE, columns, points);
   double fastest = 1.0;
   for (const FrictionPoint& point : points)
   {
@@ -190,9 +195,13 @@ Json verdictJson(const Verdict& verdict)
 SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
   SoundJoint sound;
-  const std::vector<double> ratios =
-      readJsonNumbers(directory + "/" + COMPARISON_FILE, { "friction_ratio", "compliance_ratio" });
-  sound.own = { ratios[0], ratios[1] };
+  sound.own.compliance_ratio = readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio" }).front();
+  NumberTable<4> friction(directory + "/" + FRICTION_FILE, { "speed", "measured", "twin", "rows" });
+  std::array<double, 4> row{};
+  while (friction.read(row))
+  {
+    sound.own.friction.push_back({ row[0], row[1], 0.0, row[2], static_cast<std::uint64_t>(row[3]) });
+  }
   const std::string baseline = directory + "/" + BASELINE_FILE;
   if (std::filesystem::exists(baseline))
   {

@@ -30,7 +30,7 @@ public:
   /// `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m].
   void add(double speed, double measured, double twin)
   {
-    const double place = BINS_PER_DECADE * std::log10(std::abs(speed) / SLOWEST);
+    const double place = placeOf(speed);
     if (!(place >= 0.0 && place < static_cast<double>(BINS)))
     {
       return;
@@ -67,14 +67,36 @@ public:
 
   /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong
   /// goes out. NaN: no point.
-  double ratio() const
+  double ratio() const { return ratio(points()); }
+
+  /// The same over that of `reference`, at the speeds of both: the twin's friction need not rise with the speed as the
+  /// joint's does. NaN: they have no speed in common.
+  double ratioTo(const std::vector<FrictionPoint>& reference) const
+  {
+    std::vector<FrictionPoint> common;
+    for (FrictionPoint point : points())
+    {
+      const auto other =
+          std::find_if(reference.begin(), reference.end(),
+                       [&](const FrictionPoint& candidate) { return isSameSpeed(candidate.speed, point.speed); });
+      if (other != reference.end())
+      {
+        point.twin *= other->measured / other->twin;
+        common.push_back(point);
+      }
+    }
+    return ratio(common);
+  }
+
+private:
+  static double ratio(const std::vector<FrictionPoint>& points)
   {
     double measured = 0.0;
     double twin = 0.0;
     for (const double way : { -1.0, 1.0 })
     {
       FrictionPoint sum;
-      for (const FrictionPoint& point : points())
+      for (const FrictionPoint& point : points)
       {
         if (way * point.speed > 0.0)
         {
@@ -93,7 +115,13 @@ public:
     return twin > 0.0 ? measured / twin : std::numeric_limits<double>::quiet_NaN();
   }
 
-private:
+  static double placeOf(double speed) { return BINS_PER_DECADE * std::log10(std::abs(speed) / SLOWEST); }
+
+  static bool isSameSpeed(double a, double b)
+  {
+    return std::signbit(a) == std::signbit(b) && std::abs(placeOf(a) - placeOf(b)) < 1.0;
+  }
+
   struct Bin
   {
     std::uint64_t rows{};

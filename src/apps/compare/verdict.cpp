@@ -54,7 +54,7 @@ struct Ratio
 {
   const char* what;
   double value;
-  double own;           ///< when the joint was sound; NaN: not known
+  double to_own;        ///< the same of the joint's own when it was sound; NaN: not known
   double of_arm;        ///< multiple that all joints of the arm have in common
   double of_kind;       ///< share by which sound joints differ from the twin
   Feature feature;      ///< that it moves
@@ -65,10 +65,9 @@ struct Ratio
 /// Against the joint's own when sound where that is known, else against the twin.
 void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& finding)
 {
-  const bool known = std::isfinite(ratio.own);
+  const bool known = std::isfinite(ratio.to_own);
   const double tolerance = known ? parameters.comparison.repeat_tolerance : ratio.of_kind;
-  const double of_own = known ? ratio.value / ratio.own : ratio.value;
-  const double value = of_own / ratio.of_arm;
+  const double value = (known ? ratio.to_own : ratio.value) / ratio.of_arm;
   finding.judged = true;
   finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
   // As many digits as it takes to see on which side of the bound the value lies.
@@ -82,7 +81,7 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
   }
   const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
   finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
-                 (known ? " and " + rounded(of_own, digits) + " times this joint's own when it was sound" : "") +
+                 (known ? " and " + rounded(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
                  (ratio.of_arm == 1.0 ? "" :
                                         ", " + rounded(value, digits) + " times what the " +
                                             rounded(ratio.of_arm, digits) + " times of the whole arm make") +
@@ -183,6 +182,14 @@ std::string whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin l
   return {};
 }
 
+/// Friction as a multiple of the joint's own when sound; NaN: that is not known.
+double frictionToOwn(const RecordingComparison& comparison, const JointContext& context)
+{
+  const FrictionPoints& friction = comparison.friction();
+  return context.own.friction.empty() && context.is_identified ? friction.ratio() :
+                                                                 friction.ratioTo(context.own.friction);
+}
+
 Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
 {
   Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
@@ -192,7 +199,7 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   {
     return finding;
   }
-  judgeRatio({ "Friction", comparison.friction().ratio(), context.own.friction_ratio, context.arm_friction,
+  judgeRatio({ "Friction", comparison.friction().ratio(), frictionToOwn(comparison, context), context.arm_friction,
                parameters.comparison.friction_tolerance, Feature::RUNNING_TORQUE, +1.0,
                "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
@@ -221,10 +228,10 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / comparison.ratio() / std::sqrt(2.0)) /
                               twin;
-  judgeRatio(
-      { "Torsion", compliance, own.compliance_ratio, 1.0, parameters.comparison.compliance_tolerance + eccentricity,
-        Feature::STIFFNESS, -1.0, "a wrong load, eccentric encoders" },
-      parameters, finding);
+  judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
+               parameters.comparison.compliance_tolerance + eccentricity, Feature::STIFFNESS, -1.0,
+               "a wrong load, eccentric encoders" },
+             parameters, finding);
   constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
   if (!std::isfinite(own.compliance_ratio) && finding.level != HealthLevel::OK && turn > MIN_TURN)
   {
@@ -402,8 +409,8 @@ std::optional<double> frictionRatio(const RecordingComparison& comparison, const
   {
     return std::nullopt;
   }
-  const double own = context.own.friction_ratio;
-  return comparison.friction().ratio() / (std::isfinite(own) ? own : 1.0);
+  const double to_own = frictionToOwn(comparison, context);
+  return std::isfinite(to_own) ? to_own : comparison.friction().ratio();
 }
 
 double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance)

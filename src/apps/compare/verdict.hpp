@@ -10,11 +10,11 @@
 
 namespace hjt
 {
-/// Figures of the same joint in sound condition; NaN: none.
+/// Figures of the same joint in sound condition.
 struct OwnReference
 {
-  double friction_ratio{ std::numeric_limits<double>::quiet_NaN() };
-  double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };
+  std::vector<FrictionPoint> friction;                                  ///< none: not known
+  double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
 };
 
 /// Where the load of the samples comes from.
@@ -29,6 +29,7 @@ enum class LoadOrigin
 struct JointContext
 {
   OwnReference own;
+  bool is_identified{};  ///< the twin's friction is that of this joint
   LoadOrigin load{};
   double duration{};  ///< of the recording [s]
   /// Multiple of the reference's friction that the joints of an arm have in common: temperature or gain, no fault.

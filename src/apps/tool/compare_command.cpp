@@ -30,6 +30,7 @@
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
 #include "ros_io/conversions.hpp"
 #include "ros_io/topics.hpp"
 
@@ -136,13 +137,14 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
 class ComparedJoint
 {
 public:
-  /// `reference`: directory of an earlier report; empty: none.
+  /// `reference`: directory of an earlier report; empty: none. `is_identified`: the parameters are of this very joint.
   ComparedJoint(const Parameters& parameters, MotionSource source, const std::string& directory,
-                const std::string& reference)
+                const std::string& reference, bool is_identified)
     : parameters_(parameters)
     , source_(std::move(source))
     , directory_(directory)
     , sound_(reference.empty() ? SoundJoint() : readSoundJoint(reference, parameters))
+    , is_identified_(is_identified)
     , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
     , comparison_(parameters, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
   {
@@ -157,7 +159,7 @@ public:
   /// Friction as a multiple of the reference's; none: the recording does not show it.
   std::optional<double> frictionRatio(LoadOrigin load) const
   {
-    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, load });
+    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load });
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
@@ -172,7 +174,8 @@ public:
     record.found = found;
     record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, found.start);
-    record.verdict = judge(comparison_, parameters_, { sound_.own, load, found.duration, arm_friction });
+    record.verdict =
+        judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction });
     writeComparison(directory_, comparison_, parameters_, record);
     return record;
   }
@@ -182,6 +185,7 @@ private:
   MotionSource source_;
   const std::string directory_;
   const SoundJoint sound_;
+  const bool is_identified_;
   TableFile<JudgedWindow> windows_;
   RecordingComparison comparison_;
 };
@@ -190,7 +194,7 @@ int compareJoint(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   prepareDirectory(options, options.report, COMPARISON_FILE);
-  ComparedJoint joint(parameters, motionSource(options), options.report, options.reference);
+  ComparedJoint joint(parameters, motionSource(options), options.report, options.reference, false);
   const MotionFindings found =
       visitMotion(joint.source(), joint.comparison().twin(), [&](const MotionSample& sample) { joint.update(sample); });
   if (interruptSignal() != 0)
@@ -278,7 +282,8 @@ int compareArm(const CompareOptions& options)
     prepareDirectory(options, directory, COMPARISON_FILE);
     joints.push_back(std::make_unique<ComparedJoint>(
         recording.parameters(i), recording.source(i), directory,
-        options.reference.empty() ? std::string() : (fs::path(options.reference) / name).string()));
+        options.reference.empty() ? std::string() : (fs::path(options.reference) / name).string(),
+        !options.identified.empty()));
   }
   const auto forward = [&](std::size_t i, bool at_end)
   {

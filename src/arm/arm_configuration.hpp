@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "arm/arm_description.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// `name` if that is a file, else arms/NAME.yaml in the directory of the default configuration.
+/// @throws ParameterError if there is neither.
+std::string findArm(const std::string& name, const std::filesystem::path& directory);
+
+/// The drive of a joint: default configuration, the joint's overlays and parameters, and `identified`/SHORT_NAME.yaml
+/// if that directory is given. Its load is that of the arm. @throws ParameterError.
+ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
+                                const std::string& identified);
+
+/// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside
+/// it: at the joint [kg.m^2].
+double takeInertiaInLoad(Parameters& parameters);
+}  // namespace hjt

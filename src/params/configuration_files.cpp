@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "params/configuration_files.hpp"
+
+#include <cstdlib>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+/// List of the default configuration's files, in their directory.
+constexpr const char* STAGES = "stages";
+
+fs::path findDirectory(const std::string& given)
+{
+  if (!given.empty())
+  {
+    return given;
+  }
+  if (const char* from_environment = std::getenv("HJT_CONFIG_DIR"))
+  {
+    return from_environment;
+  }
+  return packageDirectory() / "config";
+}
+}  // namespace
+
+fs::path packageDirectory()
+{
+  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin.
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
+  return fs::exists(installed / "config" / STAGES) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
+}
+
+fs::path configurationDirectory(const std::string& given)
+{
+  fs::path directory = findDirectory(given);
+  if (!fs::exists(directory / STAGES))
+  {
+    throw ParameterError("no default configuration in '" + directory.string() +
+                         "': name its directory with --config-dir or HJT_CONFIG_DIR");
+  }
+  return fs::absolute(directory);
+}
+
+std::string findConfiguration(const std::string& name, const fs::path& directory)
+{
+  for (const fs::path& candidate : { fs::path(name), directory.parent_path() / name, directory / name })
+  {
+    if (fs::exists(candidate))
+    {
+      return candidate.string();
+    }
+  }
+  return name;
+}
+}  // namespace hjt

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace hjt
+{
+/// Where config/ and scripts/ lie: of the installation, else of the checkout.
+std::filesystem::path packageDirectory();
+
+/// The directory of the default configuration: as given, else HJT_CONFIG_DIR, else of the package.
+/// @throws ParameterError if there is none.
+std::filesystem::path configurationDirectory(const std::string& given);
+
+/// A configuration file as given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from
+/// anywhere.
+std::string findConfiguration(const std::string& name, const std::filesystem::path& directory);
+}  // namespace hjt

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_io/joint_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <ros/console.h>
+
+#include "gear/ratio.hpp"
+#include "ros_io/input_topics.hpp"
+#include "ros_io/node_surface_source.hpp"
+#include "ros_io/time.hpp"
+#include "ros_io/topics.hpp"
+
+namespace hjt
+{
+namespace
+{
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+/// Between two warnings of the same kind [s].
+constexpr double WARNING_PERIOD = 5.0;
+/// Report the telemetry as stopped after this long without a row [s].
+constexpr double STOPPED_AFTER = 0.5;
+/// Warn when a larger share of the last seconds' rows is outside the band [-].
+constexpr double OUTSIDE_WARNING = 0.1;
+/// Warn when a stamp differs from the clock by more than this [s].
+constexpr double OFFSET_WARNING = 0.5;
+
+const char* levelName(std::uint8_t level)
+{
+  return level == DiagnosticStatus::STALE ? "STALE" : levelName(static_cast<HealthLevel>(level));
+}
+}  // namespace
+
+JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, TelemetryStream& stream,
+                           std::mutex& mutex)
+  : stream_(stream)
+  , mutex_(mutex)
+  , name_(node.getNamespace().substr(1))
+  , names_(parameters.joint.name)
+  , parameters_(parameters)
+  // Built before the first row is read, so that the same rows give the same numbers.
+  , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
+  , gear_(node, parameters)
+  , life_(node, parameters)
+  , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
+  , indicators_(makeIndicators(parameters))
+  , assessment_(makeAssessment(parameters))
+  , indicators_period_(toStampLength(1.0 / parameters.publish.indicators_rate))
+  , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, InputTopics::QUEUE_SIZE))
+  , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
+  , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
+  , tasks_(name_, parameters.joint.hardware_id)
+  , reset_service_(node.advertiseService("reset", &JointTracker::reset, this))
+{
+  tasks_.add("Input", this, &JointTracker::judgeTelemetry, &JointTracker::reportTelemetry);
+  tasks_.add("Drive", this, &JointTracker::judgeComparison, &JointTracker::reportComparison);
+  tasks_.add("Health", this, &JointTracker::judgeHealth, &JointTracker::reportHealth);
+  load_torque_subscriber_ = InputTopics{ node, stream_.too_large }.subscribe<std_msgs::Float64>(
+      topics::LOAD_TORQUE, [this](const auto& event) { receiveLoadTorque(event); });
+}
+
+TelemetryStatus JointTracker::read(const sensor_msgs::JointState& message, MotionRow& row)
+{
+  const TelemetryStatus status = readTelemetry(message, names_, row);
+  switch (status)
+  {
+    case TelemetryStatus::FOUND:
+      break;
+    case TelemetryStatus::UNKNOWN_JOINT:
+      ++refusals_.unknown_joint;
+      break;
+    case TelemetryStatus::INCOMPLETE:
+      ++refusals_.incomplete;
+      ROS_WARN_STREAM_THROTTLE(
+          WARNING_PERIOD, "No position or no effort (motor current) of " << names_.joint << " on " << stream_.topic);
+      break;
+    case TelemetryStatus::NOT_FINITE:
+      ++refusals_.not_finite;
+      break;
+  }
+  return status;
+}
+
+void JointTracker::start(bool reset)
+{
+  if (reset)
+  {
+    tracker_.reset();
+  }
+  for (const LoadAt& load : early_loads_)
+  {
+    passLoad(load);
+  }
+  early_loads_.clear();
+}
+
+void JointTracker::push(const MotionRow& row)
+{
+  tracker_.push(row);
+  publish();
+}
+
+void JointTracker::receiveLoad(const sensor_msgs::JointState& message, Stamp received)
+{
+  double torque = 0.0;
+  if (readLoadTorque(message, names_, torque) != EffortStatus::FOUND || !std::isfinite(torque))
+  {
+    ++refusals_.load;
+    return;
+  }
+  const ros::Time& stamp = message.header.stamp;
+  takeLoad({ stamp.isZero() ? std::nullopt : std::make_optional(fromRosTime(stamp)), received, torque });
+}
+
+void JointTracker::receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double torque = event.getMessage()->data;
+  if (!std::isfinite(torque))
+  {
+    ++refusals_.load;
+    return;
+  }
+  takeLoad({ std::nullopt, fromRosTime(event.getReceiptTime()), torque });
+}
+
+void JointTracker::takeLoad(const LoadAt& load)
+{
+  if (stream_.clock.hasStarted())
+  {
+    passLoad(load);
+    return;
+  }
+  early_loads_.push_back(load);
+  if (early_loads_.size() > Tracker::LOADS)
+  {
+    early_loads_.pop_front();
+  }
+}
+
+/// Once there is a zero: a load by another clock than the rows is refused. Received without a stamp, it is valid from
+/// the instant on that the rows' clock shows then.
+void JointTracker::passLoad(const LoadAt& load)
+{
+  const Stamp stamp = load.stamp.value_or(stream_.clock.at(load.received));
+  if (takesArmLoad() || !stream_.clock.isOf(stamp, load.received))
+  {
+    ++refusals_.load;
+    return;
+  }
+  last_load_stamp_ = stamp;
+  tracker_.pushLoad(stream_.clock.seconds(stamp), load.torque);
+}
+
+void JointTracker::publish()
+{
+  while (const std::optional<Comparison> comparison = tracker_.pop())
+  {
+    const Stamp stamp = stream_.clock.stamp(comparison->time);
+    fillComparison(stamp, *comparison, comparison_);
+    comparison_publisher_.publish(comparison_);
+    gear_.offer(stamp, *comparison);
+    life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
+                parameters_.input.temperature);
+    const std::int64_t due = stamp / indicators_period_;
+    if (due != indicators_due_)
+    {
+      indicators_due_ = due;
+      fillIndicators(stamp, tracker_.signalIndicators(), indicators_);
+      fillAssessment(stamp, tracker_.assessment(), assessment_);
+      indicators_publisher_.publish(indicators_);
+      assessment_publisher_.publish(assessment_);
+    }
+  }
+}
+
+bool JointTracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  tracker_.reset();
+  response.success = true;
+  response.message = "the twin restarts with the next row";
+  return true;
+}
+
+void JointTracker::look(const ros::WallTime& now)
+{
+  const StreamTimingReport timing = stream_.timing.report();
+  const TrackerCounters counters = tracker_.counters();
+  recent_refusals_.update(
+      refusals_.incomplete + refusals_.not_finite + refusals_.load + stream_.far_stamps + stream_.too_large, now);
+  recent_disorder_.update(timing.repeated + timing.backward, now);
+  recent_missing_.update(timing.missing, now);
+  recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
+  recent_failures_.update(counters.solver_failures, now);
+  tasks_.look();
+  logState();
+}
+
+/// A line when telemetry arrives, and whenever the worst level changes.
+void JointTracker::logState()
+{
+  if (tracker_.counters().compared == 0)
+  {
+    return;
+  }
+  const DiagnosticVerdict drive = judgeComparison();
+  const DiagnosticVerdict health = judgeHealth();
+  const std::uint8_t level = std::max(drive.level, health.level);
+  if (level == logged_level_)
+  {
+    return;
+  }
+  logged_level_ = level;
+  ROS_LOG_STREAM(level == DiagnosticStatus::OK ? ros::console::levels::Info : ros::console::levels::Warn,
+                 ROSCONSOLE_DEFAULT_NAME,
+                 name_ << ": " << levelName(level) << ". " << drive.text << ". " << health.text);
+}
+
+bool JointTracker::hasStopped() const
+{
+  return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
+}
+
+bool JointTracker::loadIsUnknown() const
+{
+  return parameters_.telemetry.load != LoadSource::MODEL && tracker_.counters().compared > 0 && !comparison_.load_told;
+}
+
+DiagnosticVerdict JointTracker::judgeTelemetry() const
+{
+  using D = DiagnosticStatus;
+  const StreamTimingReport timing = stream_.timing.report();
+  const bool refused = recent_refusals_.areRecent();
+  return firstOf(
+      { { timing.rows == 0,
+          { D::WARN, refused ? "No usable row of " + names_.joint + " yet" : "No telemetry yet on " + stream_.topic } },
+        { hasStopped(), { D::WARN, "The telemetry has stopped" } },
+        { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
+        { refused,
+          { D::WARN,
+            "Messages refused: incomplete, not finite, too large, stamped far off, or a load beside the arm's" } },
+        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
+        { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
+        { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
+        { loadIsUnknown(), { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
+      { D::OK, "Telemetry arrives" });
+}
+
+DiagnosticVerdict JointTracker::judgeComparison() const
+{
+  using D = DiagnosticStatus;
+  return firstOf(
+      { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
+        { hasStopped(), { D::STALE, "Nothing to compare with" } },
+        { loadIsUnknown(), { D::OK, "Not judged: the load is unknown" } },
+        { tracker_.outsideShare() > OUTSIDE_WARNING, { D::WARN, "The current departs from a healthy joint's" } } },
+      { D::OK, "Within the band of a healthy joint" });
+}
+
+DiagnosticVerdict JointTracker::judgeHealth() const
+{
+  const Assessment& assessment = tracker_.assessment();
+  if (hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
+  }
+  if (loadIsUnknown())
+  {
+    return { DiagnosticStatus::OK, "Not judged: the load is unknown" };
+  }
+  return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
+}
+
+void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
+{
+  const StreamTimingReport timing = stream_.timing.report();
+  const TrackerCounters counters = tracker_.counters();
+  status.add("Topic", stream_.topic);
+  status.add("Joint", names_.joint);
+  status.add("Rows", timing.rows);
+  status.add("Period [s]", timing.period);
+  status.add("Rows missing", timing.missing);
+  status.add("Longest gap [s]", timing.longest_gap);
+  status.add("Gaps that cut the stream", counters.gaps);
+  status.add("Stamps repeated", timing.repeated);
+  status.add("Stamps going back", timing.backward);
+  status.add("Restarts", counters.restarts + stream_.clock_changes);
+  status.add("Reception less stamp [s]", timing.offset);
+  status.add("Jitter of reception, 95 % [s]", timing.jitter);
+  status.add("Unknown joint, refused", refusals_.unknown_joint);
+  status.add("Names in the last of those", stream_.found_names);
+  status.add("Without position or effort, refused", refusals_.incomplete);
+  status.add("Not finite, refused", refusals_.not_finite);
+  status.add("Too large, refused", stream_.too_large.load());
+  status.add("Stamp far from the clock, refused", stream_.far_stamps);
+  status.add("Loads refused", refusals_.load);
+  status.add("Rows without a load", counters.without_load);
+  if (last_load_stamp_)
+  {
+    status.add("Load's stamp before the newest row's reception [s]",
+               toSeconds(stream_.last_received - *last_load_stamp_));
+  }
+}
+
+void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
+{
+  const TrackerCounters counters = tracker_.counters();
+  const std::optional<double> lag = tracker_.lag();
+  status.add("Residual of the current [A]", comparison_.current_residual);
+  status.add("Its band [A]", comparison_.current_band);
+  status.add("Residual of the position [rad]", comparison_.position_residual);
+  status.add("Residual of the velocity [rad/s]", comparison_.velocity_residual);
+  status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
+  status.add("Load [N.m]", comparison_.load_torque);
+  status.add("Temperature, as configured [degC]", parameters_.input.temperature);
+  status.add("Rows compared", counters.compared);
+  status.add("Rows outside the band", counters.outside);
+  status.add("Share of the last ones outside [-]", tracker_.outsideShare());
+  status.add("Steps failed", counters.solver_failures + gear_.failures());
+  if (lag)
+  {
+    status.add("Measured after predicted [s]", *lag);
+  }
+  else
+  {
+    status.add("Measured after predicted [s]", "unknown");
+  }
+}
+
+void JointTracker::reportHealth(DiagnosticStatusWrapper& status) const
+{
+  addAssessment(tracker_.assessment(), status);
+}
+}  // namespace hjt

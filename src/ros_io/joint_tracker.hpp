@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <ros/message_event.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/service_server.h>
+#include <ros/subscriber.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
+#include <std_srvs/Trigger.h>
+
+#include "ros_io/diagnostics.hpp"
+#include "ros_io/life_publisher.hpp"
+#include "ros_io/measured_gear_publisher.hpp"
+#include "ros_io/recent_events.hpp"
+#include "ros_io/telemetry_messages.hpp"
+#include "ros_io/telemetry_stream.hpp"
+#include "tracking/tracker.hpp"
+
+namespace hjt
+{
+/// The twin of one joint beside a robot, live: a `Tracker` with its topics, diagnostics and service. Whatever a message
+/// brings is worked off in its callback: nothing here waits for a clock. The node's mutex guards everything.
+class JointTracker
+{
+public:
+  /// `node`: its topics lie below. @throws ParameterError.
+  JointTracker(ros::NodeHandle& node, const Parameters& parameters, TelemetryStream& stream, std::mutex& mutex);
+
+  const std::string& joint() const { return names_.joint; }
+  /// Its load comes with `pushLoad` from the motion of the whole arm.
+  bool takesArmLoad() const { return parameters_.telemetry.load == LoadSource::ARM; }
+
+  /// The row of this joint in a message; anything else is counted and logged.
+  TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
+
+  /// A new zero of the stream's time; `reset`: what was before is of another clock.
+  void start(bool reset);
+
+  void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
+  void push(const MotionRow& row);
+
+  /// A message on the load's topic.
+  void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
+
+  /// Judges, reports and logs changes of the state.
+  void look(const ros::WallTime& now);
+
+private:
+  /// Messages that brought nothing.
+  struct Refusals
+  {
+    std::uint64_t unknown_joint{};
+    std::uint64_t incomplete{};
+    std::uint64_t not_finite{};
+    std::uint64_t load{};
+  };
+
+  struct LoadAt
+  {
+    std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
+    Stamp received;              // [ns]
+    double torque;               // [N.m]
+  };
+
+  void receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event);
+  void takeLoad(const LoadAt& load);
+  void passLoad(const LoadAt& load);
+  void publish();
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  bool loadIsUnknown() const;
+  bool hasStopped() const;
+  DiagnosticVerdict judgeTelemetry() const;
+  DiagnosticVerdict judgeComparison() const;
+  DiagnosticVerdict judgeHealth() const;
+  void logState();
+  void reportTelemetry(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportComparison(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportHealth(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  TelemetryStream& stream_;
+  std::mutex& mutex_;
+  const std::string name_;  // of the twin in the graph
+  const JointNames names_;
+  const Parameters parameters_;
+  Tracker tracker_;
+  MeasuredGearPublisher gear_;
+  LifePublisher life_;
+  std::optional<Stamp> last_load_stamp_;  // [ns]
+  std::deque<LoadAt> early_loads_;        // received before the start
+  Refusals refusals_;
+  harmonic_joint_twin::Comparison comparison_;
+  harmonic_joint_twin::Indicators indicators_;
+  harmonic_joint_twin::Assessment assessment_;
+  std::int64_t indicators_period_;  // [ns]
+  std::int64_t indicators_due_{};   // how many periods have begun since the epoch
+  RecentEvents recent_refusals_;
+  RecentEvents recent_disorder_;
+  RecentEvents recent_missing_;
+  RecentEvents recent_restarts_;
+  RecentEvents recent_failures_;
+  std::optional<std::uint8_t> logged_level_;
+  ros::Publisher comparison_publisher_;
+  ros::Publisher indicators_publisher_;
+  ros::Publisher assessment_publisher_;
+  DiagnosticTasks tasks_;
+  ros::ServiceServer reset_service_;
+  ros::Subscriber load_torque_subscriber_;
+};
+}  // namespace hjt

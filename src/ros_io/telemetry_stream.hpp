@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "ros_io/telemetry_clock.hpp"
+#include "tracking/stream_timing.hpp"
+
+namespace hjt
+{
+/// What the joints of a robot share: the messages of one topic. Guarded by the node's mutex but for `too_large`.
+struct TelemetryStream
+{
+  std::string topic;
+  TelemetryClock clock;
+  StreamTiming timing;
+  Stamp last_received{};          ///< [ns]
+  std::uint64_t far_stamps{};     ///< messages refused for their stamp
+  std::uint64_t clock_changes{};  ///< restarts because all stamps had moved far
+  std::string found_names;        ///< in the last message that lacks a joint
+  std::atomic<std::uint64_t> too_large{ 0 };
+};
+}  // namespace hjt

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/model/lobe_loads.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "model/joint_model.hpp"
+#include "solver/ring_equilibrium.hpp"
+
+namespace hjt
+{
+/// The gear of a measured joint: all teeth in equilibrium at the measured angle under the joint's torque of the moment.
+///
+/// Where all teeth are alike, the drive is the same again after the wave generator has turned by a tooth pitch p of the
+/// flexspline and the output by p / ratio, but for the numbers of the teeth: the ring is solved within one pitch, and
+/// what it holds is turned into place. After construction nothing throws or allocates.
+class MeasuredGear
+{
+public:
+  /// @throws ParameterError if the wave generator cannot be inserted.
+  explicit MeasuredGear(const Parameters& parameters);
+  MeasuredGear(const MeasuredGear&) = delete;  // the ring refers to the model
+  MeasuredGear& operator=(const MeasuredGear&) = delete;
+
+  /// To the joint's angle [rad] and the torque of the mesh on the output [N.m]. False: not finite, a torque beyond
+  /// output.load_torque_limit, or no equilibrium was found; the angles stay as they were.
+  bool moveTo(double position, double joint_torque) noexcept;
+
+  double position() const noexcept { return position_; }       ///< of the joint [rad]
+  double motorAngle() const noexcept { return motor_angle_; }  ///< of the wave generator [rad]
+  double torsion() const noexcept
+  {
+    return motor_angle_ / ratio_ - position_;
+  }                                                                      ///< motor angle / ratio - joint angle [rad]
+  double stiffness() const noexcept { return ring_.stiffness()(1, 1); }  ///< wave generator locked [N.m/rad]
+  double residual() const noexcept { return residual_; }                 ///< largest out-of-balance force [N]
+  LobeLoads lobes() const noexcept;
+
+  /// `forces` as Twin::makeToothForces makes them.
+  void fill(ToothForces& forces) const noexcept;
+
+private:
+  bool solve(double motor_angle, double joint_torque) noexcept;
+
+  const JointModel model_;
+  RingEquilibrium ring_;
+  const bool teeth_are_alike_;
+  const double pitch_;  // [rad]
+  const double ratio_;
+  const double torque_limit_;     // [N.m]
+  Eigen::VectorXd tooth_angles_;  // at rest [rad]
+  std::int64_t shift_{};          // pitches that the ring is behind the drive
+  double position_{};
+  double motor_angle_{};
+  double torsion_{};  // of the ring [rad]
+  bool is_lost_{};    // the ring is in no equilibrium
+  double residual_{};
+};
+}  // namespace hjt

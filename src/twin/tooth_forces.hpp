@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "solver/ring_equilibrium.hpp"
+
+namespace hjt
+{
+/// The forces of a ring, as that of tooth i + `shift`, turned by as many pitches about the axis.
+inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces& out) noexcept
+{
+  const RingModel& model = ring.model();
+  const RingForces& forces = ring.forces();
+  const RingShape& shape = ring.shape();
+  const double angle = shift * model.rest.pitchAngle();
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  for (int i = 0; i < shape.teeth(); ++i)
+  {
+    const auto place = static_cast<std::size_t>((i + shift) % shape.teeth());
+    const double x = shape.points[2 * i];
+    const double y = shape.points[2 * i + 1];
+    out.wave_generator_force[place] = forces.of<WaveGeneratorContact>().force[i];
+    out.rim_tension[place] = model.of<RimTension>().tension(shape, i);
+    out.bending_force[place] = model.of<RimBending>().bendingForce(shape, forces.of<RimBending>(), i);
+    out.mesh_force[place] = forces.of<ToothMesh>().flank_force[i];
+    out.tooth_x[place] = cosine * x - sine * y;
+    out.tooth_y[place] = sine * x + cosine * y;
+  }
+}
+}  // namespace hjt
