@@ -24,7 +24,7 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// Warn when a larger share of the last seconds' rows is outside the band [-].
+/// Warn when a larger share of the last rows is outside the band, until it is less than half of that [-].
 constexpr double OUTSIDE_WARNING = 0.1;
 /// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
@@ -197,6 +197,7 @@ void JointTracker::look(const ros::WallTime& now)
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
   recent_failures_.update(counters.solver_failures, now);
+  departs_ = tracker_.outsideShare() > (departs_ ? 0.5 : 1.0) * OUTSIDE_WARNING;
   tasks_.look();
   logState();
 }
@@ -258,7 +259,7 @@ DiagnosticVerdict JointTracker::judgeComparison() const
       { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
         { loadIsUnknown(), { D::OK, "Not judged: the load is unknown" } },
-        { tracker_.outsideShare() > OUTSIDE_WARNING, { D::WARN, "The current departs from a healthy joint's" } } },
+        { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
       { D::OK, "Within the band of a healthy joint" });
 }
 

@@ -107,6 +107,7 @@ private:
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
+  bool departs_{};  // the current, from a healthy joint's
   std::optional<std::uint8_t> logged_level_;
   ros::Publisher comparison_publisher_;
   ros::Publisher indicators_publisher_;

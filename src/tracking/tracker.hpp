@@ -69,7 +69,7 @@ class Tracker
 public:
   /// Stamps that go back by more are a new recording or a clock that was set [s].
   static constexpr double RESTART = 1.0;
-  static constexpr double OUTSIDE_MEMORY = 2.0;  ///< [s]
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< a touch of the arm is shorter [s]
   /// Loads that are kept for rows to come.
   static constexpr std::size_t LOADS = 512;
 

@@ -268,9 +268,11 @@ TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
     }
     return tracker.outsideShare();
   };
-  EXPECT_LT(share_with(0.8, 1000), 0.05);
-  EXPECT_GT(share_with(5.0, 1000), 0.95);
-  EXPECT_LT(share_with(5.0, 50), 0.3);
+  const int seconds = static_cast<int>(std::lround(1.0 / PERIOD));
+  const double memory = Tracker::OUTSIDE_MEMORY;
+  EXPECT_LT(share_with(0.8, static_cast<int>(memory) * seconds), 0.05);
+  EXPECT_NEAR(share_with(5.0, static_cast<int>(memory) * seconds), 1.0 - std::exp(-1.0), 0.02);
+  EXPECT_NEAR(share_with(5.0, 2 * seconds), 1.0 - std::exp(-2.0 / memory), 0.01);
 }
 
 TEST(Tracker, SeesTheMeasuredJointWithTheHealthMonitor)

@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Recordings of a sound UR5, played as its driver publishes: angles and currents, nothing else. They are taken from
+HJT_TELEMETRY_DIR, else from shared/telemetry beside the checkout; without them nothing is tested."""
+import csv
+import glob
+import os
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from harmonic_joint_twin.msg import Comparison, ContactForces
+from ros_support import OK, PACKAGE, Diagnostics, Listener, package_path, wait_until
+
+JOINTS = {"elbow": "elbow_joint", "shoulder": "shoulder_lift_joint", "base": "shoulder_pan_joint",
+          "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}  # as the driver orders them
+NUMBERS = dict(zip(JOINTS, (2, 1, 0, 3, 4, 5)))  # of the columns
+DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", package_path("..", "shared", "telemetry"))
+RECORDINGS = sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))
+FASTER = 3.0  # than they were recorded; the stamps are those of the recording
+
+
+class Recordings(unittest.TestCase):
+    def setUp(self):
+        self.publisher = rospy.Publisher("/joint_states", JointState, queue_size=1000)
+        self.comparisons = {joint: Listener(f"/{joint}/joint_twin/comparison", Comparison) for joint in JOINTS}
+        self.forces = {joint: Listener(f"/{joint}/joint_twin/contact_forces", ContactForces) for joint in JOINTS}
+        self.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
+        for listener in [*self.comparisons.values(), *self.forces.values()]:
+            listener.wait_for_connection()
+        wait_until(lambda: self.publisher.get_num_connections() == 1, "the node")
+
+    def play(self, path):
+        """Returns how many rows were sent, and how many seconds they cover."""
+        with open(path) as file:
+            rows = list(csv.DictReader(file))
+        begin, first = rospy.Time.now(), float(rows[0]["timestamp"])
+        for row in rows:
+            since = float(row["timestamp"]) - first
+            time.sleep(max(0.0, (begin - rospy.Time.now()).to_sec() + since / FASTER))
+            message = JointState(name=list(JOINTS.values()),
+                                 position=[float(row[f"actual_q_{i}"]) for i in NUMBERS.values()],
+                                 effort=[float(row[f"actual_current_{i}"]) for i in NUMBERS.values()])
+            message.header.stamp = begin + rospy.Duration.from_sec(since)
+            self.publisher.publish(message)
+        return len(rows), since
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_sound_joints_are_ok_and_have_tooth_forces(self):
+        for path in RECORDINGS:
+            name = os.path.basename(path)
+            for joint in JOINTS:
+                self.assertTrue(rospy.ServiceProxy(f"/{joint}/joint_twin/reset", Trigger)().success)
+            seen = {joint: {task: len(self.diagnostics[joint].statuses(task)) for task in ("Drive", "Health")}
+                    for joint in JOINTS}
+            for listener in [*self.comparisons.values(), *self.forces.values()]:
+                listener.clear()
+            rows, seconds = self.play(path)
+            for joint in JOINTS:
+                self.comparisons[joint].wait_for(int(0.98 * rows) - 30)
+                self.assertGreater(len(self.forces[joint].messages()), 0.9 * 10.0 * seconds, (name, joint))
+                for task in ("Drive", "Health"):
+                    found = {(status.level, status.message)
+                             for status in self.diagnostics[joint].statuses(task)[seen[joint][task]:]
+                             if "stopped" not in status.message and "Nothing" not in status.message}
+                    self.assertEqual({level for level, _ in found}, {OK}, (name, joint, task, found))
+            print(f"{name}: {rows} rows, {seconds:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    rospy.init_node("recordings_test")
+    rostest.rosrun(PACKAGE, "recordings", Recordings, sys.argv)
