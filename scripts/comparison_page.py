@@ -177,7 +177,8 @@ def draw_teeth(width, data):
         mesh, contact = np.abs(teeth["mesh_" + case]), teeth["wave_generator_" + case]
         one.fill_between(angle[loop], (ring - contact)[loop], ring[loop], color=BLUE, alpha=0.4, lw=0,
                          label=f"wave generator, up to {contact.max():.0f} N")
-        one.bar(angle, mesh, width=2.0 * np.pi / len(angle), bottom=ring, color=RED, lw=0,
+        loaded = mesh > 0.0
+        one.bar(angle[loaded], mesh[loaded], width=2.0 * np.pi / len(angle), bottom=ring[loaded], color=RED, lw=0,
                 label=f"mesh, up to {mesh.max():.0f} N on {np.count_nonzero(mesh > 1.0)} teeth")
         one.plot(angle[loop], ring[loop], color="black", lw=0.9)
         one.set_ylim(0.0, ring.max() + 0.85 * scale)

@@ -38,7 +38,8 @@ void runJoint(ros::NodeHandle& node)
   }
 }
 
-/// All joints of the arm `name`: its files, then the parameters of this node over those of every joint.
+/// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
+/// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name)
 {
   const auto directory = hjt::configurationDirectory("");
@@ -60,6 +61,7 @@ void runArm(ros::NodeHandle& node, const std::string& name)
       map[key] = value;
     }
     parameters.push_back(hjt::parseParameters(map));
+    hjt::writeParameterServer(hjt::TrackerNode::jointName(joint), map);
     hjt::Parameters& drive = parameters.back();
     if (drive.input.mode == hjt::InputMode::COMMANDS)
     {

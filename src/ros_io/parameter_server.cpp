@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include <ros/param.h>
@@ -111,7 +113,65 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
     }
   }
 }
+XmlRpcValue xmlValue(const ParameterValue& parameter)
+{
+  return std::visit(
+      [](const auto& value)
+      {
+        using T = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<T, std::int64_t>)
+        {
+          return XmlRpcValue(static_cast<int>(value));
+        }
+        else if constexpr (std::is_same_v<T, std::vector<double>>)
+        {
+          XmlRpcValue list;
+          list.setSize(static_cast<int>(value.size()));
+          for (std::size_t i = 0; i < value.size(); ++i)
+          {
+            list[static_cast<int>(i)] = value[i];
+          }
+          return list;
+        }
+        else
+        {
+          return XmlRpcValue(value);
+        }
+      },
+      parameter.value);
+}
 }  // namespace
+
+void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map)
+{
+  XmlRpcValue tree;
+  XmlRpcValue faults;
+  for (const auto& [key, parameter] : map)
+  {
+    const std::size_t first = key.find('.');
+    const std::string section = key.substr(0, first);
+    const std::string name = key.substr(first + 1);
+    const std::size_t second = name.find('.');
+    if (section == FAULTS && second != std::string::npos)
+    {
+      const int number = std::stoi(name.substr(0, second));
+      if (faults.getType() == XmlRpcValue::TypeInvalid || faults.size() <= number)
+      {
+        faults.setSize(number + 1);
+      }
+      faults[number][name.substr(second + 1)] = xmlValue(parameter);
+    }
+    else
+    {
+      tree[section][name] = xmlValue(parameter);
+    }
+  }
+  if (faults.getType() == XmlRpcValue::TypeArray)
+  {
+    tree[FAULTS] = faults;
+  }
+  ros::param::set(parameter_namespace, tree);
+}
 
 ParameterMap readParameterServer(const std::string& parameter_namespace)
 {

@@ -17,4 +17,7 @@ constexpr const char* DESCRIPTION = "description";
 /// are. Nothing is left out, so that `parseParameters` finds unknown keys; nothing is defaulted.
 /// @throws ParameterError on a value that no parameter can have, e.g. a list with a text in it.
 ParameterMap readParameterServer(const std::string& parameter_namespace);
+
+/// Puts all parameters below `parameter_namespace`, in place of what is there.
+void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
 }  // namespace hjt

@@ -32,14 +32,18 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
 TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters)
   : arm_load_(arm)
 {
-  const std::string& name = ros::this_node::getName();
-  const std::string above = ros::names::parentNamespace(name);
-  const std::string base = name.substr(name.rfind('/') + 1);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    addJoint(ros::NodeHandle(ros::names::append(above, arm.joints[i].short_name + "/" + base)), parameters[i]);
+    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i]);
   }
   subscribe(node);
+}
+
+std::string TrackerNode::jointName(const ArmJoint& joint)
+{
+  const std::string& name = ros::this_node::getName();
+  const std::string node = name.substr(name.rfind('/') + 1);
+  return ros::names::append(ros::names::parentNamespace(name), joint.short_name + "/" + node);
 }
 
 void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters)

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <ros/message_event.h>
@@ -25,7 +26,10 @@ public:
   /// Of one joint. @param parameters with input.mode other than commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// Of an arm: parameters of each of its joints, whose topics lie below NAMESPACE/SHORT_NAME/NODE.
+  /// Name of a joint of an arm in the graph: NAMESPACE/SHORT_NAME/NODE. Its topics lie below.
+  static std::string jointName(const ArmJoint& joint);
+
+  /// Of an arm: parameters of each of its joints.
   /// @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters);
 

@@ -18,7 +18,7 @@ from harmonic_joint_twin.msg import Comparison, ContactForces
 from ros_support import OK, PACKAGE, Diagnostics, Listener, package_path, wait_until
 
 JOINTS = {"elbow": "elbow_joint", "shoulder": "shoulder_lift_joint", "base": "shoulder_pan_joint",
-          "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}  # as the driver orders them
+          "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}  # the order of the driver
 NUMBERS = dict(zip(JOINTS, (2, 1, 0, 3, 4, 5)))  # of the columns
 DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", package_path("..", "shared", "telemetry"))
 RECORDINGS = sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))

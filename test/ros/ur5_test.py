@@ -223,7 +223,7 @@ class UR5(unittest.TestCase):
                         self.assertAlmostEqual(sum(forces.wave_generator_force), health.wave_generator_load, places=6)
 
     def test_processor_time(self):
-        print(f"six joints in motion mode at {1.0 / PERIOD:.0f} Hz, all topics heard: {100.0 * self.share:.1f} % of a core")
+        print(f"six joints, motion mode, {1.0 / PERIOD:.0f} Hz, all topics heard: {100.0 * self.share:.1f} % of a core")
         self.assertLess(self.share, 0.6)
 
     def test_what_was_wrong_with_the_messages_is_reported(self):

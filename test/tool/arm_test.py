@@ -18,6 +18,7 @@ from sensor_msgs.msg import JointState
 import tool
 
 SHORT_NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+GAINS = [10.7, 10.7, 10.7, 10.21, 11.9, 11.92]  # of config/arms/ur5.yaml [N.m/A]
 PERIOD = 0.008
 DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
 RECORDINGS = sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))
@@ -117,6 +118,57 @@ class Arm(tool.ToolTest):
         self.fail_with(1, ["holds no load"], "follow", "arm.csv", "--arm", "ur5", "--load", "target_moment")
         self.fail_with(1, ["--arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
+
+    def robot_with_friction(self, raised, share=0.3, path="robot.csv"):
+        """A robot that is the twin, the friction of these joints raised by a share, with some noise."""
+        self.write("still.csv", arm_csv())
+        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force")
+        noise = np.random.default_rng(7)
+        currents = []
+        for name, gain in zip(SHORT_NAMES, GAINS):
+            columns = self.columns(f"robot/{name}.csv")
+            more = share / gain * columns["friction_torque"] if name in raised else 0.0
+            currents.append(columns["current_predicted"] + more + noise.normal(0.0, 0.05, len(columns["time"])))
+        self.write(path, arm_csv(np.transpose(currents).tolist()))
+        return path
+
+    def compare(self, recording, report, *more):
+        return self.succeed_json("compare", recording, "--arm", "ur5", "--report", report, *more)
+
+    def test_friction_of_one_joint_is_that_joint_and_of_all_is_not(self):
+        sound = self.compare(self.robot_with_friction([]), "sound")
+        self.assertEqual(sound["level"], "OK", sound)
+        self.assertEqual([joint["joint"] for joint in sound["joints"]], SHORT_NAMES)
+        for name in SHORT_NAMES:
+            self.assertTrue(os.path.exists(self.path(f"sound/{name}/report.html")), name)
+        with open(self.path("sound/report.html")) as file:
+            page = file.read()
+        for name in SHORT_NAMES:
+            self.assertIn(f'href="{name}/report.html"', page)
+
+        one = self.compare(self.robot_with_friction(["shoulder"]), "one", "--reference", "sound")
+        self.assertEqual({joint["joint"]: joint["level"] for joint in one["joints"]},
+                         {name: "WARN" if name == "shoulder" else "OK" for name in SHORT_NAMES}, one)
+        self.assertEqual(one["level"], "WARN")
+        self.assertIn("shoulder: ", one["reason"])
+
+        every = self.compare(self.robot_with_friction(SHORT_NAMES), "every", "--reference", "sound")
+        self.assertEqual(every["level"], "OK", every)
+        self.assertIn("temperature or gain", every["reason"])
+        self.assertAlmostEqual(every["friction_ratio"], 1.3, delta=0.05)
+
+    def test_a_report_is_not_its_own_reference(self):
+        self.write("arm.csv", arm_csv())
+        os.mkdir(self.path("report"))
+        self.fail_with(1, ["same directory"], "compare", "arm.csv", "--arm", "ur5", "--report", "report", "--reference",
+                       "report")
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_no_sound_joint_of_a_ur5_is_called_faulty(self):
+        for path in RECORDINGS[::3]:
+            arm = self.compare(path, "report", "--force")
+            print(f"{os.path.basename(path):22} {arm['level']:4} {arm['reason']}")
+            self.assertEqual(arm["level"], "OK", (path, arm))
 
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_load_agrees_with_the_controller_of_a_ur5(self):

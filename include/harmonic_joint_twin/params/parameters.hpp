@@ -266,8 +266,8 @@ enum class InputMode
 /// Where the torque at the output of a measured joint comes from.
 enum class LoadSource
 {
-  MODEL,         ///< weight and inertia as configured below output
-  LOAD_TORQUE,   ///< the same plus the received external torque
+  MODEL,          ///< weight and inertia as configured below output
+  LOAD_TORQUE,    ///< the same plus the received external torque
   TARGET_MOMENT,  ///< only the received torque, as a controller's rigid-body torque
   ARM             ///< of links and payload, from the motion of all joints of the arm
 };

@@ -31,6 +31,9 @@ HealthLevel levelOf(double deviation, double tolerance, double error_factor)
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
 
+/// No change of temperature makes the friction of grease and contacts larger or smaller by more.
+constexpr double MAX_ARM_FRICTION = 2.5;
+
 /// Part of a fault's signature, a unit vector, from which on a fault counts as moving a feature.
 constexpr double MIN_PART = 0.2;
 
@@ -197,6 +200,13 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   finding.text = whyNoFriction(points, context.load);
   if (!finding.text.empty())
   {
+    return finding;
+  }
+  if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
+  {
+    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
+                   " times the reference's, more than temperature makes: gain or unit of the currents are not the "
+                   "configured ones.";
     return finding;
   }
   judgeRatio({ "Friction", comparison.friction().ratio(), frictionToOwn(comparison, context), context.arm_friction,
