@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <ros/ros.h>
@@ -95,12 +96,6 @@ private:
 
   void receive(const std::string& topic, const ShapeShifter::ConstPtr& message)
   {
-    // Before the clock has started there is no time to record at, and a bag takes none before the epoch.
-    const ros::Time now = ros::Time::now();
-    if (now.isZero())
-    {
-      return;
-    }
     const std::lock_guard<std::mutex> lock(mutex_);
     if (bytes_ + message->size() > buffer_)
     {
@@ -108,24 +103,33 @@ private:
       return;
     }
     bytes_ += message->size();
-    waiting_.push_back({ &topic, hjt::fromRosTime(now), message });
+    waiting_.push_back({ &topic, hjt::fromRosTime(ros::Time::now()), message });
     arrived_.notify_one();
   }
 
-  /// Writes what waits; waits a moment if that is nothing.
+  /// Writes what waits; waits a moment if that is nothing. Before the clock has started there is no time to record at:
+  /// messages that arrived by then, as from a twin that heard the clock sooner, get its first one.
   void writeWaiting()
   {
     constexpr std::chrono::milliseconds MOMENT{ 50 };
+    const hjt::Stamp clock = hjt::fromRosTime(ros::Time::now());
     std::deque<Waiting> taken;
     {
       std::unique_lock<std::mutex> lock(mutex_);
       arrived_.wait_for(lock, MOMENT, [this] { return !waiting_.empty(); });
-      taken.swap(waiting_);
+      if (clock > 0)
+      {
+        taken.swap(waiting_);
+      }
+    }
+    if (clock == 0)
+    {
+      std::this_thread::sleep_for(MOMENT / 10);
     }
     for (; !taken.empty(); taken.pop_front())
     {
       const Waiting& next = taken.front();
-      writer_.write(*next.topic, next.stamp, *next.message);
+      writer_.write(*next.topic, next.stamp > 0 ? next.stamp : clock, *next.message);
       const std::lock_guard<std::mutex> lock(mutex_);
       bytes_ -= next.message->size();
     }

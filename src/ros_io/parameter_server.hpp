@@ -13,7 +13,7 @@ constexpr const char* ARM = "arm";
 constexpr const char* IDENTIFIED = "identified";
 constexpr const char* DESCRIPTION = "description";
 
-/// Reads every other parameter below `parameter_namespace` (`section/key`) from the parameter server; types are kept as they
+/// Reads every other parameter below `parameter_namespace` (`section/key`) from the server; types are kept as they
 /// are. Nothing is left out, so that `parseParameters` finds unknown keys; nothing is defaulted.
 /// @throws ParameterError on a value that no parameter can have, e.g. a list with a text in it.
 ParameterMap readParameterServer(const std::string& parameter_namespace);

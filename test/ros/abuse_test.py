@@ -73,7 +73,8 @@ class AbusedNode:
                     publisher.publish(huge)
                 self.diagnostics.wait_for("Input", "Too large, refused", HUGE_MESSAGES)
                 self.assertEqual(self.diagnostics.level("Input"), WARN)
-                self.assertLess(most_memory(self.node.process), MOST_MEMORY)
+                if "ASAN_OPTIONS" not in os.environ:  # which keeps what is freed
+                    self.assertLess(most_memory(self.node.process), MOST_MEMORY)
                 self.node.kill()
 
     def test_a_kind_of_fault_makes_no_line_of_the_log(self):

@@ -28,6 +28,9 @@ def is_permitted():
     return subprocess.run(["chrt", "-f", str(PRIORITY), "true"], stderr=subprocess.DEVNULL).returncode == 0
 
 
+SANITIZED = "ASAN_OPTIONS" in os.environ
+
+
 class Realtime(unittest.TestCase):
     def start(self, changes, prefix=()):
         load_parameters(NODE, configuration_files(), changes)
@@ -58,6 +61,7 @@ class Realtime(unittest.TestCase):
         first = float(self.diagnostics.fresh("Timing")["Simulated instant [s]"])
         self.assertGreater(float(self.diagnostics.fresh("Timing")["Simulated instant [s]"]), first)
 
+    @unittest.skipIf(SANITIZED, "the sanitizer locks no memory")
     @unittest.skipUnless(is_permitted(), "SCHED_FIFO is not permitted here")
     def test_the_loop_alone_gets_its_priority_and_the_memory_is_locked(self):
         self.start(dict(ASKED, **{"realtime/processor": 0}))
@@ -72,6 +76,7 @@ class Realtime(unittest.TestCase):
                          [f"SCHED_FIFO {PRIORITY}", "locked", "0"])
         self.check_running()
 
+    @unittest.skipIf(SANITIZED, "the sanitizer locks no memory")
     def test_what_is_not_permitted_is_said_with_its_remedy_and_the_node_goes_on(self):
         self.start(ASKED, UNPRIVILEGED)
         self.assertIn("SCHED_OTHER", self.scheduling())
