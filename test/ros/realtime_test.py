@@ -15,6 +15,7 @@ from harmonic_joint_twin.msg import Timing
 from ros_support import (PACKAGE, WARN, Diagnostics, Listener, Node, configuration_files, load_parameters,
                          wait_until)
 
+SANITIZED = "ASAN_OPTIONS" in os.environ
 NODE = "/twin_under_test"
 PRIORITY = 80
 ASKED = {"realtime/priority": PRIORITY, "realtime/lock_memory": True}
@@ -26,9 +27,6 @@ if os.geteuid() == 0:
 
 def is_permitted():
     return subprocess.run(["chrt", "-f", str(PRIORITY), "true"], stderr=subprocess.DEVNULL).returncode == 0
-
-
-SANITIZED = "ASAN_OPTIONS" in os.environ
 
 
 class Realtime(unittest.TestCase):

@@ -25,6 +25,7 @@ START = 1000.0      # first stamp [s]
 DURATION = 2.0      # [s]
 INPUT_RATE = 125.0  # [Hz]
 INPUT_DELAY = 0.5     # [s]; long, so that no message is late on a busy machine: equality rests on that
+RATE = 1.0 / float(os.environ.get("HJT_PATIENCE", "1"))  # of the replay: the twin must keep up
 OUTPUTS = {"joint_states": 1000, "encoders": 1000, "contact_forces": 100, "health": 10}  # [Hz]
 LAUNCH_TIMEOUT = 4.0 * PATIENCE  # [s]
 
@@ -87,7 +88,7 @@ class Replay(unittest.TestCase):
 
     def launch(self):
         launch = Launch(self.path("launch.log"), "replay.launch", f"bag:={self.recording}", f"out:={self.live}",
-                        f"input_delay:={INPUT_DELAY}")
+                        f"input_delay:={INPUT_DELAY}", f"rate:={RATE}")
         self.addCleanup(launch.kill)
         return launch
 

@@ -259,7 +259,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   return finding;
 }
 
-Finding judgeSignals(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
+Finding judgeSignals(const RecordingComparison& comparison, const JointContext& context)
 {
   Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
   const std::string reference = comparison.baselineGiven() ? "the reference given" :
@@ -275,8 +275,7 @@ Finding judgeSignals(const RecordingComparison& comparison, const Parameters& pa
     return finding;
   }
   const Assessment& assessment = comparison.worst()->assessment;
-  if (assessment.level != HealthLevel::OK && comparison.baselineGiven() &&
-      std::abs(context.arm_friction - 1.0) > parameters.comparison.repeat_tolerance)
+  if (assessment.level != HealthLevel::OK && comparison.baselineGiven() && context.arm_friction != 1.0)
   {
     finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
                    " times that of the reference: its signals are of another temperature or gain.";
@@ -443,15 +442,14 @@ double commonFriction(const std::vector<std::optional<double>>& ratios, double t
   const double median = known.size() % 2 == 1 ? known[half] : 0.5 * (known[half - 1] + known[half]);
   const auto agree = std::count_if(known.begin(), known.end(),
                                    [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; });
-  return 2 * static_cast<std::size_t>(agree) > known.size() ? median : 1.0;
+  return std::abs(median - 1.0) > tolerance && 2 * static_cast<std::size_t>(agree) > known.size() ? median : 1.0;
 }
 
 Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
 {
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, context),
-                       judgeTorsion(comparison, parameters, context.own),
-                       judgeSignals(comparison, parameters, context) };
+                       judgeTorsion(comparison, parameters, context.own), judgeSignals(comparison, context) };
   const std::string why_not = whyItDoesNotFit(comparison, parameters, context.load);
   for (Finding& finding : verdict.findings)
   {

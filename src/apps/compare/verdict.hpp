@@ -71,6 +71,7 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context);
 
-/// Multiple that most joints of an arm agree on within `tolerance`; 1: fewer than three joints, or they do not agree.
+/// Multiple that most joints of an arm agree on within `tolerance`; 1: it differs from 1 by less than that, there are
+/// fewer than three joints, or they do not agree.
 double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt

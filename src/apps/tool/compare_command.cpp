@@ -237,12 +237,12 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
 };
 
 /// Joints of the worst level, and what they have in common.
-std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, double arm_friction, double tolerance)
+std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, double arm_friction)
 {
   std::string reason;
-  if (std::abs(arm_friction - 1.0) > tolerance)
+  if (arm_friction != 1.0)
   {
-    reason = "Friction of the whole arm is " + shortNumber(arm_friction) +
+    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm_friction)) +
              " times the reference's: another temperature or gain, not a fault of one joint. ";
   }
   std::vector<std::string> unjudged;
@@ -314,8 +314,7 @@ int compareArm(const CompareOptions& options)
     ratios.push_back(joints[i]->frictionRatio(load));
   }
   const Parameters& parameters = recording.parameters(0);
-  const double tolerance = parameters.comparison.repeat_tolerance;
-  const double arm_friction = commonFriction(ratios, tolerance);
+  const double arm_friction = commonFriction(ratios, parameters.comparison.repeat_tolerance);
   std::vector<ArmLine> lines;
   HealthLevel level = HealthLevel::OK;
   bool judged = false;
@@ -330,7 +329,7 @@ int compareArm(const CompareOptions& options)
     lines.push_back({ name, std::move(record.verdict), ratios[i], comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
-  const std::string reason = reasonOf(lines, level, arm_friction, tolerance);
+  const std::string reason = reasonOf(lines, level, arm_friction);
   const Table table(ARM_COLUMNS, lines);
   const Json all{ { "recording", options.recording },
                   { "arm", options.arm },
