@@ -116,7 +116,7 @@ class Arm(tool.ToolTest):
                        "--arm", "ur5")
         self.write("arm.csv", arm_csv())
         self.fail_with(1, ["holds no load"], "follow", "arm.csv", "--arm", "ur5", "--load", "target_moment")
-        self.fail_with(1, ["--arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
+        self.fail_with(1, ["arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
 
     def robot_with_friction(self, raised, share=0.3, path="robot.csv"):
