@@ -61,8 +61,8 @@ class Parameters(unittest.TestCase):
                 self.check_clean_exit(signal.SIGINT)
                 self.check_output(f'joint.name: "{name}"', "mesh.stiffness: 5.0e+7  # [N/m]")
 
-    def test_the_overlay_for_recorded_loads_starts_and_ends_cleanly_on_sigterm(self):
-        self.check_start(configuration_files("elbow", ["recorded_load.yaml"]))
+    def test_the_overlays_of_an_arms_joints_start_and_end_cleanly_on_sigterm(self):
+        self.check_start(configuration_files("elbow", ["recorded_load.yaml", "beside_robot.yaml"]))
         self.check_clean_exit(signal.SIGTERM)
 
     def test_the_gear_as_built_starts(self):
@@ -85,7 +85,7 @@ class Parameters(unittest.TestCase):
 
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
-        overlays = ["as_built", "real_sensors", "recorded_load", "size_14", "thesis_insertion",
+        overlays = ["as_built", "beside_robot", "real_sensors", "recorded_load", "size_14", "thesis_insertion",
                     *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
