@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <ros/console.h>
 
@@ -49,7 +48,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
   , indicators_(makeIndicators(parameters))
   , assessment_(makeAssessment(parameters))
-  , indicators_period_(toStampLength(1.0 / parameters.publish.indicators_rate))
+  , indicators_periods_(parameters.publish.indicators_rate)
   , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, InputTopics::QUEUE_SIZE))
   , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
   , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
@@ -166,10 +165,8 @@ void JointTracker::publish()
     gear_.offer(stamp, *comparison);
     life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
                 parameters_.input.temperature);
-    const std::int64_t due = stamp / indicators_period_;
-    if (due != indicators_due_)
+    if (indicators_periods_.begins(stamp))
     {
-      indicators_due_ = due;
       fillIndicators(stamp, tracker_.signalIndicators(), indicators_);
       fillAssessment(stamp, tracker_.assessment(), assessment_);
       indicators_publisher_.publish(indicators_);

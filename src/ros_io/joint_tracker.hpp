@@ -20,6 +20,7 @@
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/measured_gear_publisher.hpp"
 #include "ros_io/recent_events.hpp"
+#include "ros_io/stamp_periods.hpp"
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/telemetry_stream.hpp"
 #include "tracking/tracker.hpp"
@@ -100,8 +101,7 @@ private:
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;
   harmonic_joint_twin::Assessment assessment_;
-  std::int64_t indicators_period_;  // [ns]
-  std::int64_t indicators_due_{};   // how many periods have begun since the epoch
+  StampPeriods indicators_periods_;
   RecentEvents recent_refusals_;
   RecentEvents recent_disorder_;
   RecentEvents recent_missing_;

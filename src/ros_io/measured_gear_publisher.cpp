@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "gear/ratio.hpp"
 #include "ros_io/time.hpp"
@@ -22,28 +21,20 @@ MeasuredGearPublisher::MeasuredGearPublisher(ros::NodeHandle& node, const Parame
   , ratio_(nominalRatio(parameters.gear))
   , gear_(parameters)
   , sensors_(parameters.sensors, 1.0 / parameters.publish.encoders_rate)
-  , contact_forces_{ makeContactForces(parameters), toStampLength(1.0 / parameters.publish.contact_forces_rate),
+  , contact_forces_{ makeContactForces(parameters), StampPeriods(parameters.publish.contact_forces_rate),
                      node.advertise<harmonic_joint_twin::ContactForces>(topics::CONTACT_FORCES, QUEUE_SIZE) }
-  , encoders_{ makeMessage<harmonic_joint_twin::Encoders>(parameters),
-               toStampLength(1.0 / parameters.publish.encoders_rate),
+  , encoders_{ makeMessage<harmonic_joint_twin::Encoders>(parameters), StampPeriods(parameters.publish.encoders_rate),
                node.advertise<harmonic_joint_twin::Encoders>(topics::ENCODERS, QUEUE_SIZE) }
-  , health_{ makeMessage<harmonic_joint_twin::Health>(parameters), toStampLength(1.0 / parameters.publish.health_rate),
+  , health_{ makeMessage<harmonic_joint_twin::Health>(parameters), StampPeriods(parameters.publish.health_rate),
              node.advertise<harmonic_joint_twin::Health>(topics::HEALTH, QUEUE_SIZE) }
 {
 }
 
-template <class Message>
-bool MeasuredGearPublisher::isDue(Stamp stamp, Topic<Message>& topic)
-{
-  const std::int64_t due = stamp / topic.period;
-  return std::exchange(topic.due, due) != due && topic.publisher.getNumSubscribers() > 0;
-}
-
 void MeasuredGearPublisher::offer(Stamp stamp, const Comparison& comparison)
 {
-  const bool forces_due = isDue(stamp, contact_forces_);
-  const bool encoders_due = isDue(stamp, encoders_);
-  const bool health_due = isDue(stamp, health_);
+  const bool forces_due = contact_forces_.isDue(stamp);
+  const bool encoders_due = encoders_.isDue(stamp);
+  const bool health_due = health_.isDue(stamp);
   if (!forces_due && !encoders_due && !health_due)
   {
     return;
@@ -61,7 +52,7 @@ void MeasuredGearPublisher::offer(Stamp stamp, const Comparison& comparison)
   if (encoders_due)
   {
     const double motor_torque = torque_per_current_ * (comparison.current.measured - current_offset_);
-    sensors_.update(encoders_.due, gear_.motorAngle(), gear_.position(), motor_torque);
+    sensors_.update(encoders_.periods.number(), gear_.motorAngle(), gear_.position(), motor_torque);
     fillEncoders(stamp, sensors_.encoders(), gear_.motorAngle(), gear_.position(), encoders_.message);
     encoders_.publisher.publish(encoders_.message);
   }

@@ -7,6 +7,7 @@
 #include <ros/publisher.h>
 
 #include "ros_io/conversions.hpp"
+#include "ros_io/stamp_periods.hpp"
 #include "sensors/joint_sensors.hpp"
 #include "tracking/measured_gear.hpp"
 #include "tracking/tracker.hpp"
@@ -31,13 +32,12 @@ private:
   struct Topic
   {
     Message message;
-    std::int64_t period;  // [ns]
+    StampPeriods periods;
     ros::Publisher publisher;
-    std::int64_t due{};  // how many periods have begun since the epoch
+
+    bool isDue(Stamp stamp) { return periods.begins(stamp) && publisher.getNumSubscribers() > 0; }
   };
 
-  template <class Message>
-  bool isDue(Stamp stamp, Topic<Message>& topic);
   void fillHealth(Stamp stamp, const Comparison& comparison);
 
   const double torque_per_current_;  // at the motor [N.m/A]
