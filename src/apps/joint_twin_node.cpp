@@ -27,7 +27,7 @@ void run(ros::NodeHandle& handle, const Arguments&... arguments)
 void runJoint(ros::NodeHandle& node)
 {
   const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
-  ROS_INFO_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
+  ROS_DEBUG_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
   if (parameters.input.mode == hjt::InputMode::COMMANDS)
   {
     run<hjt::TwinNode>(node, parameters);

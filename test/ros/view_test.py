@@ -11,21 +11,22 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float64
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ros_support import OK, PACKAGE, Listener, wait_until
+from ros_support import PACKAGE, STALE, Listener, wait_until
 
 TORQUE = 0.9  # of the motor [N.m]: loads the flanks while the arm is sped up
 
 
 class View(unittest.TestCase):
-    def drawings(self):
-        return [{(marker.ns, marker.id): marker for marker in array.markers} for array in self.markers.messages()]
+    def drawing(self):
+        """The latest one."""
+        return {(marker.ns, marker.id): marker for marker in self.markers.messages()[-1].markers}
 
     def setUp(self):
         self.markers = Listener("/base/drive_markers/markers", MarkerArray)
         self.markers.wait_for(1)
 
     def test_the_whole_drive_is_drawn(self):
-        drawing = self.drawings()[-1]
+        drawing = self.drawing()
         for part in ("flexspline", "circular_spline", "wave_generator"):
             marker = drawing[part, 0]
             self.assertEqual(marker.header.frame_id, "base_link", part)
@@ -40,19 +41,23 @@ class View(unittest.TestCase):
         command = rospy.Publisher("/base/joint_twin/motor_torque_command", Float64, queue_size=10)
         wait_until(lambda: command.get_num_connections() > 0, "the twin to listen")
 
-        def pressed(sign, flank):
+        loaded = []
+
+        def loaded_alone(sign, flank, other):
             command.publish(sign * TORQUE)
-            return self.drawings()[-1][flank, 0].points
+            drawing = self.drawing()
+            redness = max(color.r - color.b for color in drawing["flexspline", 0].colors)
+            if drawing[flank, 0].points and not drawing[other, 0].points and redness > 0.05:
+                loaded.append(drawing)
+            return bool(loaded)
 
         for sign, flank, other in ((1, "trailing_flank_force", "leading_flank_force"),
                                    (-1, "leading_flank_force", "trailing_flank_force")):
-            wait_until(lambda sign=sign, flank=flank, other=other: pressed(sign, flank) and not pressed(sign, other),
-                       f"arrows on the {flank} alone")
-            drawing = self.drawings()[-1]
-            self.assertEqual(drawing[other, 0].action, Marker.DELETE)
-            reddest = max(drawing["flexspline", 0].colors, key=lambda color: color.r - color.b)
-            self.assertGreater(reddest.r - reddest.b, 0.05)
-            self.assertIn("teeth loaded", drawing["loads", 0].text)
+            loaded.clear()
+            wait_until(lambda sign=sign, flank=flank, other=other: loaded_alone(sign, flank, other),
+                       f"arrows on the {flank} alone, its teeth red")
+            self.assertEqual(loaded[-1][other, 0].action, Marker.DELETE)
+            self.assertIn("teeth loaded", loaded[-1]["loads", 0].text)
 
     def test_the_aggregator_sorts_the_diagnostics(self):
         aggregated = Listener("/diagnostics_agg", DiagnosticArray)
@@ -64,7 +69,7 @@ class View(unittest.TestCase):
         for part in ("Drive", "Input", "Timing", "Health"):
             name = f"/Harmonic drives/{part}/base joint_twin: {part}"
             wait_until(lambda name=name: name in parts(), name)
-        wait_until(lambda: parts()["/Harmonic drives/Timing"].level == OK, "the timing to be judged")
+        wait_until(lambda: parts()["/Harmonic drives/Timing"].level != STALE, "the timing to be judged")
 
 
 if __name__ == "__main__":
