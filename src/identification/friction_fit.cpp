@@ -124,7 +124,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
     const double joint = weight * std::copysign(ratio, speed);
     const FrictionShares shares = friction.at(speed, sample.load, parameters.input.temperature);
     block.current += weight * sample.current;
-    block.known += weight * sample.load + joint * shares.rest;
+    block.known += weight * (sample.load + sample.vibration) + joint * shares.rest;
     block.column[INERTIA] += weight * ratio * ratio * sample.acceleration;
     block.column[PRELOAD] += joint * preload_torque;
     block.column[GREASE] += joint * shares.grease;

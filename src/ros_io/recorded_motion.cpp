@@ -121,7 +121,7 @@ public:
     MotionRow row = held.row;
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
-    check_.add(row.time, row.position, held.velocity);
+    check_.add(row.time, row.position, row.recorded_velocity);
     count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
@@ -138,7 +138,6 @@ private:
   struct Held
   {
     MotionRow row;
-    double velocity{};  // as recorded; NaN: not at all [rad/s]
     Stamp stamp{};
     Stamp recorded{};
     bool agrees{};  // with a neighbour
@@ -171,8 +170,6 @@ private:
       ++count_.corrupt;
       return true;
     }
-    const std::size_t joint = placeOf(message, names_.joint);
-    held.velocity = joint < message.velocity.size() ? message.velocity[joint] : std::nan("");
     held.row.load = load_;
     held.stamp = stamp;
     held.recorded = recorded;
@@ -445,7 +442,8 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     {
       rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
       rows[i].received = time;
-      checks[i].add(time, rows[i].position, values[column(3, i)]);
+      rows[i].recorded_velocity = values[column(3, i)];
+      checks[i].add(time, rows[i].position, rows[i].recorded_velocity);
     }
     if (!visit(rows))
     {

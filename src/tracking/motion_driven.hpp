@@ -32,7 +32,7 @@ struct MotionPrediction
 /// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table
 /// of it.
 ///
-///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
+///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
 ///       T_r torque ripple caused by the kinematic error (TorqueRipple)
@@ -70,8 +70,8 @@ public:
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
-    prediction.motor_torque = sample.load / ratio_ + inertia_ * ratio_ * sample.acceleration + share * friction +
-                              ripple_.at(sample.position, sample.velocity) / ratio_;
+    prediction.motor_torque = (sample.load + sample.vibration) / ratio_ + inertia_ * ratio_ * sample.acceleration +
+                              share * friction + ripple_.at(sample.position, sample.velocity) / ratio_;
     prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
     prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
     return prediction;

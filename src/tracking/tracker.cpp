@@ -57,7 +57,7 @@ public:
     now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
     now.sticking = predicted.band > telemetry_.current_deviation;
     now.friction_torque = predicted.friction_torque;
-    now.joint_torque = sample.load + telemetry_.torque_per_current * now.current.residual();
+    now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
   }
 
 private:
