@@ -40,7 +40,7 @@ struct MotionSample : MotionRow
 class MotionDifferentiator
 {
 public:
-  static constexpr double HALF_WIDTH = 0.036;  ///< lets a drive's ripple through, up to some 30 Hz [s]
+  static constexpr double HALF_WIDTH = 0.036;  ///< best for the currents of a UR5 (docs/arm.md) [s]
   static constexpr double MAX_GAP = 0.1;       ///< longer ones cut the stream [s]
   static constexpr double MIN_STEP = 0.5e-3;   ///< rows that follow sooner tell nothing new [s]
 
