@@ -18,6 +18,7 @@ struct MotionRow
   double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
   double received{};                                               ///< when it arrived, from the same zero [s]
+  double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: none [rad/s]
 };
 
 /// The same with its rates.
