@@ -91,7 +91,7 @@ void RecordingFit::LoadRegression::add(double step, double velocity, double load
   sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
 }
 
-FittedFactor RecordingFit::LoadRegression::slope() const
+FittedFactor RecordingFit::LoadRegression::slope(double& content) const
 {
   constexpr double RIDGE = 1e-9;      // of the mean square: motion one way only leaves constant and friction alike
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
@@ -112,6 +112,7 @@ FittedFactor RecordingFit::LoadRegression::slope() const
   {
     return slope;
   }
+  content = left(0, 0);
   slope.value = left(0, 1) / left(0, 0);
   const double rest = std::max(0.0, left(1, 1) - slope.value * left(0, 1));
   slope.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / seconds);
@@ -220,18 +221,21 @@ EffortFit RecordingFit::effort() const
   fit.unit = joints_.front().effort;
   double weights = 0.0;
   double sum = 0.0;
+  double squares = 0.0;
   const auto units = choiceNames(EffortUnit());
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    const FittedFactor slope = joint.load.slope();
-    if (!std::isfinite(slope.value))
+    // By the load, not by the uncertainty: a dead current would be the most certain one.
+    double weight = 0.0;
+    const FittedFactor slope = joint.load.slope(weight);
+    if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
     {
       continue;
     }
-    const double weight = 1.0 / std::max(LEAST_SQUARE, slope.uncertainty * slope.uncertainty);
     weights += weight;
     sum += weight * slope.value;
+    squares += weight * weight * slope.uncertainty * slope.uncertainty;
     for (std::size_t unit = 0; unit < units.size(); ++unit)
     {
       // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
@@ -239,11 +243,11 @@ EffortFit RecordingFit::effort() const
           weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
     }
   }
-  if (weights == 0.0 || std::sqrt(1.0 / weights) > MAX_UNCERTAINTY * sum / weights)
+  if (weights == 0.0 || std::sqrt(squares) > MAX_UNCERTAINTY * sum)
   {
     return fit;
   }
-  fit.factor = { sum / weights, std::sqrt(1.0 / weights) };
+  fit.factor = { sum / weights, std::sqrt(squares) / weights };
   const auto distance = [&](EffortUnit unit)
   { return std::abs(std::log(fit.factor.value * weights / expected[static_cast<std::size_t>(unit)])); };
   fit.is_known = distance(fit.unit) < std::log(WIDE);

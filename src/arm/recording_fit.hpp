@@ -82,8 +82,8 @@ private:
   {
   public:
     void add(double step, double velocity, double load, double current) noexcept;
-    /// Slope of the current over the load.
-    FittedFactor slope() const;
+    /// Slope of the current over the load; `content`: square of the load that no friction explains, summed over time.
+    FittedFactor slope(double& content) const;
 
   private:
     Eigen::Matrix<double, 5, 5> sums_{ Eigen::Matrix<double, 5, 5>::Zero() };  // of 1, sign, speed, load, current

@@ -336,30 +336,23 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const Check& ch
   {
     corrections += " --topic " + options.topic;
   }
-  const std::string& file = options.recording;
-  const bool has_correction = hasFinding(check.findings, "stamps") || hasFinding(check.findings, "effort_unit");
-  if (check.arms.taken.empty())
-  {
-    std::vector<std::string> commands;
-    for (const CheckedJoint& joint : check.joints)
-    {
-      if (is_usable && joint.is_judged && commands.empty())
-      {
-        commands.push_back("joint_twin compare " + file + " --joint " + joint.name + corrections + " --report report");
-      }
-    }
-    return commands;
-  }
-  const std::string arm = " --arm " + check.arms.taken + corrections;
-  if (has_correction)
-  {
-    return { "joint_twin check " + file + arm };
-  }
-  if (!is_usable)
+  const bool is_correctable = hasFinding(check.findings, "stamps") || hasFinding(check.findings, "effort_unit");
+  if (!is_usable && !is_correctable)
   {
     return {};
   }
-  return { "joint_twin identify " + file + arm + " --out my_arm",
+  const std::string& file = options.recording;
+  if (check.arms.taken.empty())
+  {
+    const auto joint = std::find_if(check.joints.begin(), check.joints.end(),
+                                    [](const CheckedJoint& joint) { return joint.is_judged; });
+    return joint == check.joints.end() ? std::vector<std::string>() :
+                                         std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
+                                                                   joint->name + corrections + " --report report" };
+  }
+  const std::string arm = " --arm " + check.arms.taken + corrections;
+  return { (is_correctable ? "joint_twin check " : "joint_twin identify ") + file + arm +
+               (is_correctable ? "" : " --out my_arm"),
            "joint_twin compare " + file + arm + " --report report", "joint_twin follow " + file + arm + " --out rows" };
 }
 
@@ -394,14 +387,15 @@ std::string textOfEffort(const Check& check)
     return "none: what the motors draw has to be published as effort";
   }
   const EffortFit& effort = check.effort;
-  const std::string factor = roundedText(effort.factor.value, 2);
+  const std::string factor = roundedText(effort.factor.value, 3);
   if (!std::isfinite(effort.factor.value))
   {
     return std::string("taken for ") + effortUnitName(check.configured_effort) + ": the load varies too little to tell";
   }
   return effort.is_known && effort.unit == check.configured_effort ?
-             std::string(effortUnitName(effort.unit)) + ": changes " + factor + " times as expected with the load" :
-             "changes " + factor + " times as " + effortUnitName(check.configured_effort) + " would with the load";
+             std::string(effortUnitName(effort.unit)) + "; with the load it changes " + factor +
+                 " times as configured" :
+             "changes with the load " + factor + " times as " + effortUnitName(check.configured_effort) + " would";
 }
 
 std::string textOfStamps(const Check& check)
