@@ -2,7 +2,6 @@
 #include "arm/recording_fit.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -271,13 +270,16 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   const FittedFactor stamps = stampFactor();
   if (std::isfinite(stamps.value) && differs(stamps, 1.0))
   {
+    const std::string factor = rounded(stamps.value);
     findings.push_back({ "stamps",
-                         "by their stamps the angles change " + rounded(stamps.value) +
-                             " times as fast as the velocities say: the stamps are wrong by this factor, and with them "
-                             "accelerations and loads",
+                         "by their stamps the angles change " + factor +
+                             " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
+                             "recording --time-scale " +
+                             factor + " mends them)",
                          true });
+    return findings;  // the load is wrong too
   }
-  else if (std::any_of(joints_.begin(), joints_.end(), isTooFast))
+  if (std::any_of(joints_.begin(), joints_.end(), isTooFast))
   {
     findings.push_back(
         { "angle_unit",
@@ -350,9 +352,7 @@ std::vector<std::string> RecordingFit::whyNotJudged() const
   {
     const auto stops =
         std::find_if(findings.begin(), findings.end(), [](const RecordingFinding& finding) { return finding.stops; });
-    std::string text = stops == findings.end() ? std::string() : stops->text + ".";
-    text[0] = static_cast<char>(std::toupper(text[0]));
-    return text;
+    return stops == findings.end() ? std::string() : stops->text;
   };
   const std::string of_arm = first(ofArm());
   std::vector<std::string> reasons;

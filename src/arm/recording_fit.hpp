@@ -73,7 +73,7 @@ public:
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
-  /// For each joint the first finding of arm or joint with which nothing can be judged, as a sentence; empty: none.
+  /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
   std::vector<std::string> whyNotJudged() const;
 
 private:

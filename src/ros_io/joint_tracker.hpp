@@ -48,7 +48,7 @@ public:
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
   void push(const MotionRow& row);
 
-  /// Why nothing can be judged of this joint, as a sentence; empty: its telemetry fits.
+  /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits.
   void setMisfit(const std::string& reason);
 
   /// A message on the load's topic.

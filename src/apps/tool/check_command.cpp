@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 struct Contents
 {
   std::vector<std::string> named;   ///< joints in the messages
-  std::vector<std::string> usable;  ///< those with angle and effort
+  std::vector<std::string> usable;  ///< those with angle and effort of the message that has most of them
   std::string temperature;          ///< topic or column; empty: none
   bool has_load{};
 };
@@ -50,7 +50,7 @@ struct Arms
 {
   std::vector<std::string> fitting;
   std::string taken;                 ///< empty: none
-  std::vector<std::string> missing;  ///< joints of the arm that was asked for
+  std::vector<std::string> missing;  ///< joints of the arm without angle or effort
 };
 
 /// One joint of the recording.
@@ -80,6 +80,11 @@ struct Check
   std::vector<CheckedJoint> joints;
 };
 
+bool holds(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 Contents readBagContents(const MotionSource& source)
 {
   constexpr int MESSAGES = 1000;  // by then every publisher of the topic was heard
@@ -101,13 +106,6 @@ Contents readBagContents(const MotionSource& source)
   }
   CheckedMessage message;
   int read = 0;
-  const auto add = [](const std::string& name, std::vector<std::string>& names)
-  {
-    if (std::find(names.begin(), names.end(), name) == names.end())
-    {
-      names.push_back(name);
-    }
-  };
   for (auto instance = view.begin(); read < MESSAGES && instance != view.end(); ++instance, ++read)
   {
     if (!message.read(*instance))
@@ -115,13 +113,21 @@ Contents readBagContents(const MotionSource& source)
       continue;
     }
     const sensor_msgs::JointState& state = message.state();
+    std::vector<std::string> usable;
     for (std::size_t i = 0; i < state.name.size(); ++i)
     {
-      add(state.name[i], contents.named);
+      if (!holds(contents.named, state.name[i]))
+      {
+        contents.named.push_back(state.name[i]);
+      }
       if (i < std::min(state.position.size(), state.effort.size()))
       {
-        add(state.name[i], contents.usable);
+        usable.push_back(state.name[i]);
       }
+    }
+    if (usable.size() > contents.usable.size())
+    {
+      contents.usable = usable;
     }
   }
   return contents;
@@ -139,11 +145,6 @@ Contents readCsvContents(const MotionSource& source)
   return contents;
 }
 
-bool holds(const std::vector<std::string>& names, const std::string& name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 std::vector<std::string> missingJoints(const ArmDescription& arm, const std::vector<std::string>& names)
 {
   std::vector<std::string> missing;
@@ -157,7 +158,8 @@ std::vector<std::string> missingJoints(const ArmDescription& arm, const std::vec
   return missing;
 }
 
-Arms findArms(const ArmOptions& options, const Contents& contents, bool is_csv)
+/// Leaves of the joints at hand those of the arm, if it is not complete.
+Arms findArms(const ArmOptions& options, bool is_csv, Contents& contents)
 {
   const fs::path directory = configDirectory(options);
   Arms arms;
@@ -172,20 +174,30 @@ Arms findArms(const ArmOptions& options, const Contents& contents, bool is_csv)
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files)
   {
-    if (is_csv || missingJoints(readArmDescription(file.string()), contents.usable).empty())
+    if (is_csv || missingJoints(readArmDescription(file.string()), contents.named).empty())
     {
       arms.fitting.push_back(file.stem().string());
     }
   }
-  if (!options.arm.empty())
+  arms.taken = !options.arm.empty() ? options.arm : arms.fitting.empty() ? "" : arms.fitting.front();
+  if (!arms.taken.empty() && !is_csv)
   {
-    const ArmDescription arm = readArmDescription(findArm(options.arm, directory));
-    arms.missing = is_csv ? std::vector<std::string>() : missingJoints(arm, contents.usable);
-    arms.taken = arms.missing.empty() ? options.arm : "";
-  }
-  else if (!arms.fitting.empty())
-  {
-    arms.taken = arms.fitting.front();
+    const ArmDescription arm = readArmDescription(findArm(arms.taken, directory));
+    arms.missing = missingJoints(arm, contents.usable);
+    if (!arms.missing.empty())
+    {
+      arms.taken.clear();
+      // What is there of the arm, without a load.
+      std::vector<std::string> usable;
+      for (const ArmJoint& joint : arm.joints)
+      {
+        if (holds(contents.usable, joint.name))
+        {
+          usable.push_back(joint.name);
+        }
+      }
+      contents.usable = usable;
+    }
   }
   return arms;
 }
@@ -360,7 +372,7 @@ std::string textOfLoad(const Check& check)
 {
   if (!check.arms.missing.empty())
   {
-    return "unknown: " + joined(check.arms.missing) + " missing";
+    return "unknown: no angle or no effort of " + joined(check.arms.missing);
   }
   if (check.arms.taken.empty())
   {
@@ -377,14 +389,16 @@ std::string textOfArm(const ArmOptions& options, const Check& check)
   {
     return options.arm;
   }
-  return fitting.empty() ? "not known" : fitting + " have these joints; taken: " + check.arms.taken + " (--arm)";
+  return fitting.empty() ? "not known; joints: " + joined(check.contents.named) :
+                           fitting + " have these joints" +
+                               (check.arms.taken.empty() ? "" : "; taken: " + check.arms.taken + " (--arm)");
 }
 
 std::string textOfEffort(const Check& check)
 {
   if (check.joints.empty())
   {
-    return "none: what the motors draw has to be published as effort";
+    return "none: the motors' currents have to be recorded as effort";
   }
   const EffortFit& effort = check.effort;
   const std::string factor = roundedText(effort.factor.value, 3);
@@ -560,7 +574,7 @@ int check(const ArmOptions& options)
   const bool is_csv = isCsv(source);
   Check check;
   check.contents = is_csv ? readCsvContents(source) : readBagContents(source);
-  check.arms = findArms(options, check.contents, is_csv);
+  check.arms = findArms(options, is_csv, check.contents);
   check = check.arms.taken.empty() ? checkJoints(options, std::move(check)) : checkArm(options, std::move(check));
   if (interruptSignal() != 0)
   {

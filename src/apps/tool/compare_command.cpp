@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -222,6 +223,7 @@ struct ArmLine
 {
   std::string joint;
   Verdict verdict;
+  std::string misfit;  // of its recording; empty: it fits
   std::optional<double> friction_ratio;
   double current_rms{};
   double residual_rms{};
@@ -235,6 +237,16 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
   { "current_rms", &ArmLine::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ArmLine::residual_rms, "less predicted [A]" }
 };
+
+std::string sentence(std::string clause)
+{
+  if (!clause.empty())
+  {
+    clause[0] = static_cast<char>(std::toupper(clause[0]));
+    clause += ".";
+  }
+  return clause;
+}
 
 /// Joints of the worst level, and what they have in common.
 std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, double arm_friction)
@@ -254,7 +266,7 @@ std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, doubl
     }
     if (!line.verdict.judged)
     {
-      unjudged.push_back(line.joint);
+      unjudged.push_back(line.joint + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
     }
   }
   if (level == HealthLevel::OK && unjudged.size() < lines.size())
@@ -314,7 +326,7 @@ int compareArm(const CompareOptions& options)
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
-    ratios.push_back(joints[i]->frictionRatio(load, misfits[i]));
+    ratios.push_back(joints[i]->frictionRatio(load, sentence(misfits[i])));
   }
   const Parameters& parameters = recording.parameters(0);
   const double arm_friction = commonFriction(ratios, parameters.comparison.repeat_tolerance);
@@ -329,12 +341,13 @@ int compareArm(const CompareOptions& options)
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
-    lines.push_back({ name, std::move(record.verdict), ratios[i], comparison.currentRms(), comparison.residualRms() });
+    lines.push_back(
+        { name, std::move(record.verdict), misfits[i], ratios[i], comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
   const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
                                                     static_cast<std::ptrdiff_t>(misfits.size());
-  const std::string reason = same ? misfits.front() : reasonOf(lines, level, arm_friction);
+  const std::string reason = same ? sentence(misfits.front()) : reasonOf(lines, level, arm_friction);
   const Table table(ARM_COLUMNS, lines);
   const Json all{ { "recording", options.recording },
                   { "arm", options.arm },
