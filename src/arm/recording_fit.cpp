@@ -144,12 +144,14 @@ void RecordingFit::reset() noexcept
     joint.fast_rows = 0;
   }
   last_time_ = std::numeric_limits<double>::quiet_NaN();
+  moving_ = 0.0;
 }
 
 void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
 {
   const double step = joints.front().time - last_time_;
   last_time_ = joints.front().time;
+  bool moves = false;
   const bool follows = step > 0.0 && step <= MotionDifferentiator::MAX_GAP;
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
@@ -163,14 +165,17 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     reach.most_speed = std::max(reach.most_speed, sample.velocity);
     reach.least_current = std::min(reach.least_current, sample.current);
     reach.most_current = std::max(reach.most_current, sample.current);
-    joint.moving_rows += std::abs(sample.velocity) > MOVING ? 1 : 0;
+    const bool joint_moves = std::abs(sample.velocity) > MOVING;
+    moves = moves || joint_moves;
+    joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
     joint.time.add(sample.time, sample.position, sample.recorded_velocity);
-    if (follows && std::abs(sample.velocity) > MOVING && std::isfinite(torques[i]))
+    if (follows && joint_moves && std::isfinite(torques[i]))
     {
       joint.load.add(step, sample.velocity, torques[i] / joint.gain, sample.current);
     }
   }
+  moving_ += follows && moves ? step : 0.0;
 }
 
 std::vector<FittedFactor> RecordingFit::timeFactors() const
@@ -344,6 +349,14 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
     findings.push_back({ "at_rest", "does not move", false });
   }
   return findings;
+}
+
+bool RecordingFit::isSettled() const
+{
+  const bool has_velocity =
+      std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) { return joint.time.hasVelocity(); });
+  const bool knows_stamps = !has_velocity || std::isfinite(stampFactor().value);
+  return moving_ > PATIENCE || (knows_stamps && std::isfinite(effort().factor.value));
 }
 
 std::vector<std::string> RecordingFit::whyNotJudged() const

@@ -55,6 +55,8 @@ const char* effortKeyword(EffortUnit unit);
 class RecordingFit
 {
 public:
+  static constexpr double PATIENCE = 30.0;  ///< [s]
+
   /// @param joints of the arm; the currents in the samples follow from their efforts as these are configured.
   explicit RecordingFit(const std::vector<Parameters>& joints);
 
@@ -72,6 +74,9 @@ public:
 
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
+
+  /// It has seen enough for its findings, or PATIENCE of motion without.
+  bool isSettled() const;
 
   /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
   std::vector<std::string> whyNotJudged() const;
@@ -105,5 +110,6 @@ private:
 
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
+  double moving_{};  // time in which a joint moved [s]
 };
 }  // namespace hjt

@@ -106,9 +106,10 @@ void JointTracker::push(const MotionRow& row)
   publish();
 }
 
-void JointTracker::setMisfit(const std::string& reason)
+void JointTracker::setMisfit(const std::string& reason, bool settled)
 {
   misfit_ = reason;
+  fit_settled_ = settled;
   tracker_.setFits(reason.empty());
 }
 
@@ -272,6 +273,7 @@ DiagnosticVerdict JointTracker::judgeComparison() const
       { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
         { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
+        { departs_ && !fit_settled_, { D::OK, "Not judged yet: whether angles and efforts fit is not known" } },
         { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
       { D::OK, "Within the band of a healthy joint" });
 }

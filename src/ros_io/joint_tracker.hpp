@@ -48,8 +48,8 @@ public:
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
   void push(const MotionRow& row);
 
-  /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits.
-  void setMisfit(const std::string& reason);
+  /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits, or that is not yet `settled`.
+  void setMisfit(const std::string& reason, bool settled);
 
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
@@ -98,6 +98,7 @@ private:
   const Parameters parameters_;
   const double current_per_effort_;  // [A], [A/(N.m)]
   std::string misfit_;
+  bool fit_settled_{ true };
   Tracker tracker_;
   MeasuredGearPublisher gear_;
   LifePublisher life_;

@@ -172,10 +172,11 @@ void TrackerNode::updateFit(const ArmSample& sample)
     return;
   }
   next_fit_ = time + FIT_PERIOD;
+  const bool settled = fit_->isSettled();
   const std::vector<std::string> reasons = fit_->whyNotJudged();
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joints_[i]->setMisfit(reasons[i]);
+    joints_[i]->setMisfit(reasons[i], settled);
   }
 }
 

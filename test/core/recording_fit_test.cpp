@@ -193,6 +193,7 @@ TEST(RecordingFit, ASoundRecordingFits)
   EXPECT_NEAR(fit.effort().factor.value, 1.0, 0.05);
   EXPECT_NEAR(fit.timeFit(ELBOW).lag().value, 0.0, 0.005);
   EXPECT_NEAR(fit.reach(ELBOW).most_angle, 1.3, 0.01);
+  EXPECT_TRUE(fit.isSettled());
 }
 
 TEST(RecordingFit, StampsOfAnotherPeriodAreFound)
@@ -305,6 +306,7 @@ TEST(RecordingFit, AtRestNothingIsKnown)
   EXPECT_THAT(fit.whyNotJudged()[ELBOW], "");
   EXPECT_FALSE(std::isfinite(fit.stampFactor().value));
   EXPECT_FALSE(std::isfinite(fit.effort().factor.value));
+  EXPECT_FALSE(fit.isSettled());
 }
 
 TEST(RecordingFit, UpdateAllocatesNothingAndResetForgets)

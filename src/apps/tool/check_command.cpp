@@ -426,7 +426,7 @@ std::string textOfVelocities(const Check& check)
   if (std::isfinite(check.stamps.value))
   {
     return (hasFinding(check.findings, "stamps") ? "do not fit: " : "fit: ") + std::string("the angles change ") +
-           roundedText(check.stamps.value, 3) + " times as fast by the stamps";
+           roundedText(check.stamps.value, 4) + " times as fast by the stamps";
   }
   const bool has = std::any_of(check.joints.begin(), check.joints.end(),
                                [](const CheckedJoint& joint) { return joint.has_velocity; });
