@@ -145,6 +145,9 @@ void RecordingFit::reset() noexcept
   }
   last_time_ = std::numeric_limits<double>::quiet_NaN();
   moving_ = 0.0;
+  cut_ = 0.0;
+  cuts_ = 0;
+  rows_ = 0;
 }
 
 void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
@@ -153,6 +156,12 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
   last_time_ = joints.front().time;
   bool moves = false;
   const bool follows = step > 0.0 && step <= MotionDifferentiator::MAX_GAP;
+  ++rows_;
+  if (step > MotionDifferentiator::MAX_GAP)
+  {
+    cut_ += step;
+    ++cuts_;
+  }
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
     Joint& joint = joints_[i];
@@ -272,6 +281,17 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   const auto isTooFast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
+  if (rows_ >= MIN_ROWS && 2 * cuts_ > rows_)
+  {
+    constexpr double LONG = 0.5;  // no telemetry comes so rarely [s]
+    const double period = cut_ / static_cast<double>(cuts_);
+    findings.push_back({ "period",
+                         "rows come " + rounded(period) + " s apart by their stamps, more than " +
+                             rounded(MotionDifferentiator::MAX_GAP) + " s: no speeds, no loads" +
+                             (period > LONG ? " (are they in ms? of a recording --time-scale 0.001)" : ""),
+                         true });
+    return findings;
+  }
   const FittedFactor stamps = stampFactor();
   if (std::isfinite(stamps.value) && differs(stamps, 1.0))
   {

@@ -17,7 +17,7 @@ namespace hjt
 /// Something in a recording of an arm that does not fit.
 struct RecordingFinding
 {
-  std::string kind;  ///< for documents: stamps, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
+  std::string kind;  ///< for documents: period, stamps, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
                      ///< velocity_sign, velocity_unit, velocity_scale, lag, no_velocity, at_rest
   std::string text;  ///< a clause without a full stop
   bool stops{};      ///< nothing can be judged with it
@@ -111,5 +111,8 @@ private:
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
   double moving_{};  // time in which a joint moved [s]
+  double cut_{};     // time between rows too far from each other [s]
+  std::uint64_t cuts_{};
+  std::uint64_t rows_{};
 };
 }  // namespace hjt

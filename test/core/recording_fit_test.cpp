@@ -207,6 +207,13 @@ TEST(RecordingFit, StampsOfAnotherPeriodAreFound)
   }
 }
 
+TEST(RecordingFit, RowsTooFarApartAreFound)
+{
+  const RecordingFit fit = Robot([](std::size_t, Given& given) { given.time *= 1000.0; }).fit();
+  EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("period"));
+  EXPECT_THAT(fit.whyNotJudged()[ELBOW], testing::HasSubstr("in ms"));
+}
+
 TEST(RecordingFit, LostRowsDoNotLookLikeAnotherPeriod)
 {
   int row = 0;

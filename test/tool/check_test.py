@@ -23,8 +23,8 @@ NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 GAINS = [10.7, 10.7, 10.7, 10.21, 11.9, 11.92]  # of config/arms/ur5.yaml [N.m/A]
 DRIVER_ORDER = [2, 1, 0, 3, 4, 5]
 DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
-RECORDINGS = {os.path.basename(path)[7:-4]: path for path in sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb",
-                                                                                              "*.csv")))}
+RECORDINGS = {os.path.basename(path)[7:-4]: path
+              for path in sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))}
 MAX_LINES, MAX_COLUMNS = 25, 100
 
 
