@@ -21,7 +21,7 @@ struct FittedFactor
 
 /// Do the velocities that a recording gives of a joint agree with the slopes of its angles, by their stamps?
 ///
-/// Both are averaged over pieces of 0.1 s. The factor between them is the weighted median over windows of 0.8 s in which
+/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which
 /// the joint moves, so a join or a damaged row does not count. The lag is that of least squares, to first order. Only
 /// the last MEMORY of motion counts. Fixed memory; nothing allocates.
 class TimeFit
