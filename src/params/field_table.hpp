@@ -335,6 +335,9 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("speed of the joint up to which its ripple is known; beyond, none is predicted"));
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
         ofOthers("rms difference between measured and predicted current of a healthy joint"));
+  visit("telemetry.effort", p.telemetry.effort,
+        ofOthers("effort of a measured joint: current: of the motor, in A; joint_torque: of the motor through the gear "
+                 "without its losses, in N.m; motor_torque: at the motor's shaft, in N.m"));
   visit(
       "telemetry.load", p.telemetry.load,
       ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: weight and inertia plus "

@@ -19,6 +19,7 @@
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/time.hpp"
 #include "tracking/plausible.hpp"
+#include "tracking/time_fit.hpp"
 
 namespace hjt
 {
@@ -27,48 +28,6 @@ namespace
 constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
 constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
 constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
-
-/// Holds the angles and stamps of neighbouring rows against the velocities that the recording gives beside them.
-class VelocityCheck
-{
-public:
-  /// `velocity`: recorded; NaN: none.
-  void add(double time, double position, double velocity)
-  {
-    const double step = time - time_;
-    const double mean = 0.5 * (velocity + velocity_);
-    if (step > MotionDifferentiator::MIN_STEP && step < MotionDifferentiator::MAX_GAP && std::abs(mean) > SLOWEST)
-    {
-      products_ += (position - position_) / step * mean;
-      squares_ += mean * mean;
-      ++rows_;
-    }
-    time_ = time;
-    position_ = position;
-    velocity_ = velocity;
-  }
-
-  /// Takes over what `other` has seen.
-  void include(const VelocityCheck& other)
-  {
-    products_ += other.products_;
-    squares_ += other.squares_;
-    rows_ += other.rows_;
-  }
-
-  double ratio() const { return rows_ >= MIN_ROWS ? products_ / squares_ : 0.0; }
-
-private:
-  static constexpr double SLOWEST = 0.05;  // [rad/s]
-  static constexpr int MIN_ROWS = 50;
-
-  double time_{ -HUGE_VAL };
-  double position_{};
-  double velocity_{};
-  double products_{};
-  double squares_{};
-  int rows_{};
-};
 
 /// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next
 /// one tells whether it can be true.
@@ -121,8 +80,6 @@ public:
     MotionRow row = held.row;
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
-    check_.add(row.time, row.position, row.recorded_velocity);
-    count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -131,7 +88,6 @@ public:
   }
 
   MotionCount count() const { return count_; }
-  const VelocityCheck& check() const { return check_; }
   const std::set<std::string>& others() const { return others_; }
 
 private:
@@ -160,6 +116,7 @@ private:
       others_.insert(message.name.begin(), message.name.end());
       return true;
     }
+    held.row.current *= source_.current_per_effort;
     const std::size_t motor = placeOf(message, names_.motor);
     if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())
     {
@@ -202,7 +159,6 @@ private:
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
   MotionCount count_;
-  VelocityCheck check_;
   JointNames names_;
   std::set<std::string> others_;  // joints in messages that do not name this one
   std::optional<Held> waiting_;
@@ -362,7 +318,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
 
   std::vector<std::string> missing;
   std::set<std::string> found;
-  VelocityCheck check;
   for (const Joint& joint : joints)
   {
     found.insert(joint.rows->others().begin(), joint.rows->others().end());
@@ -370,7 +325,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
     {
       missing.push_back(joint.source.joint);
     }
-    check.include(joint.rows->check());
   }
   if (!missing.empty())
   {
@@ -385,7 +339,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   count.rows = side_by_side.complete();
   count.start = *start;
   count.corrupt += side_by_side.dropped();
-  count.velocity_ratio = check.ratio();
   return count;
 }
 
@@ -426,7 +379,6 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   }
 
   MotionCount count;
-  std::array<VelocityCheck, CSV_JOINTS> checks;
   std::array<double, COLUMNS> values{};
   std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
   std::vector<MotionRow> rows(CSV_JOINTS);
@@ -443,7 +395,6 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
       rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
       rows[i].received = time;
       rows[i].recorded_velocity = values[column(3, i)];
-      checks[i].add(time, rows[i].position, rows[i].recorded_velocity);
     }
     if (!visit(rows))
     {
@@ -455,12 +406,6 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   {
     throw InputError(source.path + " has no rows");
   }
-  VelocityCheck check;
-  for (const VelocityCheck& joint : checks)
-  {
-    check.include(joint);
-  }
-  count.velocity_ratio = check.ratio();
   return count;
 }
 
@@ -479,7 +424,6 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 {
   CsvTable table = openCsv(source, 2);
   MotionCount count;
-  VelocityCheck check;
   std::array<double, 5> row{};
   row[4] = std::nan("");
   while (table.read(row))
@@ -490,21 +434,25 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     }
     const double time = row[0] - count.start;
     count.duration = std::max(count.duration, time);
-    MotionRow motion{ time, row[1], row[2], row[3] };
+    MotionRow motion{ time, row[1], source.current_per_effort * row[2], row[3] };
     motion.received = time;
-    check.add(time, row[1], row[4]);
+    motion.recorded_velocity = row[4];
     if (!visit(motion))
     {
       break;
     }
   }
   progress(1.0);
-  count.velocity_ratio = check.ratio();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");
   }
   return count;
+}
+void scaleTimes(double scale, MotionRow& row)
+{
+  row.time *= scale;
+  row.received *= scale;
 }
 }  // namespace
 
@@ -528,13 +476,37 @@ bool recordsLoad(const MotionSource& source)
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress)
 {
-  return isCsv(source) ? readCsv(source, visit, progress) : readBag(source, visit, progress);
+  TimeFit fit;
+  const auto scaled = [&](const MotionRow& read)
+  {
+    MotionRow row = read;
+    scaleTimes(source.time_scale, row);
+    fit.add(row.time, row.position, row.recorded_velocity);
+    return visit(row);
+  };
+  MotionCount count = isCsv(source) ? readCsv(source, scaled, progress) : readBag(source, scaled, progress);
+  count.duration *= source.time_scale;
+  count.velocity_ratio = fit.factor().value;
+  return count;
 }
 
 MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
                           const std::function<bool(const std::vector<MotionRow>&)>& visit,
                           const std::function<void(double)>& progress)
 {
-  return isCsv(source) ? readArmCsv(source, names, visit, progress) : readArmBag(source, names, visit, progress);
+  std::vector<MotionRow> rows;
+  const auto scaled = [&](const std::vector<MotionRow>& read)
+  {
+    rows = read;
+    for (MotionRow& row : rows)
+    {
+      scaleTimes(source.time_scale, row);
+    }
+    return visit(rows);
+  };
+  MotionCount count =
+      isCsv(source) ? readArmCsv(source, names, scaled, progress) : readArmBag(source, names, scaled, progress);
+  count.duration *= source.time_scale;
+  return count;
 }
 }  // namespace hjt

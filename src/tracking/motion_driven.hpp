@@ -6,6 +6,7 @@
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
+#include "tracking/effort.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/presliding.hpp"
@@ -51,6 +52,7 @@ public:
     , inertia_(Motor(parameters.motor).inertia() - parameters.telemetry.inertia_in_load)
     , ratio_(nominalRatio(parameters.gear))
     , temperature_(parameters.input.temperature)
+    , current_per_effort_(hjt::currentPerEffort(parameters))
   {
   }
 
@@ -77,6 +79,9 @@ public:
     return prediction;
   }
 
+  /// Of the joint's telemetry [A], [A/(N.m)].
+  double currentPerEffort() const noexcept { return current_per_effort_; }
+
   /// Torque of the configured weight and inertia, for recordings without a load [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
@@ -89,6 +94,7 @@ private:
   double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
   double temperature_;
+  double current_per_effort_;
   MotionSample last_;
   bool started_{};
 };

@@ -144,6 +144,15 @@ void Tracker::reset() noexcept
   watch_.reset();
 }
 
+void Tracker::setFits(bool fits) noexcept
+{
+  if (fits_ && !fits)
+  {
+    watch_.reset();
+  }
+  fits_ = fits;
+}
+
 void Tracker::pushLoad(double time, double torque) noexcept
 {
   if (std::isfinite(time) && std::isfinite(torque))
@@ -223,7 +232,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  if (is_known)
+  if (is_known && fits_)
   {
     watch_.update(*sample);
   }
