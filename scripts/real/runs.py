@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import time
 
 import numpy as np
 import matplotlib
@@ -18,6 +19,7 @@ class Runner:
 
     def __init__(self, tool, directory):
         self.tool, self.directory, self.commands = tool, directory, []
+        self.begin = time.monotonic()
 
     def path(self, name):
         return os.path.join(self.directory, name)
@@ -25,6 +27,7 @@ class Runner:
     def run(self, *arguments):
         done = subprocess.run([self.tool, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
                               universal_newlines=True, check=True)
+        print(f"{time.monotonic() - self.begin:5.0f} s  joint_twin {' '.join(map(str, arguments))}", flush=True)
         self.commands.append(" ".join(["joint_twin", *map(str, arguments)]))
         return json.loads(done.stdout) if "--json" in arguments else None
 

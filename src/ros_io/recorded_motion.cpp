@@ -18,6 +18,7 @@
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/time.hpp"
+#include "tracking/held_values.hpp"
 #include "tracking/plausible.hpp"
 
 namespace hjt
@@ -83,6 +84,11 @@ public:
   /// False: the visitor has had enough.
   bool read(const rosbag::MessageInstance& instance)
   {
+    if (instance.isType<sensor_msgs::Temperature>())
+    {
+      readTemperature(instance);
+      return true;
+    }
     if (!message_.read(instance))
     {
       ++count_.corrupt;
@@ -121,6 +127,7 @@ public:
     MotionRow row = held.row;
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
+    row.temperature = temperatures_.at(toSeconds(held.stamp));
     check_.add(row.time, row.position, held.velocity);
     count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
@@ -130,7 +137,12 @@ public:
     return visit_(row);
   }
 
-  MotionCount count() const { return count_; }
+  MotionCount count() const
+  {
+    MotionCount count = count_;
+    count.refused_temperatures = temperatures_.refused();
+    return count;
+  }
   const VelocityCheck& check() const { return check_; }
   const std::set<std::string>& others() const { return others_; }
 
@@ -201,6 +213,15 @@ private:
     }
   }
 
+  void readTemperature(const rosbag::MessageInstance& instance)
+  {
+    if (message_.readTemperature(instance) && message_.temperature().header.frame_id == names_.joint)
+    {
+      const Stamp stamp = stampOr(message_.temperature().header.stamp, instance.getTime());
+      temperatures_.push(toSeconds(stamp), message_.temperature().temperature);
+    }
+  }
+
   const MotionSource& source_;
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
@@ -213,6 +234,18 @@ private:
   std::uint64_t seen_{};      // the only row has no neighbour to disagree with
   std::optional<Stamp> start_;
   double load_{};
+  TemperatureRecord temperatures_;
+};
+
+/// The messages that rows are made of.
+class MotionView : public rosbag::View
+{
+public:
+  MotionView(const rosbag::Bag& bag, const MotionSource& source)
+  {
+    addQuery(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+    addQuery(bag, rosbag::TypeQuery(ros::message_traits::datatype<sensor_msgs::Temperature>()));
+  }
 };
 
 MotionCount readBag(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
@@ -225,7 +258,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   {
     throw InputError(source.path + " has no messages on " + source.topic + "; it holds:" + listTopics(bag));
   }
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+  MotionView view(bag, source);
   BagRows rows(source, visit);
   const double total = view.size();
   double done = 0.0;
@@ -321,7 +354,7 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   {
     throw InputError(source.path + " has no messages on " + source.topic + "; it holds:" + listTopics(bag));
   }
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+  MotionView view(bag, source);
 
   struct Joint
   {
@@ -389,6 +422,11 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   count.start = *start;
   count.corrupt += side_by_side.dropped();
   count.velocity_ratio = check.ratio();
+  count.refused_temperatures = 0;
+  for (const Joint& joint : joints)
+  {
+    count.refused_temperatures += joint.rows->count().refused_temperatures;
+  }
   return count;
 }
 
@@ -403,7 +441,8 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(CSV_JOINTS) +
                      " joints, the arm has " + std::to_string(names.size()));
   }
-  constexpr std::array<const char*, 4> QUANTITIES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_" };
+  constexpr std::array<const char*, 5> QUANTITIES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_",
+                                                   "joint_temperatures_" };
   constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * CSV_JOINTS;
   const auto column = [](std::size_t quantity, std::size_t joint) { return 1 + quantity * CSV_JOINTS + joint; };
   NumberTable<COLUMNS>::Names columns{ "timestamp" };
@@ -414,7 +453,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
       columns[column(quantity, i)] = QUANTITIES[quantity] + std::to_string(i);
     }
   }
-  NumberTable<COLUMNS> table(source.path, columns, COLUMNS - 1);
+  NumberTable<COLUMNS> table(source.path, columns, COLUMNS - 1, CSV_JOINTS);
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < CSV_JOINTS; ++i)
   {
@@ -430,6 +469,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
 
   MotionCount count;
   std::array<VelocityCheck, CSV_JOINTS> checks;
+  std::array<TemperatureRecord, CSV_JOINTS> temperatures;
   std::array<double, COLUMNS> values{};
   std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
   std::vector<MotionRow> rows(CSV_JOINTS);
@@ -445,6 +485,11 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     {
       rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
       rows[i].received = time;
+      if (table.hasColumn(column(4, i)))
+      {
+        temperatures[i].push(time, values[column(4, i)]);
+        rows[i].temperature = temperatures[i].at(time);
+      }
       checks[i].add(time, rows[i].position, values[column(3, i)]);
     }
     if (!visit(rows))
@@ -458,31 +503,34 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     throw InputError(source.path + " has no rows");
   }
   VelocityCheck check;
-  for (const VelocityCheck& joint : checks)
+  for (std::size_t i = 0; i < CSV_JOINTS; ++i)
   {
-    check.include(joint);
+    check.include(checks[i]);
+    count.refused_temperatures += temperatures[i].refused();
   }
   count.velocity_ratio = check.ratio();
   return count;
 }
 
-using CsvTable = NumberTable<5>;
+using CsvTable = NumberTable<6>;
 
 CsvTable openCsv(const MotionSource& source, std::size_t optional)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
   return CsvTable(source.path,
-                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n },
-                  optional);
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n,
+                    "joint_temperatures" + n },
+                  optional, 1);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                     const std::function<void(double)>& progress)
 {
-  CsvTable table = openCsv(source, 2);
+  CsvTable table = openCsv(source, 3);
   MotionCount count;
   VelocityCheck check;
-  std::array<double, 5> row{};
+  TemperatureRecord temperatures;
+  std::array<double, 6> row{};
   row[4] = std::nan("");
   while (table.read(row))
   {
@@ -494,6 +542,11 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     count.duration = std::max(count.duration, time);
     MotionRow motion{ time, row[1], row[2], row[3] };
     motion.received = time;
+    if (table.hasColumn(5))
+    {
+      temperatures.push(time, row[5]);
+      motion.temperature = temperatures.at(time);
+    }
     check.add(time, row[1], row[4]);
     if (!visit(motion))
     {
@@ -502,6 +555,7 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
   }
   progress(1.0);
   count.velocity_ratio = check.ratio();
+  count.refused_temperatures = temperatures.refused();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");
@@ -520,7 +574,7 @@ bool recordsLoad(const MotionSource& source)
 {
   if (isCsv(source))
   {
-    return openCsv(source, 4).hasColumn(3);  // what else is missing is for the reader to say
+    return openCsv(source, 5).hasColumn(3);  // what else is missing is for the reader to say
   }
   rosbag::Bag bag;
   openForReading(bag, source.path);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,6 +19,12 @@ struct MotionRow
   double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
   double received{};                                               ///< when it arrived, from the same zero [s]
+  double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
+
+  double temperatureOr(double configured) const noexcept
+  {
+    return std::isfinite(temperature) ? temperature : configured;
+  }
 };
 
 /// The same with its rates.

@@ -66,7 +66,8 @@ public:
     const double share = presliding_.share();
     last_ = sample;
 
-    const double friction = friction_.at(ratio_ * sample.velocity, sample.load, temperature_).sum();
+    const double friction =
+        friction_.at(ratio_ * sample.velocity, sample.load, sample.temperatureOr(temperature_)).sum();
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
@@ -75,6 +76,12 @@ public:
     prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
     prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
     return prediction;
+  }
+
+  /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
+  double frictionAt(double velocity, double load, double temperature) const noexcept
+  {
+    return ratio_ * friction_.at(ratio_ * velocity, load, temperature).sum();
   }
 
   /// Torque of the configured weight and inertia, for recordings without a load [N.m].
@@ -88,7 +95,7 @@ private:
   TelemetryParameters telemetry_;
   double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
-  double temperature_;
+  double temperature_;  // of samples without one [degC]
   MotionSample last_;
   bool started_{};
 };

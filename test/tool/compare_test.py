@@ -54,7 +54,8 @@ class Compare(tool.ToolTest):
             self.assertEqual(json.load(file), report)
         found = {line["name"]: line["found"] for line in report["contents"]["topics"]}
         self.assertEqual(found, {"/joint_states": True, "/joint_states: elbow_joint_motor": False,
-                                 "/joint_twin/load": True, "/joint_twin/joint_states": False})
+                                 "/joint_twin/load": True, "sensor_msgs/Temperature of elbow_joint": False,
+                                 "/joint_twin/joint_states": False})
         self.assertEqual(report["contents"]["joints"], ["wrist_1_joint", "elbow_joint"])
         self.assertIn("motor's is needed", " ".join(report["verdict"]["cannot_show"]))
 
