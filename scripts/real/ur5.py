@@ -10,7 +10,7 @@ from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table
 
 FOLDER, PREFIX = "ur5_cb", "ur5_cb_"
 TRAIN = "no6"          # the only recording that is identified on
-RAISED_IN = ["no2", "no5", "no7"]
+RAISED_IN = ["no2", "no5"]
 SHOWN = "no2"          # in the figure of the currents
 RAISED = 0.3           # share of a joint's friction
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
@@ -128,9 +128,11 @@ def load_table(recordings):
 
 
 def error_table(errors):
-    head = ["joint"] + [f"{kind}: {name}" for kind in KINDS.values() for name in ("arm", "moment", "fit")]
-    return table(head, [[joint] + [number(getattr(errors[joint][name], kind)) for kind in KINDS
-                                   for name in (*LOADS, "fit")] for joint in JOINTS])
+    def cell(joint, kind):
+        return " / ".join(number(getattr(errors[joint][name], kind)) for name in (*LOADS, "fit"))
+
+    return table(["arm / moment / fit", *KINDS.values()], [[joint] + [cell(joint, kind) for kind in KINDS]
+                                                           for joint in JOINTS])
 
 
 def share(errors, joint, kind, load="arm"):
@@ -171,9 +173,9 @@ class Verdicts:
     def __init__(self, runner):
         self.runner, self.runs = runner, concurrent.futures.ThreadPoolExecutor(JOBS)
 
-    def start(self, name, report, *more):
+    def start(self, name, report, *more, listed=True):
         return self.runs.submit(self.runner.run, "compare", f"{name}.csv", "--arm", "ur5", "--report", report, "--json",
-                                *more)
+                                *more, listed=listed)
 
 
 def verdict_cell(arm):
@@ -286,7 +288,7 @@ def section(runner, telemetry, images):
             if name in by_name:
                 write_raised(runner, by_name[name], joints, f"{name}_{what}.csv")
                 started[name, what] = (verdicts.start(f"{name}_{what}", f"raised_{name}_{what}", "--reference",
-                                                      f"report_{TRAIN}"), joints)
+                                                      f"report_{TRAIN}", listed=False), joints)
     sound = [[name, verdict_cell(alone[name].result()), *ratio_cells(beside[name].result()),
               verdict_cell(beside[name].result())] for name in alone]
     raised = {key: (run.result(), joints) for key, (run, joints) in started.items()}
@@ -314,9 +316,9 @@ joint follows from the angles of all ([arm.md](arm.md)). All six are identified 
 {summary[0]}
 {summary[1]}
 
-Rows: {rows_of(recordings)}. no2 was logged at 62.5 Hz; its rows are taken as they are, a mean over {MEAN:g} s has half
-as many. In no5_pushed a person pushes the arm: contact is no fault, but no twin predicts it. no7 is the motion of no6 on
-another day.
+Rows: {rows_of(recordings)}.
+no2 was logged at 62.5 Hz; its rows are taken as they are, and a mean over {MEAN:g} s has half as many. In no5_pushed a
+person pushes the arm: contact is no fault, but no twin predicts it. no7 is the motion of no6 on another day.
 
 ### Load
 

@@ -165,7 +165,11 @@ void JointTracker::receiveTemperature(const sensor_msgs::Temperature& message, S
   const ros::Time& stamp = message.header.stamp;
   const TemperatureAt temperature{ stamp.isZero() ? std::nullopt : std::make_optional(fromRosTime(stamp)), received,
                                    message.temperature };
-  if (stream_.clock.hasStarted())
+  if (!TemperatureRecord::isPossible(message.temperature))
+  {
+    ++refusals_.temperature;
+  }
+  else if (stream_.clock.hasStarted())
   {
     passTemperature(temperature);
   }
@@ -223,7 +227,7 @@ void JointTracker::look(const ros::WallTime& now)
   const StreamTimingReport timing = stream_.timing.report();
   const TrackerCounters counters = tracker_.counters();
   recent_refusals_.update(refusals_.incomplete + refusals_.not_finite + refusals_.load + refusals_.temperature +
-                              counters.refused_temperatures + stream_.far_stamps + stream_.too_large,
+                              stream_.far_stamps + stream_.too_large,
                           now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);
@@ -334,7 +338,7 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Stamp far from the clock, refused", stream_.far_stamps);
   status.add("Loads refused", refusals_.load);
   status.add("Rows without a load", counters.without_load);
-  status.add("Temperatures refused", refusals_.temperature + counters.refused_temperatures);
+  status.add("Temperatures refused", refusals_.temperature);
   status.add("Temperatures of other frames", stream_.other_temperatures);
   if (last_load_stamp_)
   {

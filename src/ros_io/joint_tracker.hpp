@@ -66,7 +66,7 @@ private:
     std::uint64_t incomplete{};
     std::uint64_t not_finite{};
     std::uint64_t load{};
-    std::uint64_t temperature{};  // for its stamp
+    std::uint64_t temperature{};
   };
 
   struct TemperatureAt

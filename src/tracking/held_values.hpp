@@ -59,10 +59,12 @@ public:
   static constexpr double LOWEST = -20.0;  ///< [degC]
   static constexpr double HIGHEST = 120.0;
 
+  static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
+
   /// At a time [s] from any zero; outside LOWEST ... HIGHEST [degC] or not finite: refused.
   void push(double time, double temperature) noexcept
   {
-    if (std::isfinite(time) && temperature >= LOWEST && temperature <= HIGHEST)
+    if (std::isfinite(time) && isPossible(temperature))
     {
       values_.push(time, temperature);
     }

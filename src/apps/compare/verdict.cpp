@@ -448,6 +448,8 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
   constexpr double COLDEST = 0.0;  // [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
+  constexpr double TINY = 1e-3;        // of a ratio, which may be zero
+  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
   ArmFriction arm{ std::vector<double>(ratios.size(), 1.0), 1.0, std::nullopt };
   std::vector<std::size_t> known;
   bool is_received = false;
@@ -478,6 +480,15 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
     return static_cast<std::size_t>(
         std::count_if(left.begin(), left.end(), [&](double ratio) { return std::abs(ratio - 1.0) <= tolerance; }));
   };
+  const auto misfit = [&](const std::vector<double>& factors)
+  {
+    double sum = 0.0;
+    for (const double ratio : leftOver(factors))
+    {
+      sum += std::abs(std::log(std::max(ratio, TINY)));
+    }
+    return sum;
+  };
   const auto factorsAt = [&](double temperature)
   {
     std::vector<double> factors;
@@ -503,8 +514,9 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
 
   const std::size_t most = known.size() / 2 + 1;
   const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
-  const std::size_t otherwise = agreeing(is_factor ? alike : arm.factors);
-  if (has_temperature && agreeing(at_temperature) >= std::max(most, otherwise + 1))
+  const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
+  if (has_temperature && agreeing(at_temperature) >= std::max(most, agreeing(otherwise) + 1) &&
+      misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
   {
     arm = { at_temperature, median, low };
   }

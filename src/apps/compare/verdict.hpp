@@ -88,7 +88,7 @@ struct ArmFriction
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that differs
 /// from 1 by more than that; or, where no temperature was received, one temperature. What more of them agree on
-/// counts, the first of these if they are as many. Factor and temperature are the median joint's, so that one faulty
+/// counts, the first of these if they are as many; a temperature must also leave clearly less unexplained. Factor and temperature are the median joint's, so that one faulty
 /// joint changes neither.
 ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
                            const std::vector<std::optional<double>>& ratios, double tolerance);
