@@ -204,8 +204,9 @@ def is_right(arm, raised):
 def raised_table(verdicts):
     rows, right = [], 0
     for (name, what), (arm, raised) in verdicts.items():
-        right += is_right(arm, raised)
-        rows.append([name, what, *ratio_cells(arm, raised), verdict_cell(arm), "yes" if is_right(arm, raised) else "no"])
+        answer = "yes" if is_right(arm, raised) else "no"
+        right += answer == "yes"
+        rows.append([name, what, *ratio_cells(arm, raised), verdict_cell(arm), answer])
     return table(["recording", "raised", *JOINTS, "verdict", "right"], rows), right
 
 
@@ -301,16 +302,16 @@ def section(runner, telemetry, images):
     means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
     summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
-               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have moving "
-               f"rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).",
+               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
+               f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).",
                f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
                f"judged right: {right} of {len(raised)}."]
     print("\n".join([*share_table(all_errors), *raised_lines, *summary]))
 
     lines = heading + [f"""
-CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The recordings are not part of
-this project. The twins get what a driver's `/joint_states` has: angles and currents of the six joints. The load of each
-joint follows from the angles of all ([arm.md](arm.md)). All six are identified on {TRAIN} alone
+CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The recordings are not part
+of this project. The twins get what a driver's `/joint_states` has: angles and currents of the six joints. The load of
+each joint follows from the angles of all ([arm.md](arm.md)). All six are identified on {TRAIN} alone
 (`joint_twin identify --arm`) and judged on the others, which were not used for it.
 
 {summary[0]}
@@ -338,8 +339,8 @@ The twin's error over the fit's: of the means, and of all moving rows. Wanted: 0
 """, *share_table(all_errors), """
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
-What is left in moving rows beyond the means is ripple at the lines of the teeth, 200 a turn of each joint, which the arm
-answers in every joint's current.
+What is left in moving rows beyond the means is ripple at the lines of the teeth, 200 a turn of each joint, which the
+arm answers in every joint's current.
 
 *Resting*, stiction holds the joint and the current is the controller's choice within a band: an encoder count of 9.4
 µrad is a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
@@ -348,16 +349,17 @@ answers in every joint's current.
 
 ### Verdicts
 
-""" + f"`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of {other}). "
-              + """The arm is
-sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –: not shown.
+""" + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
+{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –:
+not shown.
 """, *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), f"""
-{100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the raised
-joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be named.
+{100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
+raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
+named.
 """, *raised_lines, """
 ### Limits of these recordings
 
-One arm, sound. No encoder on the other side of the gear, so no torsion; no temperature; no payload. Some rows of no5 and
-no7 are missing, up to 0.4 s.
+One arm, sound. No encoder on the other side of the gear, so no torsion; no temperature; no payload. Some rows of no5
+and no7 are missing, up to 0.4 s.
 """]
     return lines

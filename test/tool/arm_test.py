@@ -123,7 +123,7 @@ class Arm(tool.ToolTest):
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
 
     def robot_with_friction(self, raised, share=0.3, path="robot.csv", degrees=25.0, is_recorded=False):
-        """A robot that is the twin at a temperature, the friction of these joints raised by a share, with some noise."""
+        """A robot that is the twin at a temperature, friction of these joints raised by a share, with some noise."""
         self.write("still.csv", arm_csv())
         self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force", "--set",
                      f"input.temperature={degrees}")

@@ -37,7 +37,8 @@ struct TwinState
   double motor_current{};  ///< [A]
 };
 
-/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading; `temperature_rows`: those with a received temperature.
+/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading;
+/// `temperature_rows`: those with a received temperature.
 /// @throws InputError if the file cannot be read.
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
                                std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load);

@@ -86,10 +86,10 @@ struct ArmFriction
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
 };
 
-/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that differs
-/// from 1 by more than that; or, where no temperature was received, one temperature. What more of them agree on
-/// counts, the first of these if they are as many; a temperature must also leave clearly less unexplained. Factor and temperature are the median joint's, so that one faulty
-/// joint changes neither.
+/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
+/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if more of them
+/// agree on it than on the others, and if it leaves clearly less unexplained. Factor and temperature are the median
+/// joint's, so that one faulty joint changes neither.
 ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
                            const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt
