@@ -242,7 +242,7 @@ def draw_means(path, all_errors):
         axes.set_xticklabels(all_errors, fontsize=8, rotation=30)
         axes.set_title(joint)
     all_axes[0].set_ylabel("error of means over 0.1 s, moving [A]")
-    all_axes[0].legend(fontsize=7)
+    all_axes[-1].legend(fontsize=7)
     save(drawing, path)
 
 
