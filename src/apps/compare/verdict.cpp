@@ -515,7 +515,8 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
   const std::size_t most = known.size() / 2 + 1;
   const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
   const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
-  if (has_temperature && agreeing(at_temperature) >= std::max(most, agreeing(otherwise) + 1) &&
+  const std::size_t agree = agreeing(otherwise);
+  if (has_temperature && agree < known.size() && agreeing(at_temperature) >= std::max(most, agree) &&
       misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
   {
     arm = { at_temperature, median, low };

@@ -87,9 +87,9 @@ struct ArmFriction
 };
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
-/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if more
-/// of them agree on it than on the others, and if it leaves clearly less unexplained. Factor and temperature are the
-/// median joint's, so that one faulty joint changes neither.
+/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
+/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
+/// are the median joint's, so that one faulty joint changes neither.
 ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
                            const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt
