@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,6 +23,12 @@ struct MotionRow
   double stamp_error{};                                                  ///< what `time` is later than the motion [s]
   /// At the output, of the links' vibration, which the load leaves out [N.m].
   double vibration{};
+  double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
+
+  double temperatureOr(double configured) const noexcept
+  {
+    return std::isfinite(temperature) ? temperature : configured;
+  }
 };
 
 /// The same with its rates.

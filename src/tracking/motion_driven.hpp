@@ -68,7 +68,8 @@ public:
     const double share = presliding_.share();
     last_ = sample;
 
-    const double friction = friction_.at(ratio_ * sample.velocity, sample.load, temperature_).sum();
+    const double friction =
+        friction_.at(ratio_ * sample.velocity, sample.load, sample.temperatureOr(temperature_)).sum();
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
@@ -82,6 +83,12 @@ public:
   /// Of the joint's telemetry [A], [A/(N.m)].
   double currentPerEffort() const noexcept { return current_per_effort_; }
 
+  /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
+  double frictionAt(double velocity, double load, double temperature) const noexcept
+  {
+    return ratio_ * friction_.at(ratio_ * velocity, load, temperature).sum();
+  }
+
   /// Torque of the configured weight and inertia, for recordings without a load [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
@@ -93,7 +100,7 @@ private:
   TelemetryParameters telemetry_;
   double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
-  double temperature_;
+  double temperature_;  // of samples without one [degC]
   double current_per_effort_;
   MotionSample last_;
   bool started_{};
