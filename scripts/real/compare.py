@@ -17,7 +17,7 @@ def main():
     parser.add_argument("--docs", required=True)
     parser.add_argument("--telemetry", required=True)
     settings = parser.parse_args()
-    recordings = [ur5.RECORDING, two_encoders.LOADED]
+    recordings = [os.path.join(ur5.FOLDER, f"{ur5.PREFIX}{ur5.TRAIN}.csv"), two_encoders.LOADED]
     if not any(os.path.isfile(os.path.join(settings.telemetry, name)) for name in recordings):
         print(f"skipped: neither {' nor '.join(recordings)} in {settings.telemetry}; name their folder as argument or "
               f"in "

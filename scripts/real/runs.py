@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the sections of docs/real_robot.md share: runs of the tool, tables, figures, spectra."""
+"""What the sections of docs/real_robot.md share: runs of the tool, tables, figures."""
 import json
 import os
 import subprocess
+import time
 
 import numpy as np
 import matplotlib
@@ -18,14 +19,18 @@ class Runner:
 
     def __init__(self, tool, directory):
         self.tool, self.directory, self.commands = tool, directory, []
+        self.begin = time.monotonic()
 
     def path(self, name):
         return os.path.join(self.directory, name)
 
-    def run(self, *arguments):
+    def run(self, *arguments, listed=True):
+        """Not `listed`: of files that are made here, so the page leaves it out."""
+        command = " ".join(["joint_twin", *map(str, arguments)])
+        print(f"{time.monotonic() - self.begin:5.0f} s  {command}", flush=True)
+        self.commands += [command] if listed else []
         done = subprocess.run([self.tool, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
                               universal_newlines=True, check=True)
-        self.commands.append(" ".join(["joint_twin", *map(str, arguments)]))
         return json.loads(done.stdout) if "--json" in arguments else None
 
 
@@ -40,14 +45,6 @@ def rms(values):
 def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return lines + ["| " + " | ".join(row) + " |" for row in rows] + [""]
-
-
-def spectrum(angle, values, orders):
-    """Amplitude of each order of an angle in values that follow each other."""
-    weight = np.hanning(len(values))
-    weight /= weight.sum()
-    values = values - np.sum(weight * values)
-    return np.array([2.0 * abs(np.sum(weight * values * np.exp(-1j * order * angle))) for order in orders])
 
 
 def regress(columns, values):

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,8 @@
 
 namespace hjt
 {
-/// N named columns of finite numbers in a CSV file with a header; other columns are skipped.
+/// N named columns of finite numbers in a CSV file with a header; other columns are skipped. Of the last `lenient`
+/// columns texts that are no finite number are NaN.
 template <std::size_t N>
 class NumberTable
 {
@@ -25,8 +27,8 @@ public:
   using Names = std::array<std::string, N>;
 
   /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header.
-  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0)
-  try : path_(path), names_(names), reader_(path)
+  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0)
+  try : path_(path), names_(names), strict_(N - lenient), reader_(path)
   {
     readHeader(std::make_index_sequence<N>{});
     for (std::size_t i = 0; i + optional < N; ++i)
@@ -112,19 +114,21 @@ private:
   {
     char* end = nullptr;
     const double value = std::strtod(text, &end);
+    const bool is_number = *text != '\0' && *end == '\0' && std::isfinite(value);
+    if (is_number || column >= strict_)
+    {
+      return is_number ? value : std::numeric_limits<double>::quiet_NaN();
+    }
     if (*text == '\0')
     {
       throw InputError(place() + ": column '" + names_[column] + "' is empty");
     }
-    if (*end != '\0' || !std::isfinite(value))
-    {
-      throw InputError(place() + ": column '" + names_[column] + "': '" + text + "' is not a finite number");
-    }
-    return value;
+    throw InputError(place() + ": column '" + names_[column] + "': '" + text + "' is not a finite number");
   }
 
   std::string path_;
   Names names_;
+  std::size_t strict_;  // columns
   io::CSVReader<N> reader_;
   std::array<bool, N> present_{};
 };

@@ -60,7 +60,39 @@ bool isJointState(const std::vector<std::uint8_t>& bytes)
   }
   return walk.done();
 }
+
+/// Header, temperature and variance, to the last byte.
+bool isTemperature(const std::vector<std::uint8_t>& bytes)
+{
+  Walk walk(bytes);
+  walk.skip(3 * sizeof(std::uint32_t));
+  walk.skip(walk.length());
+  walk.skip(2 * sizeof(double));
+  return walk.done();
+}
 }  // namespace
+
+template <class Message>
+bool CheckedMessage::take(const rosbag::MessageInstance& instance, Check is_whole, Message& message)
+{
+  try
+  {
+    bytes_.resize(instance.size());
+    ros::serialization::OStream out(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
+    instance.write(out);
+    if (!is_whole(bytes_))
+    {
+      return false;
+    }
+    ros::serialization::IStream in(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
+    ros::serialization::deserialize(in, message);
+    return true;
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+}
 
 bool CheckedMessage::read(const rosbag::MessageInstance& instance)
 {
@@ -68,22 +100,11 @@ bool CheckedMessage::read(const rosbag::MessageInstance& instance)
   {
     throw InputError(instance.getTopic() + " has type " + instance.getDataType() + ", expected sensor_msgs/JointState");
   }
-  try
-  {
-    bytes_.resize(instance.size());
-    ros::serialization::OStream out(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
-    instance.write(out);
-    if (!isJointState(bytes_))
-    {
-      return false;
-    }
-    ros::serialization::IStream in(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
-    ros::serialization::deserialize(in, state_);
-    return true;
-  }
-  catch (const std::exception&)
-  {
-    return false;
-  }
+  return take(instance, isJointState, state_);
+}
+
+bool CheckedMessage::readTemperature(const rosbag::MessageInstance& instance)
+{
+  return take(instance, isTemperature, temperature_);
 }
 }  // namespace hjt

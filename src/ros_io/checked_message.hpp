@@ -6,10 +6,11 @@
 
 #include <rosbag/message_instance.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Temperature.h>
 
 namespace hjt
 {
-/// Reads JointState messages out of bags whose bytes may be damaged.
+/// Reads JointState and Temperature messages out of bags whose bytes may be damaged.
 ///
 /// A length that damage has made huge would let the message's own reading ask for as much memory, so the lengths are
 /// held against the bytes that are there before.
@@ -19,10 +20,19 @@ public:
   /// False: the bytes are no JointState, or cannot be read. @throws InputError if the topic has another type.
   bool read(const rosbag::MessageInstance& instance);
 
+  /// The same of a Temperature, whose type is known.
+  bool readTemperature(const rosbag::MessageInstance& instance);
+
   const sensor_msgs::JointState& state() const noexcept { return state_; }
+  const sensor_msgs::Temperature& temperature() const noexcept { return temperature_; }
 
 private:
+  using Check = bool (*)(const std::vector<std::uint8_t>& bytes);
+  template <class Message>
+  bool take(const rosbag::MessageInstance& instance, Check is_whole, Message& message);
+
   std::vector<std::uint8_t> bytes_;
   sensor_msgs::JointState state_;
+  sensor_msgs::Temperature temperature_;
 };
 }  // namespace hjt

@@ -98,6 +98,11 @@ void JointTracker::start(bool reset)
     passLoad(load);
   }
   early_loads_.clear();
+  if (early_temperature_)
+  {
+    passTemperature(*early_temperature_);
+    early_temperature_.reset();
+  }
 }
 
 void JointTracker::push(const MotionRow& row)
@@ -165,6 +170,39 @@ void JointTracker::passLoad(const LoadAt& load)
   tracker_.pushLoad(stream_.clock.seconds(stamp), load.torque);
 }
 
+void JointTracker::receiveTemperature(const sensor_msgs::Temperature& message, Stamp received)
+{
+  const ros::Time& stamp = message.header.stamp;
+  const TemperatureAt temperature{ stamp.isZero() ? std::nullopt : std::make_optional(fromRosTime(stamp)), received,
+                                   message.temperature };
+  if (!TemperatureRecord::isPossible(message.temperature))
+  {
+    ++refusals_.temperature;
+  }
+  else if (stream_.clock.hasStarted())
+  {
+    passTemperature(temperature);
+  }
+  else
+  {
+    early_temperature_ = temperature;
+  }
+}
+
+/// As a load.
+void JointTracker::passTemperature(const TemperatureAt& temperature)
+{
+  const Stamp stamp = temperature.stamp.value_or(stream_.clock.at(temperature.received));
+  if (stream_.clock.isOf(stamp, temperature.received))
+  {
+    tracker_.pushTemperature(stream_.clock.seconds(stamp), temperature.temperature);
+  }
+  else
+  {
+    ++refusals_.temperature;
+  }
+}
+
 void JointTracker::publish()
 {
   while (const std::optional<Comparison> comparison = tracker_.pop())
@@ -174,7 +212,7 @@ void JointTracker::publish()
     comparison_publisher_.publish(comparison_);
     gear_.offer(stamp, *comparison);
     life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
-                parameters_.input.temperature);
+                comparison->temperature);
     if (indicators_periods_.begins(stamp))
     {
       fillIndicators(stamp, tracker_.signalIndicators(), indicators_);
@@ -198,8 +236,9 @@ void JointTracker::look(const ros::WallTime& now)
 {
   const StreamTimingReport timing = stream_.timing.report();
   const TrackerCounters counters = tracker_.counters();
-  recent_refusals_.update(
-      refusals_.incomplete + refusals_.not_finite + refusals_.load + stream_.far_stamps + stream_.too_large, now);
+  recent_refusals_.update(refusals_.incomplete + refusals_.not_finite + refusals_.load + refusals_.temperature +
+                              stream_.far_stamps + stream_.too_large,
+                          now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
@@ -257,7 +296,8 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
         { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
         { refused,
           { D::WARN,
-            "Messages refused: incomplete, not finite, too large, stamped far off, or a load beside the arm's" } },
+            "Messages refused: incomplete, not finite, too large, stamped far off, a temperature that no drive has, or "
+            "a load beside the arm's" } },
         { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
         { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
@@ -316,6 +356,8 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Stamp far from the clock, refused", stream_.far_stamps);
   status.add("Loads refused", refusals_.load);
   status.add("Rows without a load", counters.without_load);
+  status.add("Temperatures refused", refusals_.temperature);
+  status.add("Temperatures of other frames", stream_.other_temperatures);
   if (last_load_stamp_)
   {
     status.add("Load's stamp before the newest row's reception [s]",
@@ -333,7 +375,9 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Residual of the velocity [rad/s]", comparison_.velocity_residual);
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
-  status.add("Temperature, as configured [degC]", parameters_.input.temperature);
+  const bool is_received = comparison_.temperature_received != 0;
+  status.add("Temperature [degC]", is_received ? comparison_.temperature : parameters_.input.temperature);
+  status.add("Temperature is", is_received ? "received" : "configured");
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
   status.add("Share of the last ones outside [-]", tracker_.outsideShare());

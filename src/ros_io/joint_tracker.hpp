@@ -13,6 +13,7 @@
 #include <ros/service_server.h>
 #include <ros/subscriber.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Temperature.h>
 #include <std_msgs/Float64.h>
 #include <std_srvs/Trigger.h>
 
@@ -54,6 +55,9 @@ public:
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 
+  /// A message of this joint on the temperatures' topic.
+  void receiveTemperature(const sensor_msgs::Temperature& message, Stamp received);
+
   /// Judges, reports and logs changes of the state.
   void look(const ros::WallTime& now);
 
@@ -65,6 +69,14 @@ private:
     std::uint64_t incomplete{};
     std::uint64_t not_finite{};
     std::uint64_t load{};
+    std::uint64_t temperature{};
+  };
+
+  struct TemperatureAt
+  {
+    std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
+    Stamp received;              // [ns]
+    double temperature;          // [degC]
   };
 
   struct LoadAt
@@ -77,6 +89,7 @@ private:
   void receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event);
   void takeLoad(const LoadAt& load);
   void passLoad(const LoadAt& load);
+  void passTemperature(const TemperatureAt& temperature);
   void publish();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
@@ -102,8 +115,9 @@ private:
   Tracker tracker_;
   MeasuredGearPublisher gear_;
   LifePublisher life_;
-  std::optional<Stamp> last_load_stamp_;  // [ns]
-  std::deque<LoadAt> early_loads_;        // received before the start
+  std::optional<Stamp> last_load_stamp_;            // [ns]
+  std::deque<LoadAt> early_loads_;                  // received before the start
+  std::optional<TemperatureAt> early_temperature_;  // the last received before the start
   Refusals refusals_;
   harmonic_joint_twin::Comparison comparison_;
   harmonic_joint_twin::Indicators indicators_;

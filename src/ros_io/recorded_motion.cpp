@@ -18,6 +18,7 @@
 #include "ros_io/checked_message.hpp"
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/time.hpp"
+#include "tracking/held_values.hpp"
 #include "tracking/plausible.hpp"
 #include "tracking/time_fit.hpp"
 
@@ -42,6 +43,11 @@ public:
   /// False: the visitor has had enough.
   bool read(const rosbag::MessageInstance& instance)
   {
+    if (instance.isType<sensor_msgs::Temperature>())
+    {
+      readTemperature(instance);
+      return true;
+    }
     if (!message_.read(instance))
     {
       ++count_.corrupt;
@@ -80,6 +86,7 @@ public:
     MotionRow row = held.row;
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
+    row.temperature = temperatures_.at(toSeconds(held.stamp));
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -87,7 +94,12 @@ public:
     return visit_(row);
   }
 
-  MotionCount count() const { return count_; }
+  MotionCount count() const
+  {
+    MotionCount count = count_;
+    count.refused_temperatures = temperatures_.refused();
+    return count;
+  }
   const std::set<std::string>& others() const { return others_; }
 
 private:
@@ -155,6 +167,15 @@ private:
     }
   }
 
+  void readTemperature(const rosbag::MessageInstance& instance)
+  {
+    if (message_.readTemperature(instance) && message_.temperature().header.frame_id == names_.joint)
+    {
+      const Stamp stamp = stampOr(message_.temperature().header.stamp, instance.getTime());
+      temperatures_.push(toSeconds(stamp), message_.temperature().temperature);
+    }
+  }
+
   const MotionSource& source_;
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
@@ -166,6 +187,18 @@ private:
   std::uint64_t seen_{};      // the only row has no neighbour to disagree with
   std::optional<Stamp> start_;
   double load_{};
+  TemperatureRecord temperatures_;
+};
+
+/// The messages that rows are made of.
+class MotionView : public rosbag::View
+{
+public:
+  MotionView(const rosbag::Bag& bag, const MotionSource& source)
+  {
+    addQuery(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+    addQuery(bag, rosbag::TypeQuery(ros::message_traits::datatype<sensor_msgs::Temperature>()));
+  }
 };
 
 MotionCount readBag(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
@@ -178,7 +211,7 @@ MotionCount readBag(const MotionSource& source, const std::function<bool(const M
   {
     throw InputError(source.path + " has no messages on " + source.topic + "; it holds:" + listTopics(bag));
   }
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+  MotionView view(bag, source);
   BagRows rows(source, visit);
   const double total = view.size();
   double done = 0.0;
@@ -274,7 +307,7 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   {
     throw InputError(source.path + " has no messages on " + source.topic + "; it holds:" + listTopics(bag));
   }
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.topic, source.load_topic }));
+  MotionView view(bag, source);
 
   struct Joint
   {
@@ -339,6 +372,11 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   count.rows = side_by_side.complete();
   count.start = *start;
   count.corrupt += side_by_side.dropped();
+  count.refused_temperatures = 0;
+  for (const Joint& joint : joints)
+  {
+    count.refused_temperatures += joint.rows->count().refused_temperatures;
+  }
   return count;
 }
 
@@ -353,7 +391,8 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(CSV_JOINTS) +
                      " joints, the arm has " + std::to_string(names.size()));
   }
-  constexpr std::array<const char*, 4> QUANTITIES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_" };
+  constexpr std::array<const char*, 5> QUANTITIES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_",
+                                                   "joint_temperatures_" };
   constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * CSV_JOINTS;
   const auto column = [](std::size_t quantity, std::size_t joint) { return 1 + quantity * CSV_JOINTS + joint; };
   NumberTable<COLUMNS>::Names columns{ "timestamp" };
@@ -364,7 +403,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
       columns[column(quantity, i)] = QUANTITIES[quantity] + std::to_string(i);
     }
   }
-  NumberTable<COLUMNS> table(source.path, columns, COLUMNS - 1);
+  NumberTable<COLUMNS> table(source.path, columns, COLUMNS - 1, CSV_JOINTS);
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < CSV_JOINTS; ++i)
   {
@@ -379,6 +418,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   }
 
   MotionCount count;
+  std::array<TemperatureRecord, CSV_JOINTS> temperatures;
   std::array<double, COLUMNS> values{};
   std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
   std::vector<MotionRow> rows(CSV_JOINTS);
@@ -395,6 +435,11 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
       rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
       rows[i].received = time;
       rows[i].recorded_velocity = values[column(3, i)];
+      if (table.hasColumn(column(4, i)))
+      {
+        temperatures[i].push(time, values[column(4, i)]);
+        rows[i].temperature = temperatures[i].at(time);
+      }
     }
     if (!visit(rows))
     {
@@ -406,25 +451,31 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   {
     throw InputError(source.path + " has no rows");
   }
+  for (const TemperatureRecord& joint : temperatures)
+  {
+    count.refused_temperatures += joint.refused();
+  }
   return count;
 }
 
-using CsvTable = NumberTable<5>;
+using CsvTable = NumberTable<6>;
 
 CsvTable openCsv(const MotionSource& source, std::size_t optional)
 {
   const std::string n = "_" + std::to_string(source.csv_joint);
   return CsvTable(source.path,
-                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n },
-                  optional);
+                  { "timestamp", "actual_q" + n, "actual_current" + n, "target_moment" + n, "actual_qd" + n,
+                    "joint_temperatures" + n },
+                  optional, 1);
 }
 
 MotionCount readCsv(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                     const std::function<void(double)>& progress)
 {
-  CsvTable table = openCsv(source, 2);
+  CsvTable table = openCsv(source, 3);
   MotionCount count;
-  std::array<double, 5> row{};
+  TemperatureRecord temperatures;
+  std::array<double, 6> row{};
   row[4] = std::nan("");
   while (table.read(row))
   {
@@ -437,12 +488,18 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     MotionRow motion{ time, row[1], source.current_per_effort * row[2], row[3] };
     motion.received = time;
     motion.recorded_velocity = row[4];
+    if (table.hasColumn(5))
+    {
+      temperatures.push(time, row[5]);
+      motion.temperature = temperatures.at(time);
+    }
     if (!visit(motion))
     {
       break;
     }
   }
   progress(1.0);
+  count.refused_temperatures = temperatures.refused();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");
@@ -466,7 +523,7 @@ bool recordsLoad(const MotionSource& source)
 {
   if (isCsv(source))
   {
-    return openCsv(source, 4).hasColumn(3);  // what else is missing is for the reader to say
+    return openCsv(source, 5).hasColumn(3);  // what else is missing is for the reader to say
   }
   rosbag::Bag bag;
   openForReading(bag, source.path);

@@ -34,6 +34,7 @@ struct MotionCount
   double start{};           ///< stamp of the first row [s]
   double least_delay{};     ///< bag: of the recording behind the stamps [s]
   double most_delay{};      ///< [s]
+  std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have
   /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
 };
@@ -57,7 +58,9 @@ bool recordsLoad(const MotionSource& source);
 /// Bag: header stamps count, or the time of recording where they are zero. A load counts for rows from its stamp on. A
 /// row that agrees neither with the one before nor with the one after, its angle beyond what a joint can reach in the
 /// time or its stamp more than a second off theirs, was damaged and is left out. CSV: columns timestamp, actual_q_N,
-/// actual_current_N, target_moment_N, as `joint_twin import`. `visit` returns false to stop. `progress`: 0 ... 1.
+/// actual_current_N, target_moment_N, as `joint_twin import`, and joint_temperatures_N [degC]. Temperatures of a bag
+/// are sensor_msgs/Temperature of any topic whose frame_id is the joint; a row has the latest one that is not too old
+/// (TemperatureRecord). `visit` returns false to stop. `progress`: 0 ... 1.
 /// @throws InputError if the file, the topic or the joint is not there; it names those that are.
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress);

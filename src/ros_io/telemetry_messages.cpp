@@ -52,6 +52,8 @@ void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_tw
   message.friction_torque = comparison.friction_torque;
   message.load_torque = comparison.load_torque;
   message.load_told = comparison.load_provided;
+  message.temperature = comparison.temperature;
+  message.temperature_received = comparison.temperature_received;
   message.sticking = comparison.sticking;
   message.after_gap = comparison.after_gap;
   message.outside_band = comparison.isOutside();

@@ -16,10 +16,11 @@ struct TelemetryStream
   std::string topic;
   TelemetryClock clock;
   StreamTiming timing;
-  Stamp last_received{};          ///< [ns]
-  std::uint64_t far_stamps{};     ///< messages refused for their stamp
-  std::uint64_t clock_changes{};  ///< restarts because all stamps had moved far
-  std::string found_names;        ///< in the last message that lacks a joint
+  Stamp last_received{};               ///< [ns]
+  std::uint64_t far_stamps{};          ///< messages refused for their stamp
+  std::uint64_t clock_changes{};       ///< restarts because all stamps had moved far
+  std::uint64_t other_temperatures{};  ///< received whose frame_id is none of the joints
+  std::string found_names;             ///< in the last message that lacks a joint
   std::atomic<std::uint64_t> too_large{ 0 };
 };
 }  // namespace hjt

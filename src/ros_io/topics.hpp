@@ -13,15 +13,16 @@ constexpr const char* LOAD_TORQUE = "load_torque";                    ///< in, s
 constexpr const char* LOAD = "load";                                  ///< in, sensor_msgs/JointState, its stamped form
 constexpr const char* INJECT_FAULT = "inject_fault";                  ///< in, harmonic_joint_twin/Fault
 constexpr const char* MEASURED = "joint_states_measured";             ///< in, sensor_msgs/JointState, effort in A
-constexpr const char* JOINT_STATES = "joint_states";                  ///< out, sensor_msgs/JointState
-constexpr const char* ENCODERS = "encoders";                          ///< out, harmonic_joint_twin/Encoders
-constexpr const char* CONTACT_FORCES = "contact_forces";              ///< out, harmonic_joint_twin/ContactForces
-constexpr const char* HEALTH = "health";                              ///< out, harmonic_joint_twin/Health
-constexpr const char* INDICATORS = "indicators";                      ///< out, harmonic_joint_twin/Indicators
-constexpr const char* ASSESSMENT = "assessment";                      ///< out, harmonic_joint_twin/Assessment
-constexpr const char* COMPARISON = "comparison";                      ///< out, harmonic_joint_twin/Comparison
-constexpr const char* FAULTS = "faults";                              ///< out, latched, harmonic_joint_twin/Faults
-constexpr const char* REMAINING_LIFE = "remaining_life";              ///< out, harmonic_joint_twin/RemainingLife
-constexpr const char* TIMING = "timing";                              ///< out, live only, harmonic_joint_twin/Timing
+constexpr const char* JOINT_TEMPERATURES = "joint_temperatures";  ///< in, sensor_msgs/Temperature, frame_id the joint
+constexpr const char* JOINT_STATES = "joint_states";              ///< out, sensor_msgs/JointState
+constexpr const char* ENCODERS = "encoders";                      ///< out, harmonic_joint_twin/Encoders
+constexpr const char* CONTACT_FORCES = "contact_forces";          ///< out, harmonic_joint_twin/ContactForces
+constexpr const char* HEALTH = "health";                          ///< out, harmonic_joint_twin/Health
+constexpr const char* INDICATORS = "indicators";                  ///< out, harmonic_joint_twin/Indicators
+constexpr const char* ASSESSMENT = "assessment";                  ///< out, harmonic_joint_twin/Assessment
+constexpr const char* COMPARISON = "comparison";                  ///< out, harmonic_joint_twin/Comparison
+constexpr const char* FAULTS = "faults";                          ///< out, latched, harmonic_joint_twin/Faults
+constexpr const char* REMAINING_LIFE = "remaining_life";          ///< out, harmonic_joint_twin/RemainingLife
+constexpr const char* TIMING = "timing";                          ///< out, live only, harmonic_joint_twin/Timing
 }  // namespace topics
 }  // namespace hjt

@@ -65,6 +65,8 @@ void TrackerNode::subscribe(ros::NodeHandle& node)
       topics::MEASURED, [this](const JointStateEvent& event) { receiveTelemetry(event); });
   load_subscriber_ = inputs.subscribe<sensor_msgs::JointState>(
       topics::LOAD, [this](const JointStateEvent& event) { receiveLoad(event); });
+  temperature_subscriber_ = inputs.subscribe<sensor_msgs::Temperature>(
+      topics::JOINT_TEMPERATURES, [this](const auto& event) { receiveTemperature(event); });
 }
 
 void TrackerNode::receiveTelemetry(const JointStateEvent& event)
@@ -187,6 +189,22 @@ void TrackerNode::receiveLoad(const JointStateEvent& event)
   {
     joint->receiveLoad(*event.getMessage(), fromRosTime(event.getReceiptTime()));
   }
+}
+
+void TrackerNode::receiveTemperature(const ros::MessageEvent<const sensor_msgs::Temperature>& event)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const sensor_msgs::Temperature& message = *event.getMessage();
+  bool is_of_joint = false;
+  for (const auto& joint : joints_)
+  {
+    if (joint->joint() == message.header.frame_id)
+    {
+      joint->receiveTemperature(message, fromRosTime(event.getReceiptTime()));
+      is_of_joint = true;
+    }
+  }
+  stream_.other_temperatures += is_of_joint ? 0 : 1;
 }
 
 void TrackerNode::look()

@@ -12,6 +12,7 @@
 #include <ros/subscriber.h>
 #include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Temperature.h>
 
 #include "arm/arm_load.hpp"
 #include "arm/recording_fit.hpp"
@@ -41,6 +42,7 @@ private:
   void subscribe(ros::NodeHandle& node);
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
+  void receiveTemperature(const ros::MessageEvent<const sensor_msgs::Temperature>& event);
   void push(Stamp stamp);
   void resetFit();
   void updateFit(const ArmSample& sample);
@@ -57,5 +59,6 @@ private:
   ros::WallTimer timer_;
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;
+  ros::Subscriber temperature_subscriber_;
 };
 }  // namespace hjt

@@ -95,7 +95,7 @@ void Observer::start(const Measurement& measurement) noexcept
 }
 
 /// One step on.
-void Observer::predict(double motor_torque, double load_torque) noexcept
+void Observer::predict(double motor_torque, double load_torque, double temperature) noexcept
 {
   const double torsion = state_[0] / ratio_ - state_[2];
   const double gear = curve_.torque(torsion);
@@ -107,7 +107,7 @@ void Observer::predict(double motor_torque, double load_torque) noexcept
   const Vector free =
       piece.transition * state_ + piece.input * Eigen::Vector2d(motor_torque - beyond / ratio_, output_torque + beyond);
 
-  const double most = friction_.at(state_[1], gear, temperature_).sum();
+  const double most = friction_.at(state_[1], gear, temperature).sum();
   const double by_friction = piece.input(1, 0);
   friction_now_ = std::clamp(free[1] / by_friction, -most, most);
   sticking_ = std::abs(friction_now_) < most;
@@ -147,10 +147,11 @@ Observation Observer::step(const Measurement& measurement) noexcept
   }
   const double motor_torque = 0.5 * (last_.motor_torque + measurement.motor_torque);
   const double load_torque = 0.5 * (last_.load_torque + measurement.load_torque);
+  const double temperature = std::isfinite(measurement.temperature) ? measurement.temperature : temperature_;
   last_ = measurement;
   while (now_ + 0.5 * STEP < measurement.time)
   {
-    predict(motor_torque, load_torque);
+    predict(motor_torque, load_torque, temperature);
   }
   // The row lies within half a step of the state.
   const double beside = measurement.time - now_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,6 +52,7 @@ struct Measurement
   double output_angle{};  ///< [rad]
   double motor_angle{};   ///< NaN: there is no such encoder [rad]
   bool restarted{};       ///< first after a gap: the state before is discarded
+  double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: as configured [degC]
 };
 
 /// Estimate after the measurement.
@@ -92,14 +94,14 @@ public:
 
 private:
   void start(const Measurement& measurement) noexcept;
-  void predict(double motor_torque, double load_torque) noexcept;
+  void predict(double motor_torque, double load_torque, double temperature) noexcept;
   double correct(ObserverPiece::State angle, double measured, double noise) noexcept;
 
   FrictionMap friction_;
   Load load_;
   ObserverParameters noise_;
   double ratio_;
-  double temperature_;
+  double temperature_;  // of measurements without one [degC]
   TorsionCurve curve_;
   std::vector<ObserverPiece> pieces_;  // of the curve
   ObserverPiece::Vector state_;

@@ -39,7 +39,7 @@ public:
     signal.motor_velocity = ratio_ * sample.velocity;
     signal.motor_torque = telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_;
     signal.load_torque = sample.load;
-    signal.temperature = temperature_;
+    signal.temperature = sample.temperatureOr(temperature_);
     if (!monitor_.update(signal))
     {
       return false;
@@ -60,7 +60,7 @@ public:
 private:
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;  // configured; telemetry has none [degC]
+  double temperature_;  // of samples without one [degC]
   SignalMonitor monitor_;
   Assessor assessor_;
 };

@@ -24,6 +24,7 @@ public:
     , load_(parameters.output)
     , telemetry_(parameters.telemetry)
     , ratio_(nominalRatio(parameters.gear))
+    , temperature_(parameters.input.temperature)
   {
   }
 
@@ -50,6 +51,7 @@ public:
     while (twin_.step(stamp))
     {
     }
+    twin_.setTemperature(stamp, sample.temperatureOr(temperature_));
     twin_.commandMotorTorque(stamp,
                              telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
     twin_.commandLoadTorque(stamp, load - load_.gravityTorque(sample.position));
@@ -71,6 +73,7 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
+  double temperature_;       // of samples without one [degC]
   double start_position_{};  // the twin's zero [rad]
   bool started_{};
   std::uint64_t solver_failures_{};  // before the last start

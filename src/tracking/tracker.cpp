@@ -57,7 +57,7 @@ public:
     now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
     now.sticking = predicted.band > telemetry_.current_deviation;
     now.friction_torque = predicted.friction_torque;
-    now.joint_torque = sample.load + telemetry_.torque_per_current * now.current.residual();
+    now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
   }
 
 private:
@@ -76,8 +76,9 @@ public:
   void follow(const MotionSample& sample, double external, Comparison& now) noexcept override
   {
     const double to_current = ratio_ / telemetry_.torque_per_current;
-    const Observation seen = observer_.step({ sample.time, (sample.current - telemetry_.current_offset) / to_current,
-                                              external, sample.position, sample.motor_angle, sample.after_gap });
+    const Observation seen =
+        observer_.step({ sample.time, (sample.current - telemetry_.current_offset) / to_current, external,
+                         sample.position, sample.motor_angle, sample.after_gap, sample.temperature });
     now.position.predicted = sample.position - seen.innovation;
     now.position.band = seen.innovation_band;
     // Of the rotor: the output's own swings by what the load is not known.
@@ -124,6 +125,7 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
+  , temperature_(parameters.input.temperature)
   , follower_(makeFollower(parameters, mode, surface_source))
   , watch_(parameters)
 {
@@ -137,7 +139,8 @@ void Tracker::reset() noexcept
   earlier_.gaps += smoother_.gaps();
   smoother_ = MotionDifferentiator();
   restarted_ = true;
-  loads_end_ = 0;
+  loads_.clear();
+  temperatures_.clear();
   outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
@@ -157,27 +160,14 @@ void Tracker::pushLoad(double time, double torque) noexcept
 {
   if (std::isfinite(time) && std::isfinite(torque))
   {
-    loads_[loads_end_ % LOADS] = { time, torque };
-    ++loads_end_;
+    loads_.push(time, torque);
   }
 }
 
 /// The load given last of those not later than `time`.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
-  if (load_source_ == LoadSource::MODEL)
-  {
-    return std::nullopt;
-  }
-  for (std::uint64_t i = loads_end_; i > 0 && loads_end_ - i < LOADS; --i)
-  {
-    const LoadAt& load = loads_[(i - 1) % LOADS];
-    if (load.time <= time)
-    {
-      return load.torque;
-    }
-  }
-  return std::nullopt;
+  return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
 }
 
 void Tracker::push(const MotionRow& row) noexcept
@@ -209,6 +199,11 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   sample->after_gap = sample->after_gap || restarted_;
   restarted_ = false;
 
+  if (!std::isfinite(sample->temperature))
+  {
+    sample->temperature = temperatures_.at(sample->time);
+  }
+
   const std::optional<double> received = loadAt(sample->time);
   const bool is_all = received && holdsAll(load_source_);
   const bool is_known = received || load_source_ == LoadSource::MODEL;
@@ -224,6 +219,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.current = { sample->current, sample->current, 0.0 };
   now.load_torque = sample->load;
   now.load_provided = received.has_value();
+  now.temperature = sample->temperatureOr(temperature_);
+  now.temperature_received = std::isfinite(sample->temperature);
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
   if (!is_known)
@@ -255,6 +252,7 @@ TrackerCounters Tracker::counters() const noexcept
   TrackerCounters counters = counters_;
   counters.refused = earlier_.refused + smoother_.refused();
   counters.gaps = earlier_.gaps + smoother_.gaps();
+  counters.refused_temperatures = temperatures_.refused();
   counters.solver_failures = follower_->solverFailures();
   return counters;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
 #include "tracking/delay_estimate.hpp"
+#include "tracking/held_values.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/signal_watch.hpp"
 #include "tracking/stream_timing.hpp"
@@ -40,8 +40,10 @@ struct Comparison
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
                              ///< expects one, no band
-  bool sticking{};           ///< friction holds the joint: any current within the band fits
-  bool after_gap{};          ///< first after a gap in the telemetry
+  double temperature{};      ///< that the prediction was made at [degC]
+  bool temperature_received{};  ///< it was received; else as configured
+  bool sticking{};              ///< friction holds the joint: any current within the band fits
+  bool after_gap{};             ///< first after a gap in the telemetry
 
   /// Measured less predicted current as a torque at the joint [N.m].
   double residual_torque{};
@@ -51,13 +53,14 @@ struct Comparison
 /// What came of the rows that were given.
 struct TrackerCounters
 {
-  std::uint64_t compared{};         ///< rows beside which there is a comparison
-  std::uint64_t refused{};          ///< repeated, out of order, not finite or beyond what can be
-  std::uint64_t gaps{};             ///< longer than MotionDifferentiator::MAX_GAP
-  std::uint64_t restarts{};         ///< stamps went back by more than Tracker::RESTART
-  std::uint64_t outside{};          ///< comparisons whose current lies outside its band
-  std::uint64_t without_load{};     ///< comparisons without a received load, though telemetry.load expects one
-  std::uint64_t solver_failures{};  ///< steps of the twin in torque mode that did not converge
+  std::uint64_t compared{};              ///< rows beside which there is a comparison
+  std::uint64_t refused{};               ///< repeated, out of order, not finite or beyond what can be
+  std::uint64_t gaps{};                  ///< longer than MotionDifferentiator::MAX_GAP
+  std::uint64_t restarts{};              ///< stamps went back by more than Tracker::RESTART
+  std::uint64_t outside{};               ///< comparisons whose current lies outside its band
+  std::uint64_t without_load{};          ///< comparisons without a received load, though telemetry.load expects one
+  std::uint64_t refused_temperatures{};  ///< not finite or beyond what a drive can have
+  std::uint64_t solver_failures{};       ///< steps of the twin in torque mode that did not converge
 };
 
 /// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion`
@@ -69,9 +72,8 @@ class Tracker
 public:
   /// Stamps that go back by more are a new recording or a clock that was set [s].
   static constexpr double RESTART = 1.0;
-  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< a touch of the arm is shorter [s]
-  /// Loads that are kept for rows to come.
-  static constexpr std::size_t LOADS = 512;
+  static constexpr double OUTSIDE_MEMORY = 30.0;          ///< a touch of the arm is shorter [s]
+  static constexpr std::size_t LOADS = HeldValues::ROOM;  ///< that are kept for rows to come
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -84,6 +86,9 @@ public:
 
   /// The load at the output from `time` on; as telemetry.load says, external or all in all [N.m]. Not finite: refused.
   void pushLoad(double time, double torque) noexcept;
+
+  /// The temperature of the drive from `time` on, for rows without their own [degC]. Bad ones are refused and counted.
+  void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
   void push(const MotionRow& row) noexcept;
@@ -117,11 +122,6 @@ public:
   };
 
 private:
-  struct LoadAt
-  {
-    double time;
-    double torque;
-  };
   std::optional<double> loadAt(double time) const noexcept;
 
   InputMode mode_;
@@ -129,13 +129,14 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
+  double temperature_;  // of rows without one [degC]
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};
   bool fits_{ true };
   double last_time_{};
-  std::array<LoadAt, LOADS> loads_{};
-  std::uint64_t loads_end_{};
+  HeldValues loads_;
+  TemperatureRecord temperatures_;
   double outside_share_{};
   double last_compared_{};  // [s]
   StreamTiming timing_;

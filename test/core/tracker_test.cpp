@@ -48,7 +48,7 @@ std::vector<Comparison> takeAll(Tracker& tracker, bool at_end = false)
 
 bool isFinite(const Comparison& now)
 {
-  double sum = now.joint_torque + now.friction_torque + now.load_torque + now.residual_torque;
+  double sum = now.joint_torque + now.friction_torque + now.load_torque + now.residual_torque + now.temperature;
   for (const Compared& both : { now.position, now.velocity, now.current })
   {
     sum += both.measured + both.predicted + both.band;
@@ -94,6 +94,8 @@ TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
         (even(engine) < 0.5 ? row.position : row.current) = value;
         tracker.push(row);
         tracker.pushLoad(value, value);
+        tracker.pushTemperature(value, value);
+        tracker.pushTemperature(row.time, value);
         ++damaged;
       }
     }
@@ -163,6 +165,7 @@ TEST_P(TrackerInMode, AllocatesNothing)
   for (int i = 0; i < 300; ++i)
   {
     tracker.pushLoad(PERIOD * i, 3.0);
+    tracker.pushTemperature(PERIOD * i, 30.0);
     tracker.push(rowAt(PERIOD * i));
     while (tracker.pop())
     {
@@ -234,6 +237,64 @@ TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
   }
   EXPECT_EQ(loads[0], loads[1]);
   EXPECT_EQ(loads[0].back(), static_cast<double>(loads[0].size() - 1));
+}
+
+TEST(Tracker, FollowsTheReceivedTemperatureUntilItIsOld)
+{
+  const Parameters parameters = parametersWith({ "input.temperature=25" });
+  for (const InputMode mode : { InputMode::MOTION, InputMode::OBSERVER })
+  {
+    Tracker tracker(parameters, mode);
+    Tracker plain(parameters, mode);
+    const auto friction = [](Tracker& of, double time)
+    {
+      std::vector<Comparison> taken;
+      for (int i = 0; i < 60; ++i)
+      {
+        MotionRow row = rowAt(time + PERIOD * i);
+        row.position = 0.9 * PERIOD * i;
+        of.push(row);
+        for (const Comparison& now : takeAll(of))
+        {
+          taken.push_back(now);
+        }
+      }
+      return taken.back();
+    };
+    const double at_25 = friction(plain, 0.0).friction_torque;
+    EXPECT_FALSE(friction(tracker, 0.0).temperature_received);
+
+    tracker.pushTemperature(1.0, 40.0);
+    for (const double bad : { NONE, -21.0, 120.5, std::numeric_limits<double>::infinity() })
+    {
+      tracker.pushTemperature(1.5, bad);
+    }
+    EXPECT_EQ(tracker.counters().refused_temperatures, 4u);
+    const Comparison warm = friction(tracker, 2.0);
+    EXPECT_TRUE(warm.temperature_received);
+    EXPECT_EQ(warm.temperature, 40.0);
+    EXPECT_LT(warm.friction_torque, 0.9 * at_25);
+
+    const Comparison old = friction(tracker, 1.1 + TemperatureRecord::MAX_AGE);
+    EXPECT_FALSE(old.temperature_received);
+    EXPECT_EQ(old.temperature, 25.0);
+    EXPECT_NEAR(old.friction_torque, at_25, 0.01 * at_25);
+  }
+}
+
+TEST(Tracker, ARowsOwnTemperatureComesFirst)
+{
+  Tracker tracker(parametersWith({}), InputMode::MOTION);
+  tracker.pushTemperature(0.0, 40.0);
+  for (int i = 0; i < 50; ++i)
+  {
+    MotionRow row = rowAt(PERIOD * i);
+    row.temperature = i < 20 ? NONE : 12.0;
+    tracker.push(row);
+  }
+  const std::vector<Comparison> taken = takeAll(tracker, true);
+  EXPECT_EQ(taken[19].temperature, 40.0);
+  EXPECT_EQ(taken[20].temperature, 12.0);
 }
 
 TEST(Tracker, RefusesAWeightThatTheLoadHoldsAlready)

@@ -16,7 +16,7 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Temperature
 
 from harmonic_joint_twin.msg import Assessment, Comparison, ContactForces, Encoders, Health, Indicators
 from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, executable, listen_to_all, numbers_in, wait_until
@@ -28,6 +28,7 @@ TWINS = [(mode, joint) for mode in ARMS for joint in JOINTS] + [("torque", "base
 MODES = {"loaded": "motion"}            # of single joints, the others' are their names
 LOADS = {"loaded": "target_moment"}     # of single joints, the others' is the model
 SICK, RAISED, GAIN = "elbow", 0.6, 10.7  # joint, share of its friction more [-], torque per current [N.m/A]
+TEMPERATURES = {"base": 25.5, "wrist_3": 31.0}  # at the begin; of the others none is published [degC]
 NOISE = 0.05                            # of the currents [A]
 PERIOD, SECONDS = 0.008, 8.0            # [s]
 WAIT_OF_ARM, WAIT_OF_JOINT = 25, 8      # rows whose later ones never came
@@ -68,6 +69,18 @@ def load_at(row, begin):
     return load
 
 
+def temperatures_at(row, begin):
+    """Some of the joints' and the cabinet's; from time to time what a broken sensor gives."""
+    values = [(joint, value + 0.001 * row) for joint, value in TEMPERATURES.items()]
+    if row % 100 == 0:
+        values += [(joint, bad) for joint in TEMPERATURES for bad in (float("nan"), 150.0)] + [("cabinet", 40.0)]
+    for joint, value in values:
+        message = Temperature(temperature=value)
+        message.header.frame_id = JOINTS.get(joint, joint)
+        message.header.stamp = begin + rospy.Duration.from_sec(PERIOD * row)
+        yield message
+
+
 def processor_time(node):
     """Of a running node so far [s]."""
     pid = subprocess.run(["pgrep", "-f", f"joint_twin_node .*__name:=joint_twin .*{node}"], check=True,
@@ -88,6 +101,8 @@ class UR5(unittest.TestCase):
         robot = run_robot(cls.directory)
         cls.publisher = rospy.Publisher("/joint_states", JointState, queue_size=1000)
         cls.load_publisher = rospy.Publisher("/target_moments", JointState, queue_size=1000)
+        cls.temperature_publisher = rospy.Publisher("/joint_temperatures", Temperature, queue_size=1000)
+        wait_until(lambda: cls.temperature_publisher.get_num_connections() == len(ARMS) + 2, "temperatures' topic")
         wait_until(lambda: cls.load_publisher.get_num_connections() == 1, "the twin that receives its load")
         wait_until(lambda: cls.publisher.get_num_connections() == len(ARMS) + 2, "all nodes")
         cls.everything = {(twin, name): listener for twin in TWINS
@@ -117,6 +132,9 @@ class UR5(unittest.TestCase):
                     cls.load_publisher.publish(load_at(ahead, begin))
                 time.sleep(max(0.0, (stamp - rospy.Time.now()).to_sec()))
                 bag.write("/joint_twin/load", load_at(row, begin), rospy.Time.now())
+                for temperature in temperatures_at(row, begin) if row % 50 == 0 else []:
+                    cls.temperature_publisher.publish(temperature)
+                    bag.write("/joint_temperatures", temperature, rospy.Time.now())
                 if row % 40 == 25 or 300 <= row < 330:
                     continue
                 names = list(JOINTS.values())
@@ -165,6 +183,20 @@ class UR5(unittest.TestCase):
             sick = more.pop(SICK)
             self.assertGreater(sick, 0.3, (mode, more))
             self.assertLess(max(map(abs, more.values())), 0.15, (mode, more))
+
+    def test_temperatures_are_those_received_and_bad_ones_are_not_used(self):
+        for twin in TWINS:
+            published = TEMPERATURES.get(twin[1])
+            messages = self.wait_for_rows(twin)
+            self.assertEqual({message.temperature_received for message in messages}, {published is not None}, twin)
+            low, high = (published, published + 1.0) if published else (25.0, 25.0)
+            for message in messages:
+                self.assertGreaterEqual(message.temperature, low - 1e-9, twin)
+                self.assertLessEqual(message.temperature, high + 1e-9, twin)
+            values = self.diagnostics[twin].fresh("Drive")
+            self.assertEqual(values["Temperature is"], "received" if published else "configured", twin)
+            refused = int(self.diagnostics[twin].fresh("Input")["Temperatures refused"])
+            self.assertEqual(refused, 2 * len(range(0, round(SECONDS / PERIOD), 100)) if published else 0, twin)
 
     def test_sound_joints_are_ok(self):
         for joint in JOINTS:

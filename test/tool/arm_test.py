@@ -13,7 +13,7 @@ import unittest
 import genpy
 import numpy as np
 import rosbag
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Temperature
 
 import tool
 
@@ -32,16 +32,19 @@ def angles(time):
     return [0.6 * swing, -0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
 
 
-def arm_csv(currents=None, seconds=20.0, without=()):
-    """A controller's recording as text. `currents`: six for each row, else none flows."""
+def arm_csv(currents=None, seconds=20.0, without=(), temperature=None):
+    """A controller's recording as text. `currents`: six for each row, else none flows. `temperature`: of joint and row,
+    as text; none: not recorded."""
     rows = round(seconds / PERIOD)
     columns = ["timestamp"] + [f"{quantity}_{joint}" for quantity in ("actual_q", "actual_current")
                                for joint in range(6)]
     kept = [i for i, name in enumerate(columns) if name not in without]
-    lines = [",".join(columns[i] for i in kept)]
+    lines = [",".join([columns[i] for i in kept]
+                      + [f"joint_temperatures_{joint}" for joint in range(6) if temperature])]
     for row in range(rows):
         values = [row * PERIOD] + angles(row * PERIOD) + (currents[row] if currents else [0.0] * 6)
-        lines.append(",".join(f"{values[i]:.17g}" for i in kept))
+        lines.append(",".join([f"{values[i]:.17g}" for i in kept]
+                              + [temperature(joint, row) for joint in range(6) if temperature]))
     return "\n".join(lines) + "\n"
 
 
@@ -119,17 +122,19 @@ class Arm(tool.ToolTest):
         self.fail_with(1, ["arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
 
-    def robot_with_friction(self, raised, share=0.3, path="robot.csv"):
-        """A robot that is the twin, the friction of these joints raised by a share, with some noise."""
+    def robot_with_friction(self, raised, share=0.3, path="robot.csv", degrees=25.0, is_recorded=False):
+        """A robot that is the twin at a temperature, friction of these joints raised by a share, with some noise."""
         self.write("still.csv", arm_csv())
-        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force")
+        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force", "--set",
+                     f"input.temperature={degrees}")
         noise = np.random.default_rng(7)
         currents = []
         for name, gain in zip(SHORT_NAMES, GAINS):
             columns = self.columns(f"robot/{name}.csv")
             more = share / gain * columns["friction_torque"] if name in raised else 0.0
             currents.append(columns["current_predicted"] + more + noise.normal(0.0, 0.05, len(columns["time"])))
-        self.write(path, arm_csv(np.transpose(currents).tolist()))
+        temperature = (lambda joint, row: f"{degrees}") if is_recorded else None
+        self.write(path, arm_csv(np.transpose(currents).tolist(), temperature=temperature))
         return path
 
     def compare(self, recording, report, *more):
@@ -156,6 +161,78 @@ class Arm(tool.ToolTest):
         self.assertEqual(every["level"], "OK", every)
         self.assertIn("temperature or gain", every["reason"])
         self.assertAlmostEqual(every["friction_ratio"], 1.3, delta=0.05)
+
+    def levels(self, arm):
+        return {joint["joint"]: joint["level"] for joint in arm["joints"]}
+
+    def test_a_reference_made_warm_does_not_make_a_cold_arm_faulty(self):
+        warm = self.compare(self.robot_with_friction([], degrees=40.0, is_recorded=True), "warm")
+        self.assertEqual({(joint["temperature"], joint["temperature_source"]) for joint in warm["joints"]},
+                         {(40.0, "received")})
+        cold = self.compare(self.robot_with_friction([], degrees=15.0, is_recorded=True), "cold", "--reference", "warm")
+        print({joint["joint"]: joint["friction_ratio"] for joint in cold["joints"]})
+        self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
+        self.assertEqual(cold["friction_ratio"], 1.0)
+        self.assertIsNone(cold["temperature_estimate"])
+        self.assertAlmostEqual(cold["temperature"], 15.0)
+        for joint in cold["joints"]:
+            self.assertAlmostEqual(joint["friction_ratio"], 1.0, delta=0.05, msg=joint)
+        with open(self.path("cold/elbow/comparison.json")) as file:
+            text = file.read()
+        self.assertIn("At 15 degC (received), the reference at 40 degC", text)
+        self.assertNotIn("Temperature: none is recorded", text)
+
+        sick = self.compare(self.robot_with_friction(["elbow"], degrees=15.0, is_recorded=True), "sick", "--reference",
+                            "warm")
+        self.assertEqual(self.levels(sick), {name: "WARN" if name == "elbow" else "OK" for name in SHORT_NAMES}, sick)
+
+    def test_without_temperatures_that_of_the_common_friction_is_estimated(self):
+        self.compare(self.robot_with_friction([], degrees=25.0), "usual")
+        cold = self.compare(self.robot_with_friction([], degrees=8.0), "cold", "--reference", "usual")
+        self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
+        self.assertGreater(cold["friction_ratio"], 1.15)
+        self.assertAlmostEqual(cold["temperature_estimate"], 8.0, delta=2.0)
+        self.assertIn("degC in place of 25 degC", cold["reason"])
+        self.assertEqual({joint["temperature_source"] for joint in cold["joints"]}, {"configured"})
+
+        sick = self.compare(self.robot_with_friction(["base"], degrees=35.0), "sick", "--reference", "usual")
+        self.assertEqual(self.levels(sick), {name: "WARN" if name == "base" else "OK" for name in SHORT_NAMES}, sick)
+        self.assertAlmostEqual(sick["temperature_estimate"], 35.0, delta=2.0)
+
+    def test_temperatures_follow_the_recording_and_bad_ones_are_never_used(self):
+        def temperature(joint, row):
+            bad = {5: "nan", 6: "1e9", 7: "", 8: "-40"}
+            return bad[row] if joint == 2 and row in bad else f"{30.0 + joint + 0.001 * row:.3f}"
+
+        self.write("arm.csv", arm_csv(temperature=temperature))
+        found = self.succeed_json("follow", "arm.csv", "--arm", "ur5", "--out", "all")
+        self.assertEqual(found["temperatures_refused"], 4)
+        elbow = self.columns("all/elbow.csv")
+        self.assertTrue(elbow["temperature_received"].all())
+        expected = 32.0 + 0.001 * np.arange(2500)
+        expected[5:9] = expected[4]  # the latest that can be true
+        np.testing.assert_allclose(elbow["temperature"], expected, atol=1e-9)
+        self.assertEqual(self.succeed_json("follow", "arm.csv", "--joint", "elbow", "--set", "telemetry.load=model",
+                                           "--out", "elbow.csv")["temperatures_refused"], 4)
+        np.testing.assert_array_equal(self.columns("elbow.csv")["temperature"], elbow["temperature"])
+
+        with rosbag.Bag(self.path("arm.bag"), "w") as bag:
+            for row in range(2500):
+                at = genpy.Time(tool.START) + genpy.Duration.from_sec(row * PERIOD)
+                state = JointState(name=tool.JOINT_NAMES, position=angles(row * PERIOD), effort=[0.0] * 6)
+                state.header.stamp = at
+                for frame, value in [("elbow_joint", 32.0), ("elbow_joint", float("nan")), ("cabinet", 50.0)]:
+                    if row == 100:
+                        measured = Temperature(temperature=value)
+                        measured.header.stamp, measured.header.frame_id = at, frame
+                        bag.write("/whatever/temperatures", measured, at)
+                bag.write("/joint_states", state, at)
+        found = self.succeed_json("follow", "arm.bag", "--arm", "ur5", "--out", "bag")
+        self.assertEqual(found["temperatures_refused"], 1)
+        elbow = self.columns("bag/elbow.csv")
+        np.testing.assert_array_equal(elbow["temperature"], np.where(np.arange(2500) < 100, 25.0, 32.0))
+        np.testing.assert_array_equal(elbow["temperature_received"], np.arange(2500) >= 100)
+        self.assertFalse(self.columns("bag/base.csv")["temperature_received"].any())
 
     def test_a_report_is_not_its_own_reference(self):
         self.write("arm.csv", arm_csv())

@@ -54,7 +54,8 @@ class Compare(tool.ToolTest):
             self.assertEqual(json.load(file), report)
         found = {line["name"]: line["found"] for line in report["contents"]["topics"]}
         self.assertEqual(found, {"/joint_states": True, "/joint_states: elbow_joint_motor": False,
-                                 "/joint_twin/load": True, "/joint_twin/joint_states": False})
+                                 "/joint_twin/load": True, "sensor_msgs/Temperature of elbow_joint": False,
+                                 "/joint_twin/joint_states": False})
         self.assertEqual(report["contents"]["joints"], ["wrist_1_joint", "elbow_joint"])
         self.assertIn("motor's is needed", " ".join(report["verdict"]["cannot_show"]))
 
@@ -86,7 +87,7 @@ class Compare(tool.ToolTest):
             lines.append(f"{number / robot.RATE:.3f},{state.position[1]:.9f},{state.effort[1]:.6f}")
         self.write("a.csv", "\n".join(lines) + "\n")
         report = self.compare("a.csv")
-        self.assertEqual([line["found"] for line in report["contents"]["topics"]], [True, False])
+        self.assertEqual([line["found"] for line in report["contents"]["topics"]], [True, False, False])
         self.assertIn("no load was recorded", " ".join(report["verdict"]["cannot_show"]))
 
     def test_the_twin_that_ran_beside_is_found(self):

@@ -26,6 +26,15 @@ class Import(tool.ToolTest):
             self.assertEqual(state.header.stamp, command.header.stamp)
             self.assertEqual(state.header.stamp, load.header.stamp)
 
+    def test_temperatures_that_were_recorded_stand_in_the_bag_once_a_second(self):
+        head, *rows = tool.telemetry_csv(rows=300)
+        lines = [head + ",joint_temperatures_2"] + [f"{row},{30.0 + 0.01 * i:.2f}" for i, row in enumerate(rows)]
+        self.write("a.csv", "\n".join(lines) + "\n")
+        self.succeed("import", "a.csv", "--joint", 2, "--out", "a.bag")
+        messages = [message for _, message in tool.series(self.path("a.bag"), "/joint_temperatures")]
+        self.assertEqual([(message.header.frame_id, message.temperature) for message in messages],
+                         [("elbow_joint", 30.0), ("elbow_joint", 31.25), ("elbow_joint", 32.5)])
+
     def test_gain_ratio_start_and_namespace_can_be_given(self):
         self.write("a.csv", "\n".join(tool.telemetry_csv(rows=3)))
         self.succeed("import", "a.csv", "--joint", 0, "--out", "a.bag", "--gain", 8, "--ratio", 100, "--start-time", 5,

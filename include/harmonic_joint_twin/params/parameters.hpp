@@ -303,6 +303,7 @@ struct TelemetryParameters
   double ripple_resonance{};
   double ripple_damping{};
   double ripple_lag{};
+  double ripple_fastest{};
   double current_deviation{};
   EffortUnit effort{};
   LoadSource load{};

@@ -41,6 +41,7 @@ public:
   /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
   explicit ArmRecording(const ArmOptions& options);
 
+  const ArmDescription& arm() const { return arm_; }
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   MotionSource source(std::size_t joint) const;  ///< of that joint alone
   /// `telemetry.inertia_in_load` is that of the load that is chosen.

@@ -113,7 +113,8 @@ std::vector<double> readJsonNumbers(const std::string& path, const std::vector<s
     const auto object = nlohmann::json::parse(file);
     for (const std::string& name : names)
     {
-      numbers.push_back(object.at(name).is_null() ? std::nan("") : object.at(name).get<double>());
+      const bool is_there = (numbers.empty() || object.contains(name)) && !object.at(name).is_null();
+      numbers.push_back(is_there ? object.at(name).get<double>() : std::nan(""));
     }
   }
   catch (const nlohmann::json::exception& error)

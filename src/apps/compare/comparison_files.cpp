@@ -15,7 +15,6 @@
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "health/baseline_file.hpp"
-#include "tracking/friction_map.hpp"
 
 namespace hjt
 {
@@ -38,7 +37,7 @@ void writeCourse(const std::string& path, const RecordingComparison& comparison)
   writeTable(path, columns, comparison.course().rows());
 }
 
-void writeFriction(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
+void writeFriction(const std::string& directory, const RecordingComparison& comparison)
 {
   const std::vector<Column<FrictionPoint>> columns{ { "speed", &FrictionPoint::speed },
                                                     { "measured", &FrictionPoint::measured },
@@ -53,14 +52,11 @@ void writeFriction(const std::string& directory, const RecordingComparison& comp
     fastest = std::max(fastest, std::abs(point.speed));
   }
   constexpr int STEPS = 100;
-  const FrictionMap map(parameters);
-  const double ratio = comparison.ratio();
   CsvWriter curve(directory + "/friction_twin.csv", { "speed", "at_typical_load", "at_largest_load" });
   for (int i = 1; i <= STEPS; ++i)
   {
     const double speed = 1.1 * fastest * i / STEPS;
-    const auto at = [&](double load)
-    { return ratio * map.at(ratio * speed, load, parameters.input.temperature).sum(); };
+    const auto at = [&](double load) { return comparison.twin().frictionAt(speed, load, comparison.temperature()); };
     curve.writeRow({ speed, at(comparison.typicalLoad()), at(comparison.largestLoad()) });
   }
   curve.close();
@@ -195,7 +191,10 @@ Json verdictJson(const Verdict& verdict)
 SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
   SoundJoint sound;
-  sound.own.compliance_ratio = readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio" }).front();
+  const std::vector<double> numbers =
+      readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature" });
+  sound.own.compliance_ratio = numbers[0];
+  sound.own.temperature = numbers[1];
   NumberTable<4> friction(directory + "/" + FRICTION_FILE, { "speed", "measured", "twin", "rows" });
   std::array<double, 4> row{};
   while (friction.read(row))
@@ -214,7 +213,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                      const ComparisonRecord& record)
 {
   writeCourse(directory + "/course.csv", comparison);
-  writeFriction(directory, comparison, parameters);
+  writeFriction(directory, comparison);
   writeSpectrum(directory + "/spectrum.csv", comparison);
   writeTorsion(directory, comparison, parameters);
   writeTeeth(directory + "/teeth.csv", comparison, parameters);
@@ -242,6 +241,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                       { "duration", record.found.duration },
                       { "unreadable_or_impossible", record.found.corrupt + reach.impossible },
                       { "repeated_or_out_of_order", record.found.refused },
+                      { "temperatures_refused", record.found.refused_temperatures },
                       { "gaps", record.found.gaps },
                       { "least_delay", record.found.least_delay },
                       { "most_delay", record.found.most_delay } } },
@@ -254,6 +254,8 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                       { "largest_load", comparison.largestLoad() } } },
                   { "current",
                     { { "measured_rms", comparison.currentRms() }, { "residual_rms", comparison.residualRms() } } },
+                  { "temperature", comparison.temperature() },
+                  { "temperature_source", temperatureSource(comparison) },
                   { "friction_ratio", comparison.friction().ratio() },
                   { "compliance_ratio", comparison.torsion().compliance() },
                   { "line_orders", orders },

@@ -77,6 +77,8 @@ void RecordingComparison::update(const MotionSample& sample)
     }
   }
   reach_.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
+  reach_.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
+  temperatures_ += sample.temperatureOr(parameters_.input.temperature);
   watchSignals(sample);
 }
 
@@ -158,6 +160,24 @@ double RecordingComparison::loadQuantile(double share) const
     ++step;
   }
   return load_step_ * (static_cast<double>(step) + 0.5);
+}
+
+double RecordingComparison::temperature() const
+{
+  return reach_.rows == 0 ? parameters_.input.temperature : temperatures_ / static_cast<double>(reach_.rows);
+}
+
+double RecordingComparison::twinFrictionAt(double temperature) const
+{
+  double sum = 0.0;
+  double rows = 0.0;
+  for (const FrictionPoint& point : friction_.points())
+  {
+    const auto weight = static_cast<double>(point.rows);
+    sum += weight * twin_.frictionAt(point.speed, typicalLoad(), temperature);
+    rows += weight;
+  }
+  return sum / std::max(rows, 1.0);
 }
 
 double RecordingComparison::typicalLoad() const

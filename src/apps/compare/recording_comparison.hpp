@@ -40,12 +40,13 @@ struct JudgedWindow
 struct MotionReach
 {
   std::uint64_t rows{};
-  std::uint64_t impossible{};  ///< rows with a current or load beyond what the joint has
-  std::uint64_t motor_rows{};  ///< rows with a motor angle
-  double least_load{};         ///< [N.m]
-  double most_load{};          ///< [N.m]
-  double least_angle{};        ///< [rad]
-  double most_angle{};         ///< [rad]
+  std::uint64_t impossible{};        ///< rows with a current or load beyond what the joint has
+  std::uint64_t motor_rows{};        ///< rows with a motor angle
+  std::uint64_t temperature_rows{};  ///< rows with a received temperature
+  double least_load{};               ///< [N.m]
+  double most_load{};                ///< [N.m]
+  double least_angle{};              ///< [rad]
+  double most_angle{};               ///< [rad]
 };
 
 /// A recorded joint beside the twin that makes the same motion, row by row; memory does not grow with the rows.
@@ -78,6 +79,11 @@ public:
   /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
+  double temperature() const;  ///< that the rows were judged at, mean [degC]
+  /// More than half of the rows had a received temperature.
+  bool isTemperatureReceived() const { return 2 * reach_.temperature_rows > reach_.rows; }
+  /// The twin's friction by the speeds of `friction`, under the typical load, at a temperature [degC], mean [N.m].
+  double twinFrictionAt(double temperature) const;
   double typicalLoad() const;  ///< median of its magnitude [N.m]
   double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
 
@@ -106,6 +112,7 @@ private:
   std::vector<std::uint64_t> loads_;  // histogram of magnitudes
   double current_squares_{};
   double predicted_squares_{};
+  double temperatures_{};                                // sum [degC]
   Eigen::Matrix3d products_{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
 
   SignalWatch health_;

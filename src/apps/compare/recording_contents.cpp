@@ -18,6 +18,7 @@ namespace
 constexpr const char* ANGLE_AND_CURRENT = "angle and current of the joint";
 constexpr const char* MOTOR_ANGLE = "angle of the motor: torsion, stiffness, kinematic error";
 constexpr const char* LOAD = "load at the output; else weight and inertia as configured";
+constexpr const char* TEMPERATURE = "temperature of the drive; else as configured";
 constexpr const char* TWIN = "angle and speed of a twin that ran beside the robot";
 
 std::uint64_t messagesOn(const rosbag::Bag& bag, const std::string& topic)
@@ -27,14 +28,15 @@ std::uint64_t messagesOn(const rosbag::Bag& bag, const std::string& topic)
 }  // namespace
 
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
-                               std::uint64_t motor_rows, bool has_load)
+                               std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load)
 {
   RecordingContents contents;
   if (isCsv(source))
   {
     const std::string n = "_" + std::to_string(source.csv_joint);
     contents.lines = { { "timestamp, actual_q" + n + ", actual_current" + n, ANGLE_AND_CURRENT, count.rows, true },
-                       { "target_moment" + n, LOAD, has_load ? count.rows : 0, has_load } };
+                       { "target_moment" + n, LOAD, has_load ? count.rows : 0, has_load },
+                       { "joint_temperatures" + n, TEMPERATURE, temperature_rows, temperature_rows > 0 } };
     return contents;
   }
   rosbag::Bag bag;
@@ -43,7 +45,9 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   const std::uint64_t twins = twin_topic == source.topic ? 0 : messagesOn(bag, twin_topic);
   contents.lines = { { source.topic, ANGLE_AND_CURRENT, count.rows, true },
                      { source.topic + ": " + JointNames(source.joint).motor, MOTOR_ANGLE, motor_rows, motor_rows > 0 },
-                     { source.load_topic, LOAD, loads, loads > 0 } };
+                     { source.load_topic, LOAD, loads, loads > 0 },
+                     { "sensor_msgs/Temperature of " + source.joint, TEMPERATURE, temperature_rows,
+                       temperature_rows > 0 } };
   if (twin_topic != source.topic)
   {
     contents.lines.push_back({ twin_topic, TWIN, twins, twins > 0 });
@@ -63,7 +67,9 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   rosbag::View all(bag);
   for (const rosbag::ConnectionInfo* connection : all.getConnections())
   {
-    if (used.count(connection->topic) == 0)
+    const bool is_temperature =
+        temperature_rows > 0 && connection->datatype == ros::message_traits::datatype<sensor_msgs::Temperature>();
+    if (!is_temperature && used.count(connection->topic) == 0)
     {
       others.insert(connection->topic);
     }

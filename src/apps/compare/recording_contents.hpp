@@ -16,7 +16,7 @@ struct ContentLine
 {
   std::string name;
   std::string gives;
-  std::uint64_t messages{};  ///< rows of a CSV file
+  std::uint64_t messages{};  ///< rows of a CSV file; of temperatures: rows that have one
   bool found{};
 };
 
@@ -37,10 +37,11 @@ struct TwinState
   double motor_current{};  ///< [A]
 };
 
-/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading.
+/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading;
+/// `temperature_rows`: those with a received temperature.
 /// @throws InputError if the file cannot be read.
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
-                               std::uint64_t motor_rows, bool has_load);
+                               std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load);
 
 /// The twin's recorded states; none where the recording has no such topic, or it is the telemetry itself.
 Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start);

@@ -218,6 +218,11 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
                parameters.comparison.friction_tolerance, Feature::RUNNING_TORQUE, +1.0,
                "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
+  finding.text += " At " + rounded(comparison.temperature(), 0) + " degC (" + temperatureSource(comparison) + ")";
+  finding.text += std::isfinite(context.own.temperature) ?
+                      ", the reference at " + rounded(context.own.temperature, 0) +
+                          " degC; the twin's law of friction makes up for the difference." :
+                      ".";
   finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
                   " to " + rounded(points.back().speed, 2) + " rad/s.";
   return finding;
@@ -345,9 +350,12 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
         "Whether the load is as configured: no load was recorded, so weight and inertia of the "
         "configuration are taken; a payload left out looks like current.");
   }
-  missing.emplace_back(
-      "Temperature: none is recorded; grease at another one changes the friction by some per cent a "
-      "kelvin.");
+  if (!comparison.isTemperatureReceived())
+  {
+    missing.emplace_back(
+        "Temperature: none is recorded; grease at another one changes the friction by some per cent a "
+        "kelvin.");
+  }
   if (!comparison.baselineGiven())
   {
     missing.emplace_back(
@@ -415,6 +423,17 @@ std::string reasonOf(const Verdict& verdict)
 }
 }  // namespace
 
+namespace
+{
+/// Of at least one value.
+double medianOf(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+}  // namespace
+
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context)
 {
@@ -427,27 +446,91 @@ std::optional<double> frictionRatio(const RecordingComparison& comparison, const
   return std::isfinite(to_own) ? to_own : comparison.friction().ratio();
 }
 
-double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance)
+ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
+                           const std::vector<std::optional<double>>& ratios, double tolerance)
 {
   constexpr std::size_t MIN_JOINTS = 3;
-  std::vector<double> known;
-  for (const std::optional<double>& ratio : ratios)
+  constexpr double COLDEST = 0.0;  // [degC]
+  constexpr double WARMEST = 60.0;
+  constexpr int HALVINGS = 20;
+  constexpr double TINY = 1e-3;        // of a ratio, which may be zero
+  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
+  ArmFriction arm{ std::vector<double>(ratios.size(), 1.0), 1.0, std::nullopt };
+  std::vector<std::size_t> known;
+  bool is_received = false;
+  for (std::size_t i = 0; i < ratios.size(); ++i)
   {
-    if (ratio)
+    is_received = is_received || joints[i]->reach().temperature_rows > 0;
+    if (ratios[i])
     {
-      known.push_back(*ratio);
+      known.push_back(i);
     }
   }
   if (known.size() < MIN_JOINTS)
   {
-    return 1.0;
+    return arm;
   }
-  std::sort(known.begin(), known.end());
-  const std::size_t half = known.size() / 2;
-  const double median = known.size() % 2 == 1 ? known[half] : 0.5 * (known[half - 1] + known[half]);
-  const auto agree = std::count_if(known.begin(), known.end(),
-                                   [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; });
-  return std::abs(median - 1.0) > tolerance && 2 * static_cast<std::size_t>(agree) > known.size() ? median : 1.0;
+  const auto leftOver = [&](const std::vector<double>& factors)
+  {
+    std::vector<double> left;
+    for (const std::size_t i : known)
+    {
+      left.push_back(*ratios[i] / factors[i]);
+    }
+    return left;
+  };
+  const auto agreeing = [&](const std::vector<double>& factors)
+  {
+    const std::vector<double> left = leftOver(factors);
+    return static_cast<std::size_t>(
+        std::count_if(left.begin(), left.end(), [&](double ratio) { return std::abs(ratio - 1.0) <= tolerance; }));
+  };
+  const auto misfit = [&](const std::vector<double>& factors)
+  {
+    double sum = 0.0;
+    for (const double ratio : leftOver(factors))
+    {
+      sum += std::abs(std::log(std::max(ratio, TINY)));
+    }
+    return sum;
+  };
+  const auto factorsAt = [&](double temperature)
+  {
+    std::vector<double> factors;
+    for (const RecordingComparison* joint : joints)
+    {
+      factors.push_back(joint->twinFrictionAt(temperature) / joint->twinFrictionAt(joint->temperature()));
+    }
+    return factors;
+  };
+
+  const double median = medianOf(leftOver(arm.factors));
+  const std::vector<double> alike(ratios.size(), median);
+  double low = COLDEST;
+  double high = WARMEST;
+  const auto isColder = [&](double temperature) { return medianOf(leftOver(factorsAt(temperature))) > 1.0; };
+  const bool has_temperature = !is_received && !isColder(low) && isColder(high);
+  for (int i = 0; has_temperature && i < HALVINGS; ++i)  // the twins' friction falls with the temperature
+  {
+    const double middle = 0.5 * (low + high);
+    (isColder(middle) ? high : low) = middle;
+  }
+  const std::vector<double> at_temperature = has_temperature ? factorsAt(low) : arm.factors;
+
+  const std::size_t most = known.size() / 2 + 1;
+  const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
+  const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
+  const std::size_t agree = agreeing(otherwise);
+  if (has_temperature && agree < known.size() && agreeing(at_temperature) >= std::max(most, agree) &&
+      misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
+  {
+    arm = { at_temperature, median, low };
+  }
+  else if (is_factor)
+  {
+    arm = { alike, median, has_temperature ? std::make_optional(low) : std::nullopt };
+  }
+  return arm;
 }
 
 Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)

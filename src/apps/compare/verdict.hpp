@@ -15,6 +15,7 @@ struct OwnReference
 {
   std::vector<FrictionPoint> friction;                                  ///< none: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
+  double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< judged at; NaN: not known [degC]
 };
 
 /// Where the load of the samples comes from.
@@ -32,7 +33,7 @@ struct JointContext
   bool is_identified{};  ///< the twin's friction is that of this joint
   LoadOrigin load{};
   double duration{};  ///< of the recording [s]
-  /// Multiple of the reference's friction that the joints of an arm have in common: temperature or gain, no fault.
+  /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
   std::string misfit;  ///< why the recording says nothing of this joint; empty: it fits
 };
@@ -68,11 +69,28 @@ inline const char* verdictName(const Verdict& verdict)
 
 Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context);
 
+/// Where the temperature that a joint was judged at is from, for people and documents.
+inline const char* temperatureSource(const RecordingComparison& comparison)
+{
+  return comparison.isTemperatureReceived() ? "received" : "configured";
+}
+
 /// Friction as a multiple of the joint's own when sound, else of the twin's; none: the recording does not show it.
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context);
 
-/// Multiple that most joints of an arm agree on within `tolerance`; 1: it differs from 1 by less than that, there are
-/// fewer than three joints, or they do not agree.
-double commonFriction(const std::vector<std::optional<double>>& ratios, double tolerance);
+/// What the friction of an arm's joints has in common.
+struct ArmFriction
+{
+  std::vector<double> factors;        ///< of each joint
+  double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
+  std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
+};
+
+/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
+/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
+/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
+/// are the median joint's, so that one faulty joint changes neither.
+ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
+                           const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt

@@ -173,7 +173,8 @@ public:
     record.joint = source_.joint;
     record.made_with = MADE_WITH;
     record.found = found;
-    record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows, found.has_load);
+    record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows,
+                                   comparison_.reach().temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, found.start);
     record.verdict =
         judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction, misfit });
@@ -225,6 +226,8 @@ struct ArmLine
   Verdict verdict;
   std::string misfit;  // of its recording; empty: it fits
   std::optional<double> friction_ratio;
+  double temperature{};  // [degC]
+  const char* temperature_source{};
   double current_rms{};
   double residual_rms{};
 };
@@ -234,6 +237,8 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
   { "level", [](const ArmLine& line) { return verdictName(line.verdict); }, "verdict" },
   { "reason", [](const ArmLine& line) { return line.verdict.reason; } },
   { "friction_ratio", &ArmLine::friction_ratio, "friction [-]" },
+  { "temperature", &ArmLine::temperature, "at [degC]" },
+  { "temperature_source", [](const ArmLine& line) { return line.temperature_source; }, "which is" },
   { "current_rms", &ArmLine::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ArmLine::residual_rms, "less predicted [A]" }
 };
@@ -249,13 +254,18 @@ std::string sentence(std::string clause)
 }
 
 /// Joints of the worst level, and what they have in common.
-std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, double arm_friction)
+std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, const ArmFriction& arm)
 {
   std::string reason;
-  if (arm_friction != 1.0)
+  if (arm.median != 1.0)
   {
-    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm_friction)) +
+    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
              " times the reference's: another temperature or gain, not a fault of one joint. ";
+    if (arm.temperature)
+    {
+      reason += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
+                " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
+    }
   }
   std::vector<std::string> unjudged;
   for (const ArmLine& line : lines)
@@ -323,31 +333,35 @@ int compareArm(const CompareOptions& options)
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
   const std::vector<std::string> misfits = fit.whyNotJudged();
   std::vector<std::optional<double>> ratios;
+  std::vector<const RecordingComparison*> comparisons;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
     ratios.push_back(joints[i]->frictionRatio(load, sentence(misfits[i])));
+    comparisons.push_back(&joints[i]->comparison());
   }
   const Parameters& parameters = recording.parameters(0);
-  const double arm_friction = commonFriction(ratios, parameters.comparison.repeat_tolerance);
+  const ArmFriction arm = commonFriction(comparisons, ratios, parameters.comparison.repeat_tolerance);
   std::vector<ArmLine> lines;
   HealthLevel level = HealthLevel::OK;
   bool judged = false;
+  double temperatures = 0.0;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     const std::string& name = recording.joints()[i].short_name;
     const RecordingComparison& comparison = joints[i]->comparison();
-    ComparisonRecord record = joints[i]->write(found, load, arm_friction, misfits[i],
+    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i], misfits[i],
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
-    lines.push_back(
-        { name, std::move(record.verdict), misfits[i], ratios[i], comparison.currentRms(), comparison.residualRms() });
+    temperatures += comparison.temperature();
+    lines.push_back({ name, std::move(record.verdict), misfits[i], ratios[i], comparison.temperature(),
+                      temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
   const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
                                                     static_cast<std::ptrdiff_t>(misfits.size());
-  const std::string reason = same ? sentence(misfits.front()) : reasonOf(lines, level, arm_friction);
+  const std::string reason = same ? sentence(misfits.front()) : reasonOf(lines, level, arm);
   const Table table(ARM_COLUMNS, lines);
   const Json all{ { "recording", options.recording },
                   { "arm", options.arm },
@@ -355,10 +369,11 @@ int compareArm(const CompareOptions& options)
                   { "level", level_name },
                   { "reason", reason },
                   { "load", options.load },
-                  { "temperature", parameters.input.temperature },
+                  { "temperature", temperatures / static_cast<double>(lines.size()) },
+                  { "temperature_estimate", arm.temperature },
                   { "rows", found.rows },
                   { "duration", found.duration },
-                  { "friction_ratio", arm_friction },
+                  { "friction_ratio", arm.median },
                   { "joints", table.rows() } };
   writeTextFile((fs::path(options.report) / ARM_FILE).string(), all.dump() + "\n");
   makePage(options.report);

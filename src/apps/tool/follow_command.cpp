@@ -56,6 +56,8 @@ const std::vector<Column<Comparison>> COLUMNS{
   { "friction_torque", &Comparison::friction_torque },
   { "load_torque", &Comparison::load_torque },
   { "load_told", &Comparison::load_provided },
+  { "temperature", &Comparison::temperature },
+  { "temperature_received", &Comparison::temperature_received },
   { "sticking", &Comparison::sticking },
   { "after_gap", &Comparison::after_gap },
   { "outside_band", &Comparison::isOutside }
@@ -138,6 +140,8 @@ void print(const FollowSummary& summary, bool json)
               { "reception_jitter", "jitter of the reception, 95 %", summary.timing.jitter, "s" },
               { "lag", "", summary.lag },
               { "", "delay of the measurement", summary.lag ? Json(*summary.lag) : "unknown", summary.lag ? "s" : "" },
+              { "temperatures_refused", "temperatures refused: not finite, impossible values",
+                summary.count.refused_temperatures },
               { "without_load", "rows without a received load", summary.counters.without_load },
               { "current_residual_rms", "measured less predicted current, rms", summary.current.value(), "A" },
               { "velocity_residual_rms", "measured less predicted velocity, rms", summary.velocity.value(), "rad/s" },
@@ -315,14 +319,16 @@ int followArm(const FollowOptions& options)
     follower->finish();
   }
   warnOfStamps(found);
-  printReport(options.json,
-              { { "rows", "rows", found.rows },
-                { "duration", "duration", found.duration, "s" },
-                { "unreadable", "messages unreadable or incomplete", found.corrupt },
-                { "refused", "rows repeated, out of order or not finite", found.refused },
-                { "gaps", "gaps that cut the recording", found.gaps },
-                { "load", "load", options.load } },
-              { { "joints", Table(ARM_COLUMNS, lines) } });
+  printReport(
+      options.json,
+      { { "rows", "rows", found.rows },
+        { "duration", "duration", found.duration, "s" },
+        { "unreadable", "messages unreadable or incomplete", found.corrupt },
+        { "refused", "rows repeated, out of order or not finite", found.refused },
+        { "gaps", "gaps that cut the recording", found.gaps },
+        { "temperatures_refused", "temperatures refused: not finite, impossible values", found.refused_temperatures },
+        { "load", "load", options.load } },
+      { { "joints", Table(ARM_COLUMNS, lines) } });
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }
 

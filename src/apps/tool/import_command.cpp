@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -15,6 +16,7 @@
 #include "apps/common/text_table.hpp"
 
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Temperature.h>
 
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
@@ -27,6 +29,7 @@ namespace
 {
 constexpr int JOINTS = 6;
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
+constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // they hardly change [ns]
 /// Torque at the joint per motor current, of the size 3 joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
 
@@ -41,14 +44,17 @@ struct ImportOptions : CommonOptions
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 
-/// The columns of a UR controller's real-time interface: timestamp, then per joint position, speed, current, torque.
-constexpr std::array<const char*, 4> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment" };
+/// The columns of a UR controller's real-time interface: timestamp, then per joint position, speed, current, torque
+/// and, where it was recorded, temperature.
+constexpr std::array<const char*, 5> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment",
+                                                 "joint_temperatures" };
 enum Quantity
 {
   POSITION,
   VELOCITY,
   CURRENT,
-  MOMENT
+  MOMENT,
+  TEMPERATURE
 };
 constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * JOINTS;
 using Row = std::array<double, COLUMNS>;
@@ -62,7 +68,7 @@ NumberTable<COLUMNS>::Names columnNames()
 {
   NumberTable<COLUMNS>::Names names;
   names[0] = "timestamp";
-  for (const Quantity quantity : { POSITION, VELOCITY, CURRENT, MOMENT })
+  for (const Quantity quantity : { POSITION, VELOCITY, CURRENT, MOMENT, TEMPERATURE })
   {
     for (int joint = 0; joint < JOINTS; ++joint)
     {
@@ -72,7 +78,7 @@ NumberTable<COLUMNS>::Names columnNames()
   return names;
 }
 
-/// Turns rows into messages: the telemetry of all joints, the motor torque command and the load of one.
+/// Turns rows into messages: telemetry and temperatures of all joints, the motor torque command and the load of one.
 class RowWriter
 {
 public:
@@ -95,7 +101,8 @@ public:
     load_ = command_;
   }
 
-  void write(const Row& row)
+  /// `temperatures`: the row has a column of them, by joint.
+  void write(const Row& row, const std::array<bool, JOINTS>& temperatures)
   {
     const Stamp stamp = start_ + static_cast<Stamp>(std::llround(row[0] * 1e9));
     for (int joint = 0; joint < JOINTS; ++joint)
@@ -107,13 +114,34 @@ public:
     }
     command_.effort[0] = row[column(CURRENT, joint_)] * torque_per_current_;
     load_.effort[0] = row[column(MOMENT, joint_)];
+    writeTemperatures(row, temperatures, stamp);
     writeStamped(TELEMETRY_TOPIC, stamp, telemetry_);
     writeStamped(prefix_ + topics::COMMAND, stamp, command_);
     writeStamped(prefix_ + topics::LOAD, stamp, load_);
   }
 
 private:
-  void writeStamped(const std::string& topic, Stamp stamp, sensor_msgs::JointState& message)
+  void writeTemperatures(const Row& row, const std::array<bool, JOINTS>& temperatures, Stamp stamp)
+  {
+    if (stamp < next_temperatures_)
+    {
+      return;
+    }
+    next_temperatures_ = stamp + TEMPERATURE_PERIOD;
+    for (int joint = 0; joint < JOINTS; ++joint)
+    {
+      const auto i = static_cast<std::size_t>(joint);
+      if (temperatures[i])
+      {
+        temperature_.header.frame_id = telemetry_.name[i];
+        temperature_.temperature = row[column(TEMPERATURE, joint)];
+        writeStamped(std::string("/") + topics::JOINT_TEMPERATURES, stamp, temperature_);
+      }
+    }
+  }
+
+  template <class Message>
+  void writeStamped(const std::string& topic, Stamp stamp, Message& message)
   {
     message.header.stamp = toRosTime(stamp);
     bag_.write(topic, stamp, message);
@@ -124,6 +152,8 @@ private:
   double torque_per_current_;
   Stamp start_;
   std::string prefix_;
+  Stamp next_temperatures_{};  // [ns]
+  sensor_msgs::Temperature temperature_;
   sensor_msgs::JointState telemetry_;
   sensor_msgs::JointState command_;
   sensor_msgs::JointState load_;
@@ -144,6 +174,11 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
   const double lines = countLines(options.csv);
   Row row{};
   std::uint64_t rows = 0;
+  std::array<bool, JOINTS> temperatures{};
+  for (int i = 0; i < JOINTS; ++i)
+  {
+    temperatures[static_cast<std::size_t>(i)] = table.hasColumn(column(TEMPERATURE, i));
+  }
   try
   {
     for (double last = -HUGE_VAL; interruptSignal() == 0 && table.read(row); last = row[0])
@@ -157,7 +192,7 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
       {
         throw InputError(table.place() + ": timestamp " + shortNumber(row[0]) + " s lies before the ROS epoch");
       }
-      writer.write(row);
+      writer.write(row, temperatures);
       ++rows;
       progress.update(static_cast<double>(rows) / lines);
     }
@@ -183,7 +218,7 @@ int import(const ImportOptions& options)
   const UrJoint joint = *findUrJoint(options.joint);
   const double ratio = options.ratio.value_or(nominalRatio(parameters.gear));
   requireWritable(options.out, options.force, options.csv);
-  NumberTable<COLUMNS> table(options.csv, columnNames());
+  NumberTable<COLUMNS> table(options.csv, columnNames(), JOINTS, JOINTS);
   BagWriter bag(options.out);
   const std::uint64_t rows = importRows(options, joint, ratio, table, bag);
   if (rows == 0)

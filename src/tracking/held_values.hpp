@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace hjt
+{
+/// Values with the times from which they are valid, kept for rows that come later. Nothing allocates.
+class HeldValues
+{
+public:
+  static constexpr std::size_t ROOM = 512;  ///< older ones are forgotten
+
+  void push(double time, double value) noexcept
+  {
+    values_[end_ % ROOM] = { time, value };
+    ++end_;
+  }
+
+  /// The value given last of those not later than `time`; none, or older than `max_age`: nothing. Times in [s].
+  std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
+  {
+    for (std::uint64_t i = end_; i > 0 && end_ - i < ROOM; --i)
+    {
+      const ValueAt& held = values_[(i - 1) % ROOM];
+      if (held.time <= time)
+      {
+        return time - held.time <= max_age ? std::make_optional(held.value) : std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  void clear() noexcept { end_ = 0; }
+
+private:
+  struct ValueAt
+  {
+    double time;
+    double value;
+  };
+
+  std::array<ValueAt, ROOM> values_{};
+  std::uint64_t end_{};
+};
+
+/// Temperatures of one drive as they are received. Bad ones are counted and left out. Nothing allocates.
+class TemperatureRecord
+{
+public:
+  /// Older ones are not used. The slowest that a UR's joints warm up with is a time constant of some 1600 s: in this
+  /// time by 4 % of the whole rise, which is 1 K or less [s].
+  static constexpr double MAX_AGE = 60.0;
+  static constexpr double LOWEST = -20.0;  ///< [degC]
+  static constexpr double HIGHEST = 120.0;
+
+  static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
+
+  /// At a time [s] from any zero; outside LOWEST ... HIGHEST [degC] or not finite: refused.
+  void push(double time, double temperature) noexcept
+  {
+    if (std::isfinite(time) && isPossible(temperature))
+    {
+      values_.push(time, temperature);
+    }
+    else
+    {
+      ++refused_;
+    }
+  }
+
+  /// The latest one not later than `time` and not older than MAX_AGE; NaN: there is none [degC].
+  double at(double time) const noexcept
+  {
+    return values_.at(time, MAX_AGE).value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void clear() noexcept { values_.clear(); }
+
+  std::uint64_t refused() const noexcept { return refused_; }
+
+private:
+  HeldValues values_;
+  std::uint64_t refused_{};
+};
+}  // namespace hjt
