@@ -23,6 +23,7 @@ constexpr double DEVIATIONS = 3.0;    // beyond which a difference is no chance
 constexpr double WIDEST_FACTOR = 20;  // of stamps; beyond it another unit is likelier
 constexpr double LAG_OFF = 0.05;      // [s]
 constexpr std::uint64_t MIN_ROWS = 100;
+constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
 constexpr double DEGREE = PI / 180.0;
 
@@ -142,6 +143,7 @@ void RecordingFit::reset() noexcept
     joint.reach = JointReach();
     joint.moving_rows = 0;
     joint.fast_rows = 0;
+    joint.unchanged = 0.0;
   }
   last_time_ = std::numeric_limits<double>::quiet_NaN();
   moving_ = 0.0;
@@ -179,6 +181,9 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
     joint.time.add(sample.time, sample.position, sample.recorded_velocity);
+    joint.unchanged =
+        sample.current != joint.last_current ? 0.0 : joint.unchanged + (follows && joint_moves ? step : 0.0);
+    joint.last_current = sample.current;
     if (follows && joint_moves && std::isfinite(torques[i]))
     {
       joint.load.add(step, sample.velocity, torques[i] / joint.gain, sample.current);
@@ -324,8 +329,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   {
     findings.push_back({ "gain",
                          "effort changes " + rounded(found.factor.value) +
-                             " times as much with the load as telemetry.torque_per_current says: another gain, or a "
-                             "payload that is not configured",
+                             " times as much with the load as telemetry.torque_per_current says: another arm, gain or "
+                             "payload than configured",
                          false });
   }
   return findings;
@@ -339,10 +344,10 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   {
     return findings;
   }
-  if (joint.reach.least_current == joint.reach.most_current)
+  if (joint.reach.least_current == joint.reach.most_current || joint.unchanged > UNCHANGED)
   {
     findings.push_back(
-        { "effort_constant", joint.reach.least_current == 0.0 ? "effort is zero" : "effort never changes", true });
+        { "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes", true });
   }
   const FittedFactor stamps = stampFactor();
   const double of_stamps = std::isfinite(stamps.value) ? stamps.value : 1.0;

@@ -104,6 +104,8 @@ private:
     JointReach reach;
     std::uint64_t moving_rows{};
     std::uint64_t fast_rows{};  // faster than any joint
+    double last_current{};      // [A]
+    double unchanged{};         // motion since it changed [s]
   };
 
   std::vector<FittedFactor> timeFactors() const;

@@ -268,6 +268,8 @@ TEST(RecordingFit, ADeadEffortIsFoundAndDoesNotCountForTheUnit)
   EXPECT_THAT(zero.whyNotJudged()[ELBOW], testing::HasSubstr("zero"));
   EXPECT_NEAR(zero.effort().factor.value, 1.0, 0.05);
   expectOnlyElbow(withElbow([](Given& given) { given.effort = 1.5; }).fit(), "effort_constant", true);
+  expectOnlyElbow(withElbow([](Given& given) { given.effort *= given.time < 30.0 ? 1.0 : 0.0; }).fit(),
+                  "effort_constant", true);
 }
 
 TEST(RecordingFit, UnitOfTheEffortIsFound)

@@ -172,14 +172,21 @@ Arms findArms(const ArmOptions& options, bool is_csv, Contents& contents)
     }
   }
   std::sort(files.begin(), files.end());
+  std::string nearest;  // lacks less than half of its joints
   for (const fs::path& file : files)
   {
-    if (is_csv || missingJoints(readArmDescription(file.string()), contents.named).empty())
+    const ArmDescription arm = readArmDescription(file.string());
+    const std::size_t missing = is_csv ? 0 : missingJoints(arm, contents.named).size();
+    if (missing == 0)
     {
       arms.fitting.push_back(file.stem().string());
     }
+    else if (nearest.empty() && 2 * missing < arm.joints.size())
+    {
+      nearest = file.stem().string();
+    }
   }
-  arms.taken = !options.arm.empty() ? options.arm : arms.fitting.empty() ? "" : arms.fitting.front();
+  arms.taken = !options.arm.empty() ? options.arm : arms.fitting.empty() ? nearest : arms.fitting.front();
   if (!arms.taken.empty() && !is_csv)
   {
     const ArmDescription arm = readArmDescription(findArm(arms.taken, directory));
