@@ -11,15 +11,21 @@ namespace hjt
 {
 ArmLoad::ArmLoad(const ArmDescription& arm)
   : dynamics_(arm)
-  , differentiators_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
+  , times_(dynamics_.joints())
+  , slow_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
+  , fast_(dynamics_.joints())
   , sample_{ std::vector<MotionSample>(dynamics_.joints()), std::vector<double>(dynamics_.joints()) }
   , motion_(dynamics_.joints())
+  , fast_samples_(dynamics_.joints())
+  , fast_torques_(dynamics_.joints())
 {
 }
 
 void ArmLoad::reset() noexcept
 {
-  std::fill(differentiators_.begin(), differentiators_.end(), MotionDifferentiator(HALF_WIDTH));
+  std::fill(slow_.begin(), slow_.end(), MotionDifferentiator(HALF_WIDTH));
+  std::fill(fast_.begin(), fast_.end(), MotionDifferentiator());
+  times_.reset();
   last_time_ = -std::numeric_limits<double>::infinity();
 }
 
@@ -38,26 +44,46 @@ bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
     return false;
   }
   last_time_ = time;
+  const double stamp_error = times_.stampError(rows);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    differentiators_[i].push(rows[i]);
+    MotionRow row = rows[i];
+    row.stamp_error = stamp_error;
+    slow_[i].push(row);
+    fast_[i].push(row);
   }
+  return true;
+}
+
+/// The next sample of every joint, and the torques that their motion takes. False: one is not ready.
+bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples,
+                   std::vector<double>& torques) noexcept
+{
+  for (std::size_t i = 0; i < motion_.size(); ++i)
+  {
+    const std::optional<MotionSample> sample = from[i].pop(at_end);
+    if (!sample)
+    {
+      return false;
+    }
+    samples[i] = *sample;
+    motion_[i] = { sample->position, sample->velocity, sample->acceleration };
+  }
+  dynamics_.torques(motion_, torques);
   return true;
 }
 
 const ArmSample* ArmLoad::pop(bool at_end) noexcept
 {
+  // The slow ones are ready last; both hold the same rows.
+  if (!take(slow_, at_end, sample_.joints, sample_.torques) || !take(fast_, at_end, fast_samples_, fast_torques_))
+  {
+    return nullptr;
+  }
   for (std::size_t i = 0; i < motion_.size(); ++i)
   {
-    const std::optional<MotionSample> sample = differentiators_[i].pop(at_end);
-    if (!sample)
-    {
-      return nullptr;
-    }
-    sample_.joints[i] = *sample;
-    motion_[i] = { sample->position, sample->velocity, sample->acceleration };
+    sample_.joints[i].vibration = fast_torques_[i] - sample_.torques[i];
   }
-  dynamics_.torques(motion_, sample_.torques);
   return &sample_;
 }
 }  // namespace hjt

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arm/arm_dynamics.hpp"
+#include "arm/row_times.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -22,12 +23,14 @@ struct ArmSample
 /// Load of each joint of an arm from a stream of the angles of all, rows of one time each.
 ///
 /// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
-/// and have no phase, and a row comes out at most HALF_WIDTH late. Live and offline alike. After construction nothing
-/// throws; nothing allocates.
+/// and have no phase, and a row comes out at most HALF_WIDTH late. What faster rates, within a joint's own half width,
+/// take beyond that is the torque of the arm's vibration: mostly the answer to the drives' ripple. Velocities, if
+/// recorded, mend the rows' times (RowTimes). Live and offline alike. After construction nothing throws;
+/// nothing allocates.
 class ArmLoad
 {
 public:
-  /// Twice that of a joint's own rates: coupling multiplies the noise of six accelerations [s].
+  /// Wider than that of a joint's own rates: the load is that of the commanded motion, without vibration [s].
   static constexpr double HALF_WIDTH = 0.1;
   /// Stamps that go back by more are a new stream [s].
   static constexpr double RESTART = 1.0;
@@ -47,10 +50,18 @@ public:
   const ArmSample* pop(bool at_end = false) noexcept;
 
 private:
+  bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples,
+            std::vector<double>& torques) noexcept;
+
   ArmDynamics dynamics_;
-  std::vector<MotionDifferentiator> differentiators_;  // one a joint, all with rows of the same times
+  RowTimes times_;
+  // One a joint, all with rows of the same times, for load and vibration.
+  std::vector<MotionDifferentiator> slow_;
+  std::vector<MotionDifferentiator> fast_;
   ArmSample sample_;
   std::vector<JointMotion> motion_;
+  std::vector<MotionSample> fast_samples_;
+  std::vector<double> fast_torques_;
   double last_time_{ -std::numeric_limits<double>::infinity() };
 };
 }  // namespace hjt

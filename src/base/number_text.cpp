@@ -46,6 +46,13 @@ std::string numberText(double value)
   return mantissa + text.substr(exponent, 2) + text.substr(digits);
 }
 
+std::string roundedText(double value, int digits)
+{
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.*g", digits, value);
+  return text;
+}
+
 std::string rangeText(const Range& range)
 {
   const auto bound = [](double value)

@@ -11,6 +11,9 @@ namespace hjt
 /// The shortest text that reads back as the same number, spelt so that rosparam takes it for one: 1.0e-5, 31000.0.
 std::string numberText(double value);
 
+/// With so many significant digits.
+std::string roundedText(double value, int digits);
+
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.
 std::string rangeText(const Range& range);
 

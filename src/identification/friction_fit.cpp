@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+#include <Eigen/Cholesky>
 
 #include "base/number_text.hpp"
 #include "elements/motor.hpp"
@@ -16,40 +18,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double MIN_TOLERANCE = 1e-3;  // share of a column's square that the others do not explain
 constexpr double STRIBECK_SPEED = 5.0;  // of the motor, where the static rise has faded [rad/s]
 constexpr double OUTLIER = 3.0;         // blocks that many deviations off count less
+constexpr double LEAST_GREASE = 0.05;   // of the configured, so that a viscosity remains
+constexpr double NARROWED = 0.5;        // deviation after the motion over that before
 constexpr std::size_t MIN_BLOCKS = 12;
 constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
-
-/// Largest half width of an interval over its value. The gain, which is known within some percent before, is asked more
-/// of.
-double widest(std::size_t quantity)
-{
-  return quantity == FrictionFit::GAIN ? 0.1 : 0.5;
-}
 
 bool isFriction(std::size_t quantity)
 {
   return quantity >= FrictionFit::PRELOAD;
-}
-
-/// What is refused first: what the twin does without, then what is known best before. Higher first.
-double rank(std::size_t quantity)
-{
-  switch (quantity)
-  {
-    case FrictionFit::FLANKS:
-    case FrictionFit::VISCOUS:
-      return 1e9;
-    case FrictionFit::OFFSET:
-    case FrictionFit::GAIN:
-      return 1e6;
-    case FrictionFit::INERTIA:
-      return 1e3;
-    default:
-      return 1.0;
-  }
 }
 }  // namespace
 
@@ -81,35 +59,59 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
                      " stretches of " + numberText(BLOCK) + " s are faster than " + numberText(MOVING) + " rad/s, " +
                      std::to_string(MIN_BLOCKS) + " are needed");
   }
-  values_[GAIN] = 1.0 / parameters.telemetry.torque_per_current;
-  values_[OFFSET] = parameters.telemetry.current_offset;
-  values_[INERTIA] = Motor(parameters.motor).inertia() - parameters.telemetry.inertia_in_load;
-  values_[PRELOAD] = parameters.bearing.race_preload;
-  values_[GREASE] = 1.0;
-  values_[FLANKS] = 1.0;
-  values_[VISCOUS] = parameters.motor.viscous_friction;
-  start_ = values_;
+  setKnown(parameters, friction);
+  values_ = start_;
   asked_.fill(true);
   asked_[STRIBECK] = false;
   solve();
-  do
+  for (std::size_t i = 0; i < STRIBECK; ++i)
   {
-    solve();  // outliers are those of the solution before
-  } while (refuseWorst());
+    if (share(i) > NARROWED)
+    {
+      refusal_[i] = "the motion narrows what was known before to " + percentText(share(i)) + " only";
+      asked_[i] = false;
+      values_[i] = start_[i];
+      half_width_[i] = 0.0;
+    }
+  }
+  solve();
 
   // Beside what was found, and without changing it: the twin has no parameter for it.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
   solve();
-  const std::string refusal = whyRefused(STRIBECK).reason;
-  const double rise = refusal.empty() ? values_[STRIBECK] : 0.0;
-  const double rise_width = refusal.empty() ? half_width_[STRIBECK] : 0.0;
+  const bool is_there = values_[STRIBECK] > half_width_[STRIBECK];
+  const double rise = is_there ? values_[STRIBECK] : 0.0;
+  const double rise_width = is_there ? half_width_[STRIBECK] : 0.0;
   values_ = found;
   half_width_ = width;
   values_[STRIBECK] = rise;
   half_width_[STRIBECK] = rise_width;
-  refusal_[STRIBECK] = refusal;
+  refusal_[STRIBECK] = is_there ? "" : "its 95 % interval holds zero";
+}
+
+/// What is known of a joint of this type before it moves: gain within 10 %; offset 0.03 A; the motor's inertia within
+/// half of it; parts of its friction within half of all friction at 1 rad/s of the joint and without load.
+void FrictionFit::setKnown(const Parameters& parameters, const FrictionMap& friction)
+{
+  const double inertia = Motor(parameters.motor).inertia();
+  const double speed = nominalRatio(parameters.gear);
+  const double typical = friction.at(speed, 0.0, parameters.input.temperature).sum();
+  const double preload_torque = parameters.bearing.load_factor * parameters.bearing.pitch_diameter;  // [N.m/N]
+  const auto set = [&](Quantity quantity, double start, double deviation)
+  {
+    start_[quantity] = start;
+    known_[quantity] = deviation;
+  };
+  set(GAIN, 1.0 / parameters.telemetry.torque_per_current, 0.1 / parameters.telemetry.torque_per_current);
+  set(OFFSET, parameters.telemetry.current_offset, 0.03);
+  set(INERTIA, inertia - parameters.telemetry.inertia_in_load, 0.5 * inertia);
+  set(PRELOAD, parameters.bearing.race_preload, 0.5 * typical / preload_torque);
+  set(GREASE, 1.0, 0.5);
+  set(FLANKS, 1.0, 0.5);
+  set(VISCOUS, parameters.motor.viscous_friction, 0.5 * typical / speed);
+  set(STRIBECK, 0.0, typical);
 }
 
 void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& friction,
@@ -124,7 +126,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
     const double joint = weight * std::copysign(ratio, speed);
     const FrictionShares shares = friction.at(speed, sample.load, parameters.input.temperature);
     block.current += weight * sample.current;
-    block.known += weight * sample.load + joint * shares.rest;
+    block.known += weight * (sample.load + sample.vibration) + joint * shares.rest;
     block.column[INERTIA] += weight * ratio * ratio * sample.acceleration;
     block.column[PRELOAD] += joint * preload_torque;
     block.column[GREASE] += joint * shares.grease;
@@ -158,29 +160,44 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
   blocks_.resize((blocks_.size() + stride - 1) / stride);
 }
 
-/// Standard deviation of the blocks about the present values, outliers left out [A].
-double FrictionFit::deviation() const
+/// Of the blocks at the present values [A].
+std::vector<double> FrictionFit::residuals() const
 {
-  std::vector<double> sizes;
   std::array<const double*, QUANTITIES> values{};
   std::transform(values_.begin(), values_.end(), values.begin(), [](const double& value) { return &value; });
+  std::vector<double> residuals;
   for (const Block& block : blocks_)
   {
-    double residual{};
-    Residual{ block }(values.data(), &residual);
-    sizes.push_back(std::abs(residual));
+    Residual{ block }(values.data(), &residuals.emplace_back());
   }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  constexpr double NORMAL_MEDIAN = 0.6745;
-  return std::max(*middle / NORMAL_MEDIAN, 1e-6);
+  return residuals;
 }
 
+/// The values, then their deviation and correlation, by which they are fitted again.
 void FrictionFit::solve()
+{
+  double correlation_rows = 1.0;
+  constexpr int ROUNDS = 3;
+  for (int round = 0; round < ROUNDS; ++round)
+  {
+    const std::vector<double> errors = residuals();
+    std::vector<double> sizes = errors;
+    std::transform(sizes.begin(), sizes.end(), sizes.begin(), [](double error) { return std::abs(error); });
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    constexpr double NORMAL_MEDIAN = 0.6745;
+    solveOnce(std::max(*middle / NORMAL_MEDIAN, 1e-6), correlation_rows);
+    const std::vector<double> left = residuals();
+    correlation_rows =
+        hjt::correlationRows(Eigen::Map<const Eigen::VectorXd>(left.data(), static_cast<Eigen::Index>(left.size())));
+  }
+}
+
+/// @param deviation of the blocks, outliers left out [A]
+void FrictionFit::solveOnce(double deviation, double correlation_rows)
 {
   ceres::Problem problem;
   std::vector<double*> all;
-  std::vector<double*> asked;
   for (std::size_t i = 0; i < QUANTITIES; ++i)
   {
     all.push_back(&values_[i]);
@@ -190,81 +207,61 @@ void FrictionFit::solve()
       problem.SetParameterBlockConstant(all.back());
       continue;
     }
-    asked.push_back(all.back());
+    problem.AddResidualBlock(
+        new ceres::NormalPrior(Eigen::Matrix<double, 1, 1>(1.0 / known_[i]), Eigen::Matrix<double, 1, 1>(start_[i])),
+        nullptr, all.back());
     if (isFriction(i))
     {
-      problem.SetParameterLowerBound(all.back(), 0, 0.0);
+      problem.SetParameterLowerBound(all.back(), 0, i == GREASE ? LEAST_GREASE : 0.0);
     }
   }
-  const double outlier = OUTLIER * deviation();
+  const double weight = 1.0 / (deviation * deviation * correlation_rows);
   for (const Block& block : blocks_)
   {
     auto* cost = new ceres::DynamicAutoDiffCostFunction<Residual, QUANTITIES>(new Residual{ block });
     std::for_each(all.begin(), all.end(), [&](double* /*value*/) { cost->AddParameterBlock(1); });
     cost->SetNumResiduals(1);
-    problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
+    problem.AddResidualBlock(
+        cost, new ceres::ScaledLoss(new ceres::HuberLoss(OUTLIER * deviation), weight, ceres::TAKE_OWNERSHIP), all);
   }
-  constexpr int MAX_ITERATIONS = 100;
-  const Regression found = hjt::solve(problem, asked, MAX_ITERATIONS);
-  for (std::size_t k = 0; k < asked.size(); ++k)
-  {
-    const std::ptrdiff_t i = asked[k] - values_.data();
-    const auto at = static_cast<Eigen::Index>(k);
-    norm_[i] = found.norm[at];
-    tolerance_[i] = found.tolerance[at];
-    half_width_[i] = found.half_width[at];
-  }
-}
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 100;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
 
-FrictionFit::Verdict FrictionFit::whyRefused(std::size_t i) const
-{
-  // An inertia is compared with the motor's, since what the load holds of it may leave nothing.
-  const double size = std::abs(i == INERTIA ? start_[i] : values_[i]);
-  if (norm_[i] <= 0.0)
+  // What was known before and what the blocks say of it.
+  using Normal = Eigen::Matrix<double, QUANTITIES, QUANTITIES>;
+  using Row = Eigen::Matrix<double, QUANTITIES, 1>;
+  const Row scale = Eigen::Map<const Row>(known_.data());
+  Normal information = Normal::Identity();
+  for (const Block& block : blocks_)
   {
-    return { 1e3, "nothing in this motion depends on it" };
+    Row slope = values_[GAIN] * Eigen::Map<const Row>(block.column.data());
+    slope[OFFSET] = 1.0;
+    slope[GAIN] = block.known;
+    for (std::size_t i = INERTIA; i < QUANTITIES; ++i)
+    {
+      slope[GAIN] += values_[i] * block.column[i];
+    }
+    slope = slope.cwiseProduct(scale);
+    for (std::size_t i = 0; i < QUANTITIES; ++i)
+    {
+      slope[static_cast<Eigen::Index>(i)] *= asked_[i] ? 1.0 : 0.0;
+    }
+    information += weight * slope * slope.transpose();
   }
-  if (tolerance_[i] < MIN_TOLERANCE)
-  {
-    return { MIN_TOLERANCE / tolerance_[i],
-             "the other quantities explain all but " + percentText(tolerance_[i]) + " of its effect" };
-  }
-  if (size <= 1e-6 * half_width_[i] && i != PRELOAD && i != GREASE)
-  {
-    return { 1e3, "its estimate is zero" };
-  }
-  if (half_width_[i] > widest(i) * size && size > 1e-6 * half_width_[i])
-  {
-    return { half_width_[i] / (widest(i) * size),
-             "its 95 % interval is " + percentText(half_width_[i] / size) + " of the value wide to either side" };
-  }
-  return {};
-}
-
-/// True if a parameter was dropped, so that the rest must be refitted.
-bool FrictionFit::refuseWorst()
-{
-  double worst = 0.0;
-  std::size_t quantity = QUANTITIES;
-  Verdict verdict;
+  const Row variance = information.ldlt().solve(Normal::Identity()).diagonal();
   for (std::size_t i = 0; i < QUANTITIES; ++i)
   {
-    const Verdict candidate = asked_[i] ? whyRefused(i) : Verdict{};
-    if (candidate.badness * rank(i) > worst)
-    {
-      worst = candidate.badness * rank(i);
-      quantity = i;
-      verdict = candidate;
-    }
+    half_width_[i] = asked_[i] ? NORMAL_95 * known_[i] * std::sqrt(variance[static_cast<Eigen::Index>(i)]) : 0.0;
   }
-  if (quantity == QUANTITIES)
-  {
-    return false;
-  }
-  refusal_[quantity] = verdict.reason;
-  half_width_[quantity] = 0.0;
-  asked_[quantity] = false;
-  values_[quantity] = start_[quantity];
-  return true;
+}
+
+/// Of the deviation before that is left after the motion.
+double FrictionFit::share(std::size_t quantity) const
+{
+  return half_width_[quantity] / (NORMAL_95 * known_[quantity]);
 }
 }  // namespace hjt

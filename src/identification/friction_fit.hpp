@@ -11,14 +11,16 @@
 
 namespace hjt
 {
-/// Gain, offset, inertia and friction of a joint from the rows that move, by least squares (Ceres).
+/// Gain, offset, inertia and friction of a joint from the rows that move: the most probable values after what is known
+/// before (maximum a posteriori, Ceres).
 ///
 ///   current = (load + J n^2 a + s (rest + P preload + G grease + F flanks + V n |w|)) / gain + offset
 /// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in
-/// which the ripple of the teeth cancels out. No friction can be negative: preload and grease are held at zero then.
-/// Parameters that the data do not identify are dropped one at a time: first the optional ones (viscous friction in
-/// addition to the grease's, more friction of the flanks), then those with a known default (offset, gain, inertia). A
-/// Stribeck term, S n exp(-(w/5)^2), is fitted in addition.
+/// which the ripple of the teeth cancels out; it counts by the deviation of the rows, outliers less (Huber), and by the
+/// correlation of their residual. Known before is each value as configured, normally distributed with the deviation of
+/// `known`: what a motion hardly shows stays near it, and others do not run away in its place. No friction can be
+/// negative. A quantity whose deviation the motion does not halve is refused and stays as configured; the others are
+/// fitted again. A Stribeck term, S n exp(-(w/5)^2), is fitted in addition.
 class FrictionFit
 {
 public:
@@ -54,24 +56,19 @@ private:
     Values column;  // torque at the joint by each quantity; gain and offset unused
   };
   struct Residual;
-  struct Verdict
-  {
-    double badness{};    // 0: sound; else above 1
-    std::string reason;  // empty: sound
-  };
 
   void addBlocks(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples);
-  double deviation() const;
+  void setKnown(const Parameters& parameters, const FrictionMap& friction);
+  std::vector<double> residuals() const;
   void solve();
-  Verdict whyRefused(std::size_t quantity) const;
-  bool refuseWorst();
+  void solveOnce(double deviation, double correlation_rows);
+  double share(std::size_t quantity) const;
 
   std::vector<Block> blocks_;
   Values values_{};
-  Values start_{};
-  Values half_width_{};
-  Values norm_{};
-  Values tolerance_{};
+  Values start_{};       // as configured
+  Values known_{};       // its deviation
+  Values half_width_{};  // of the 95 % interval
   std::array<bool, QUANTITIES> asked_{};
   std::array<std::string, QUANTITIES> refusal_;
 };

@@ -178,6 +178,19 @@ Parameters withoutRipple(Parameters parameters)
   return parameters;
 }
 
+/// Median time between two rows [s].
+double rowPeriod(const std::vector<MotionSample>& samples)
+{
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+  {
+    steps.push_back(samples[i].time - samples[i - 1].time);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
 /// What the motion-driven twin's torque lacks without ripple in the rows that move.
 std::vector<RippleRow> rippleRows(const Parameters& parameters, const std::vector<MotionSample>& samples)
 {
@@ -344,7 +357,8 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   result.parameters = parameters;
   storeFriction(FrictionFit(parameters, FrictionMap(parameters), train), load_recorded, result);
 
-  const RippleFit ripple(rippleRows(result.parameters, train), parameters.telemetry, nominalRatio(parameters.gear));
+  const RippleFit ripple(rippleRows(result.parameters, train), rowPeriod(train), parameters.telemetry,
+                         nominalRatio(parameters.gear));
   ripple.store(result.parameters.telemetry);
   for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
   {

@@ -56,15 +56,14 @@ Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters
   Regression result;
   result.residuals = Eigen::Map<Eigen::VectorXd>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
   result.correlation_rows = correlationRows(result.residuals);
-  result.norm = jacobian.colwise().norm();
-  const Eigen::VectorXd size = result.norm.unaryExpr([](double norm) { return norm > 0.0 ? norm : 1.0; });
+  const Eigen::VectorXd norm = jacobian.colwise().norm();
+  const Eigen::VectorXd size = norm.unaryExpr([](double length) { return length > 0.0 ? length : 1.0; });
   const Eigen::Index n = jacobian.cols();
   const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd normal = scaled.transpose() * scaled + 1e-12 * Eigen::MatrixXd::Identity(n, n);
   const Eigen::VectorXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)).diagonal();
   const double variance =
       result.residuals.squaredNorm() / std::max(1.0, static_cast<double>(result.residuals.size() - n));
-  result.tolerance = inverse.cwiseInverse();
   result.half_width = NORMAL_95 * (variance * result.correlation_rows * inverse).cwiseSqrt().cwiseQuotient(size);
   return result;
 }

@@ -13,8 +13,6 @@ namespace hjt
 struct Regression
 {
   Eigen::VectorXd residuals;
-  Eigen::VectorXd norm;        ///< of each parameter's column; 0: nothing depends on it
-  Eigen::VectorXd tolerance;   ///< share of each column's square that the others do not explain
   Eigen::VectorXd half_width;  ///< of each parameter's 95 % interval, widened by the residual's correlation
   double correlation_rows{};   ///< rows after which the residual forgets itself
 };

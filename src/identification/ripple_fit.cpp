@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <ceres/ceres.h>
 #include <Eigen/Cholesky>
@@ -41,19 +42,39 @@ struct Residual
 };
 }  // namespace
 
-RippleFit::RippleFit(const std::vector<RippleRow>& rows, const TelemetryParameters& start, double ratio)
-  : orders_(TorqueRipple::orders(ratio))
+RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio)
+  : orders_(TorqueRipple::orders(ratio)), fastest_(start.ripple_fastest)
 {
-  present_.fill(true);
+  std::vector<double> speeds;
+  std::transform(rows.begin(), rows.end(), std::back_inserter(speeds),
+                 [](const RippleRow& row) { return std::abs(row.velocity); });
+  if (!speeds.empty())
+  {
+    const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(KNOWN * static_cast<double>(speeds.size() - 1));
+    std::nth_element(speeds.begin(), fast, speeds.end());
+    fastest_ = std::min(*fast, M_PI / (period * orders_[1]) * (1.0 - 1e-12));
+    rows.erase(std::remove_if(rows.begin(), rows.end(),
+                              [&](const RippleRow& row) { return std::abs(row.velocity) > fastest_; }),
+               rows.end());
+  }
+  for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
+  {
+    present_[i] = orders_[i] * fastest_ * period <= M_PI;
+    refusal_[i] = present_[i] ? "" : "the rows are too far apart for it";
+  }
   values_[RESONANCE] = start.ripple_resonance;
   values_[DAMPING] = start.ripple_damping;
   values_[LAG] = start.ripple_lag;
   const Values configured = values_;
   chooseResonance(rows);
-  do
+  while (anyLine())
   {
     solve(rows);
-  } while (refuseWorst() && anyLine());
+    if (!refuseWorst())
+    {
+      break;
+    }
+  }
   if (!anyLine())
   {
     values_ = configured;
@@ -79,7 +100,7 @@ void RippleFit::chooseResonance(const std::vector<RippleRow>& rows)
       for (std::size_t i = 0; i < RESONANCE; ++i)
       {
         std::fill(values.begin(), values.begin() + RESONANCE, 0.0);
-        values[i] = 1.0;
+        values[i] = present_[i / 2] ? 1.0 : 0.0;
         columns[static_cast<Eigen::Index>(i)] =
             TorqueRipple::torque(orders_, row.position, row.velocity, values.data());
       }
@@ -215,5 +236,6 @@ void RippleFit::store(TelemetryParameters& p) const
   p.ripple_resonance = values_[RESONANCE];
   p.ripple_damping = values_[DAMPING];
   p.ripple_lag = values_[LAG];
+  p.ripple_fastest = fastest_;
 }
 }  // namespace hjt

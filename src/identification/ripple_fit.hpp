@@ -18,12 +18,16 @@ struct RippleRow
 };
 
 /// The lines of TorqueRipple in that torque, by least squares (Ceres), with the resonance of what the joint carries.
-/// A line that is lost in the residual is refused, and zero.
+/// A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of them, and to that at
+/// which the rows still sample two waves a turn of the motor twice.
 class RippleFit
 {
 public:
-  /// `rows`: consecutive rows that move. `start`: what is configured, which the resonance falls back to without a line.
-  RippleFit(const std::vector<RippleRow>& rows, const TelemetryParameters& start, double ratio);
+  static constexpr double KNOWN = 0.95;  ///< of the rows
+
+  /// `rows`: rows that move, every `period` [s] where no row is lost. `start`: what is configured, which the resonance
+  /// falls back to without a line.
+  RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio);
 
   const TorqueRipple::Orders& orders() const { return orders_; }
   std::array<double, 2> line(std::size_t line) const { return { values_[2 * line], values_[2 * line + 1] }; }
@@ -43,6 +47,7 @@ private:
   bool refuseWorst();
 
   TorqueRipple::Orders orders_;
+  double fastest_;  // [rad/s]
   Values values_{};
   Values half_width_{};
   std::array<bool, TorqueRipple::LINES> present_{};

@@ -48,6 +48,13 @@ constexpr ChoiceNames<InputMode, 4> choiceNames(InputMode)
              { "observer", InputMode::OBSERVER } } };
 }
 
+constexpr ChoiceNames<EffortUnit, 3> choiceNames(EffortUnit)
+{
+  return { { { "current", EffortUnit::CURRENT },
+             { "joint_torque", EffortUnit::JOINT_TORQUE },
+             { "motor_torque", EffortUnit::MOTOR_TORQUE } } };
+}
+
 constexpr ChoiceNames<LoadSource, 4> choiceNames(LoadSource)
 {
   return { { { "model", LoadSource::MODEL },

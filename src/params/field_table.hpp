@@ -331,8 +331,13 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("damping ratio of that resonance"));
   visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
         ofOthers("lag of the current's ripple behind the angle"));
+  visit("telemetry.ripple_fastest", "rad/s", p.telemetry.ripple_fastest, Range{ 0.0, 100.0 },
+        ofOthers("speed of the joint up to which its ripple is known; beyond, none is predicted"));
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
         ofOthers("rms difference between measured and predicted current of a healthy joint"));
+  visit("telemetry.effort", p.telemetry.effort,
+        ofOthers("effort of a measured joint: current: of the motor, in A; joint_torque: of the motor through the gear "
+                 "without its losses, in N.m; motor_torque: at the motor's shaft, in N.m"));
   visit(
       "telemetry.load", p.telemetry.load,
       ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: weight and inertia plus "

@@ -11,6 +11,7 @@
 #include "ros_io/node_surface_source.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
+#include "tracking/effort.hpp"
 
 namespace hjt
 {
@@ -41,6 +42,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , name_(node.getNamespace().substr(1))
   , names_(parameters.joint.name)
   , parameters_(parameters)
+  , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
   , gear_(node, parameters)
@@ -68,6 +70,7 @@ TelemetryStatus JointTracker::read(const sensor_msgs::JointState& message, Motio
   switch (status)
   {
     case TelemetryStatus::FOUND:
+      row.current *= current_per_effort_;
       break;
     case TelemetryStatus::UNKNOWN_JOINT:
       ++refusals_.unknown_joint;
@@ -106,6 +109,13 @@ void JointTracker::push(const MotionRow& row)
 {
   tracker_.push(row);
   publish();
+}
+
+void JointTracker::setMisfit(const std::string& reason, bool settled)
+{
+  misfit_ = reason;
+  fit_settled_ = settled;
+  tracker_.setFits(reason.empty());
 }
 
 void JointTracker::receiveLoad(const sensor_msgs::JointState& message, Stamp received)
@@ -268,6 +278,12 @@ bool JointTracker::loadIsUnknown() const
   return parameters_.telemetry.load != LoadSource::MODEL && tracker_.counters().compared > 0 && !comparison_.load_told;
 }
 
+/// Empty: it is judged.
+std::string JointTracker::whyNotJudged() const
+{
+  return misfit_.empty() && loadIsUnknown() ? "the load is unknown" : misfit_;
+}
+
 DiagnosticVerdict JointTracker::judgeTelemetry() const
 {
   using D = DiagnosticStatus;
@@ -285,6 +301,7 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
         { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
         { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
+        { !misfit_.empty(), { D::OK, "Telemetry arrives; friction and faults are not judged: " + misfit_ } },
         { loadIsUnknown(), { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
       { D::OK, "Telemetry arrives" });
 }
@@ -295,7 +312,8 @@ DiagnosticVerdict JointTracker::judgeComparison() const
   return firstOf(
       { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
-        { loadIsUnknown(), { D::OK, "Not judged: the load is unknown" } },
+        { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
+        { departs_ && !fit_settled_, { D::OK, "Not judged yet: whether angles and efforts fit is not known" } },
         { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
       { D::OK, "Within the band of a healthy joint" });
 }
@@ -307,9 +325,9 @@ DiagnosticVerdict JointTracker::judgeHealth() const
   {
     return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
   }
-  if (loadIsUnknown())
+  if (const std::string reason = whyNotJudged(); !reason.empty())
   {
-    return { DiagnosticStatus::OK, "Not judged: the load is unknown" };
+    return { DiagnosticStatus::OK, "Not judged: " + reason };
   }
   return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
 }

@@ -49,6 +49,9 @@ public:
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
   void push(const MotionRow& row);
 
+  /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits, or that is not yet `settled`.
+  void setMisfit(const std::string& reason, bool settled);
+
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 
@@ -91,6 +94,7 @@ private:
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   bool loadIsUnknown() const;
+  std::string whyNotJudged() const;
   bool hasStopped() const;
   DiagnosticVerdict judgeTelemetry() const;
   DiagnosticVerdict judgeComparison() const;
@@ -105,6 +109,9 @@ private:
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
   const Parameters parameters_;
+  const double current_per_effort_;  // [A], [A/(N.m)]
+  std::string misfit_;
+  bool fit_settled_{ true };
   Tracker tracker_;
   MeasuredGearPublisher gear_;
   LifePublisher life_;

@@ -20,6 +20,7 @@
 #include "ros_io/time.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/plausible.hpp"
+#include "tracking/time_fit.hpp"
 
 namespace hjt
 {
@@ -28,48 +29,6 @@ namespace
 constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
 constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
 constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
-
-/// Holds the angles and stamps of neighbouring rows against the velocities that the recording gives beside them.
-class VelocityCheck
-{
-public:
-  /// `velocity`: recorded; NaN: none.
-  void add(double time, double position, double velocity)
-  {
-    const double step = time - time_;
-    const double mean = 0.5 * (velocity + velocity_);
-    if (step > MotionDifferentiator::MIN_STEP && step < MotionDifferentiator::MAX_GAP && std::abs(mean) > SLOWEST)
-    {
-      products_ += (position - position_) / step * mean;
-      squares_ += mean * mean;
-      ++rows_;
-    }
-    time_ = time;
-    position_ = position;
-    velocity_ = velocity;
-  }
-
-  /// Takes over what `other` has seen.
-  void include(const VelocityCheck& other)
-  {
-    products_ += other.products_;
-    squares_ += other.squares_;
-    rows_ += other.rows_;
-  }
-
-  double ratio() const { return rows_ >= MIN_ROWS ? products_ / squares_ : 0.0; }
-
-private:
-  static constexpr double SLOWEST = 0.05;  // [rad/s]
-  static constexpr int MIN_ROWS = 50;
-
-  double time_{ -HUGE_VAL };
-  double position_{};
-  double velocity_{};
-  double products_{};
-  double squares_{};
-  int rows_{};
-};
 
 /// Turns messages into rows. A row waits for the next one: a load with its own stamp can still reach it, and the next
 /// one tells whether it can be true.
@@ -128,8 +87,6 @@ public:
     row.time = toSeconds(held.stamp - *start_);
     row.received = toSeconds(held.recorded - *start_);
     row.temperature = temperatures_.at(toSeconds(held.stamp));
-    check_.add(row.time, row.position, held.velocity);
-    count_.velocity_ratio = check_.ratio();
     count_.duration = std::max(count_.duration, row.time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -143,14 +100,12 @@ public:
     count.refused_temperatures = temperatures_.refused();
     return count;
   }
-  const VelocityCheck& check() const { return check_; }
   const std::set<std::string>& others() const { return others_; }
 
 private:
   struct Held
   {
     MotionRow row;
-    double velocity{};  // as recorded; NaN: not at all [rad/s]
     Stamp stamp{};
     Stamp recorded{};
     bool agrees{};  // with a neighbour
@@ -173,6 +128,7 @@ private:
       others_.insert(message.name.begin(), message.name.end());
       return true;
     }
+    held.row.current *= source_.current_per_effort;
     const std::size_t motor = placeOf(message, names_.motor);
     if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())
     {
@@ -183,8 +139,6 @@ private:
       ++count_.corrupt;
       return true;
     }
-    const std::size_t joint = placeOf(message, names_.joint);
-    held.velocity = joint < message.velocity.size() ? message.velocity[joint] : std::nan("");
     held.row.load = load_;
     held.stamp = stamp;
     held.recorded = recorded;
@@ -226,7 +180,6 @@ private:
   const std::function<bool(const MotionRow&)>& visit_;
   CheckedMessage message_;
   MotionCount count_;
-  VelocityCheck check_;
   JointNames names_;
   std::set<std::string> others_;  // joints in messages that do not name this one
   std::optional<Held> waiting_;
@@ -398,7 +351,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
 
   std::vector<std::string> missing;
   std::set<std::string> found;
-  VelocityCheck check;
   for (const Joint& joint : joints)
   {
     found.insert(joint.rows->others().begin(), joint.rows->others().end());
@@ -406,7 +358,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
     {
       missing.push_back(joint.source.joint);
     }
-    check.include(joint.rows->check());
   }
   if (!missing.empty())
   {
@@ -421,7 +372,6 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
   count.rows = side_by_side.complete();
   count.start = *start;
   count.corrupt += side_by_side.dropped();
-  count.velocity_ratio = check.ratio();
   count.refused_temperatures = 0;
   for (const Joint& joint : joints)
   {
@@ -468,7 +418,6 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   }
 
   MotionCount count;
-  std::array<VelocityCheck, CSV_JOINTS> checks;
   std::array<TemperatureRecord, CSV_JOINTS> temperatures;
   std::array<double, COLUMNS> values{};
   std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
@@ -485,12 +434,12 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
     {
       rows[i] = { time, values[column(0, i)], values[column(1, i)], values[column(2, i)] };
       rows[i].received = time;
+      rows[i].recorded_velocity = values[column(3, i)];
       if (table.hasColumn(column(4, i)))
       {
         temperatures[i].push(time, values[column(4, i)]);
         rows[i].temperature = temperatures[i].at(time);
       }
-      checks[i].add(time, rows[i].position, values[column(3, i)]);
     }
     if (!visit(rows))
     {
@@ -502,13 +451,10 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   {
     throw InputError(source.path + " has no rows");
   }
-  VelocityCheck check;
-  for (std::size_t i = 0; i < CSV_JOINTS; ++i)
+  for (const TemperatureRecord& joint : temperatures)
   {
-    check.include(checks[i]);
-    count.refused_temperatures += temperatures[i].refused();
+    count.refused_temperatures += joint.refused();
   }
-  count.velocity_ratio = check.ratio();
   return count;
 }
 
@@ -528,7 +474,6 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 {
   CsvTable table = openCsv(source, 3);
   MotionCount count;
-  VelocityCheck check;
   TemperatureRecord temperatures;
   std::array<double, 6> row{};
   row[4] = std::nan("");
@@ -540,27 +485,31 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
     }
     const double time = row[0] - count.start;
     count.duration = std::max(count.duration, time);
-    MotionRow motion{ time, row[1], row[2], row[3] };
+    MotionRow motion{ time, row[1], source.current_per_effort * row[2], row[3] };
     motion.received = time;
+    motion.recorded_velocity = row[4];
     if (table.hasColumn(5))
     {
       temperatures.push(time, row[5]);
       motion.temperature = temperatures.at(time);
     }
-    check.add(time, row[1], row[4]);
     if (!visit(motion))
     {
       break;
     }
   }
   progress(1.0);
-  count.velocity_ratio = check.ratio();
   count.refused_temperatures = temperatures.refused();
   if (count.rows == 0)
   {
     throw InputError(source.path + " has no rows");
   }
   return count;
+}
+void scaleTimes(double scale, MotionRow& row)
+{
+  row.time *= scale;
+  row.received *= scale;
 }
 }  // namespace
 
@@ -584,13 +533,37 @@ bool recordsLoad(const MotionSource& source)
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress)
 {
-  return isCsv(source) ? readCsv(source, visit, progress) : readBag(source, visit, progress);
+  TimeFit fit;
+  const auto scaled = [&](const MotionRow& read)
+  {
+    MotionRow row = read;
+    scaleTimes(source.time_scale, row);
+    fit.add(row.time, row.position, row.recorded_velocity);
+    return visit(row);
+  };
+  MotionCount count = isCsv(source) ? readCsv(source, scaled, progress) : readBag(source, scaled, progress);
+  count.duration *= source.time_scale;
+  count.velocity_ratio = fit.factor().value;
+  return count;
 }
 
 MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
                           const std::function<bool(const std::vector<MotionRow>&)>& visit,
                           const std::function<void(double)>& progress)
 {
-  return isCsv(source) ? readArmCsv(source, names, visit, progress) : readArmBag(source, names, visit, progress);
+  std::vector<MotionRow> rows;
+  const auto scaled = [&](const std::vector<MotionRow>& read)
+  {
+    rows = read;
+    for (MotionRow& row : rows)
+    {
+      scaleTimes(source.time_scale, row);
+    }
+    return visit(rows);
+  };
+  MotionCount count =
+      isCsv(source) ? readArmCsv(source, names, scaled, progress) : readArmBag(source, names, scaled, progress);
+  count.duration *= source.time_scale;
+  return count;
 }
 }  // namespace hjt

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,12 @@ struct MotionSource
   std::string path;                      ///< .bag or .csv
   std::string joint;                     ///< its name in the messages
   int csv_joint{};                       ///< its number in the columns of a CSV file
-  std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState, effort the motor current [A]
+  std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
   std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
   /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
   double current_per_motor_torque{};
+  double current_per_effort{ 1.0 };  ///< of one joint: motor current of 1 of its effort [A], [A/(N.m)]
+  double time_scale{ 1.0 };          ///< by which the times in the recording are multiplied
 };
 
 /// What a reading found.
@@ -32,8 +35,8 @@ struct MotionCount
   double least_delay{};     ///< bag: of the recording behind the stamps [s]
   double most_delay{};      ///< [s]
   std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have
-  /// Change of the angles by the stamps, over the recorded velocities; 1: they agree, 0: too little motion to tell.
-  double velocity_ratio{};
+  /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
+  double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
 };
 
 /// What was found, and what stood in the way.

@@ -25,6 +25,8 @@ TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const Join
   }
   row.position = message.position[joint];
   row.current = message.effort[joint];
+  row.recorded_velocity =
+      joint < message.velocity.size() ? message.velocity[joint] : std::numeric_limits<double>::quiet_NaN();
   const std::size_t motor = placeOf(message, names.motor);
   row.motor_angle =
       motor < message.position.size() ? message.position[motor] : std::numeric_limits<double>::quiet_NaN();

@@ -18,8 +18,8 @@ enum class TelemetryStatus
   NOT_FINITE      ///< one of them is NaN or Inf
 };
 
-/// Position [rad] and effort, the motor current [A], of the joint; where the message names its motor too, that one's
-/// position. Times and load of the row stay as they are.
+/// Position [rad], velocity if there is one [rad/s] and effort, as current, of the joint; where the message names its
+/// motor too, that one's position. Times and load of the row stay as they are.
 TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const JointNames& names, MotionRow& row) noexcept;
 
 /// @param stamp of the row [ns].

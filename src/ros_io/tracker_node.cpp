@@ -2,6 +2,7 @@
 #include "ros_io/tracker_node.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <ros/console.h>
 #include <ros/names.h>
@@ -19,6 +20,8 @@ namespace
 {
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
+/// Between two looks at what does not fit [s].
+constexpr double FIT_PERIOD = 1.0;
 /// Of the names in a message without a joint that are shown [bytes].
 constexpr std::size_t MAX_NAMES = 500;
 }  // namespace
@@ -30,7 +33,7 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
 }
 
 TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters)
-  : arm_load_(arm)
+  : arm_load_(arm), fit_(parameters)
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -113,6 +116,7 @@ void TrackerNode::push(Stamp stamp)
   if (moved || time < last_time_ - Tracker::RESTART)
   {
     stream_.timing.reset();
+    resetFit();
   }
   if (moved && arm_load_)
   {
@@ -140,6 +144,7 @@ void TrackerNode::push(Stamp stamp)
   arm_load_->push(rows_);
   while (const ArmSample* sample = arm_load_->pop())
   {
+    updateFit(*sample);
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       if (joints_[i]->takesArmLoad())
@@ -148,6 +153,32 @@ void TrackerNode::push(Stamp stamp)
       }
       joints_[i]->push(sample->joints[i]);
     }
+  }
+}
+
+void TrackerNode::resetFit()
+{
+  if (fit_)
+  {
+    fit_->reset();
+    next_fit_ = -HUGE_VAL;
+  }
+}
+
+void TrackerNode::updateFit(const ArmSample& sample)
+{
+  fit_->update(sample.joints, sample.torques);
+  const double time = sample.joints.front().time;
+  if (time < next_fit_)
+  {
+    return;
+  }
+  next_fit_ = time + FIT_PERIOD;
+  const bool settled = fit_->isSettled();
+  const std::vector<std::string> reasons = fit_->whyNotJudged();
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    joints_[i]->setMisfit(reasons[i], settled);
   }
 }
 

@@ -15,6 +15,7 @@
 #include <sensor_msgs/Temperature.h>
 
 #include "arm/arm_load.hpp"
+#include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
 
 namespace hjt
@@ -43,14 +44,18 @@ private:
   void receiveLoad(const JointStateEvent& event);
   void receiveTemperature(const ros::MessageEvent<const sensor_msgs::Temperature>& event);
   void push(Stamp stamp);
+  void resetFit();
+  void updateFit(const ArmSample& sample);
   void look();
 
   std::mutex mutex_;  // of everything below: callbacks run in several threads
   TelemetryStream stream_;
   std::vector<std::unique_ptr<JointTracker>> joints_;
   std::optional<ArmLoad> arm_load_;
-  std::vector<MotionRow> rows_;  // of the joints, in the message at hand
-  double last_time_{};           // [s]
+  std::optional<RecordingFit> fit_;  // of an arm
+  double next_fit_{};                // when its findings are looked at [s]
+  std::vector<MotionRow> rows_;      // of the joints, in the message at hand
+  double last_time_{};               // [s]
   ros::WallTimer timer_;
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;

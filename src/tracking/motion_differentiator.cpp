@@ -33,7 +33,8 @@ std::optional<MotionSample> MotionDifferentiator::pop(bool at_end) noexcept
     return std::nullopt;
   }
   const Held& newest = at(end_ - 1);
-  const bool known = newest.segment != at(next_).segment || newest.row.time >= at(next_).row.time + half_width_;
+  const bool known = newest.segment != at(next_).segment ||
+                     (end_ > next_ + MIN_SIDE && trueTime(newest) >= trueTime(at(next_)) + half_width_);
   if (!known && !at_end)
   {
     return std::nullopt;
@@ -52,10 +53,10 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   int rows = 0;
-  const auto take = [&](const Held& held)
+  const auto take = [&](const Held& held, std::uint64_t distance)
   {
-    const double t = (held.row.time - centre.row.time) / half_width_;
-    if (held.segment != centre.segment || std::abs(t) > 1.0)
+    const double t = (trueTime(held) - trueTime(centre)) / half_width_;
+    if (held.segment != centre.segment || (std::abs(t) > 1.0 && distance > MIN_SIDE))
     {
       return false;
     }
@@ -65,10 +66,10 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
     ++rows;
     return true;
   };
-  for (std::uint64_t i = index; i < end_ && take(at(i)); ++i)
+  for (std::uint64_t i = index; i < end_ && take(at(i), i - index); ++i)
   {
   }
-  for (std::uint64_t i = index; i > 0 && end_ - i < ROOM && take(at(i - 1)); --i)
+  for (std::uint64_t i = index; i > 0 && end_ - i < ROOM && take(at(i - 1), index - i + 1); --i)
   {
   }
   if (rows >= MIN_ROWS)

@@ -18,7 +18,11 @@ struct MotionRow
   double current{};                                                ///< of the motor [A]
   double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
-  double received{};                                               ///< when it arrived, from the same zero [s]
+  double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not recorded [rad/s]
+  double received{};                                                     ///< when it arrived, from the same zero [s]
+  double stamp_error{};                                                  ///< what `time` is later than the motion [s]
+  /// At the output, of the links' vibration, which the load leaves out [N.m].
+  double vibration{};
   double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
 
   double temperatureOr(double configured) const noexcept
@@ -37,15 +41,15 @@ struct MotionSample : MotionRow
 
 /// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
 ///
-/// A parabola is laid through the rows within a half width of each by least squares, their own stamps counting. A
-/// sample comes out when the rows after it are known, so at most the half width late. Memory is fixed; nothing
-/// allocates.
+/// A parabola is laid through the rows within a half width of each, and two to either side at least, by least squares,
+/// the true times of the rows counting. A sample comes out when the rows after it are known, so at most the half width
+/// or two rows late. Memory is fixed; nothing allocates.
 class MotionDifferentiator
 {
 public:
-  static constexpr double HALF_WIDTH = 0.05;  ///< [s]
-  static constexpr double MAX_GAP = 0.1;      ///< longer ones cut the stream [s]
-  static constexpr double MIN_STEP = 0.5e-3;  ///< rows that follow sooner tell nothing new [s]
+  static constexpr double HALF_WIDTH = 0.036;  ///< best for the currents of a UR5 (docs/arm.md) [s]
+  static constexpr double MAX_GAP = 0.1;       ///< longer ones cut the stream [s]
+  static constexpr double MIN_STEP = 0.5e-3;   ///< rows that follow sooner tell nothing new [s]
 
   /// @param half_width up to 0.12 [s]
   explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}
@@ -65,9 +69,11 @@ private:
     MotionRow row;
     std::uint64_t segment;  // number of gaps before it
   };
-  static constexpr std::size_t ROOM = 512;  // more than two windows of rows at MIN_STEP
-  static constexpr int MIN_ROWS = 4;        // rows for a parabola that does not only pass through them
+  static constexpr std::size_t ROOM = 512;      // more than two windows of rows at MIN_STEP
+  static constexpr int MIN_ROWS = 4;            // rows for a parabola that does not only pass through them
+  static constexpr std::uint64_t MIN_SIDE = 2;  // rows to either side, however far apart
 
+  static double trueTime(const Held& held) noexcept { return held.row.time - held.row.stamp_error; }
   const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
   MotionSample fit(std::uint64_t index) const noexcept;
 

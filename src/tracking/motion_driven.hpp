@@ -6,6 +6,7 @@
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
+#include "tracking/effort.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/presliding.hpp"
@@ -32,7 +33,7 @@ struct MotionPrediction
 /// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table
 /// of it.
 ///
-///   current = (load + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
+///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
 ///       T_r torque ripple caused by the kinematic error (TorqueRipple)
@@ -51,6 +52,7 @@ public:
     , inertia_(Motor(parameters.motor).inertia() - parameters.telemetry.inertia_in_load)
     , ratio_(nominalRatio(parameters.gear))
     , temperature_(parameters.input.temperature)
+    , current_per_effort_(hjt::currentPerEffort(parameters))
   {
   }
 
@@ -71,12 +73,15 @@ public:
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
-    prediction.motor_torque = sample.load / ratio_ + inertia_ * ratio_ * sample.acceleration + share * friction +
-                              ripple_.at(sample.position, sample.velocity) / ratio_;
+    prediction.motor_torque = (sample.load + sample.vibration) / ratio_ + inertia_ * ratio_ * sample.acceleration +
+                              share * friction + ripple_.at(sample.position, sample.velocity) / ratio_;
     prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
     prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
     return prediction;
   }
+
+  /// Of the joint's telemetry [A], [A/(N.m)].
+  double currentPerEffort() const noexcept { return current_per_effort_; }
 
   /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
   double frictionAt(double velocity, double load, double temperature) const noexcept
@@ -96,6 +101,7 @@ private:
   double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
   double temperature_;  // of samples without one [degC]
+  double current_per_effort_;
   MotionSample last_;
   bool started_{};
 };

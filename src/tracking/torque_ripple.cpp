@@ -16,6 +16,7 @@ TorqueRipple::TorqueRipple(const TelemetryParameters& p, double ratio)
              p.ripple_resonance,
              p.ripple_damping,
              p.ripple_lag }
+  , fastest_(p.ripple_fastest)
 {
 }
 }  // namespace hjt

@@ -16,7 +16,8 @@ namespace hjt
 /// The load is carried along: with its resonance w0 on that stiffness and its damping z the gear feels
 ///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed,
 /// nothing at rest, since the load settles. Four lines: two and four waves a turn of the motor, against the circular
-/// spline, which turns with the output, and against the flexspline.
+/// spline, which turns with the output, and against the flexspline. Beyond the speed up to which the lines are known
+/// there is none.
 class TorqueRipple
 {
 public:
@@ -30,7 +31,7 @@ public:
   /// At the joint's angle [rad] and speed [rad/s], [N.m].
   double at(double position, double velocity) const noexcept
   {
-    return torque(orders_, position, velocity, values_.data());
+    return std::abs(velocity) > fastest_ ? 0.0 : torque(orders_, position, velocity, values_.data());
   }
 
   /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
@@ -62,5 +63,6 @@ public:
 private:
   Orders orders_;
   std::array<double, VALUES> values_;
+  double fastest_;  // [rad/s]
 };
 }  // namespace hjt

@@ -57,7 +57,7 @@ public:
     now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
     now.sticking = predicted.band > telemetry_.current_deviation;
     now.friction_torque = predicted.friction_torque;
-    now.joint_torque = sample.load + telemetry_.torque_per_current * now.current.residual();
+    now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
   }
 
 private:
@@ -147,6 +147,15 @@ void Tracker::reset() noexcept
   watch_.reset();
 }
 
+void Tracker::setFits(bool fits) noexcept
+{
+  if (fits_ && !fits)
+  {
+    watch_.reset();
+  }
+  fits_ = fits;
+}
+
 void Tracker::pushLoad(double time, double torque) noexcept
 {
   if (std::isfinite(time) && std::isfinite(torque))
@@ -220,7 +229,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  if (is_known)
+  if (is_known && fits_)
   {
     watch_.update(*sample);
   }

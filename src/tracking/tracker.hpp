@@ -81,6 +81,9 @@ public:
 
   void reset() noexcept;
 
+  /// False: the telemetry does not fit together; health is not judged, and starts again once it does.
+  void setFits(bool fits) noexcept;
+
   /// The load at the output from `time` on; as telemetry.load says, external or all in all [N.m]. Not finite: refused.
   void pushLoad(double time, double torque) noexcept;
 
@@ -130,6 +133,7 @@ private:
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};
+  bool fits_{ true };
   double last_time_{};
   HeldValues loads_;
   TemperatureRecord temperatures_;

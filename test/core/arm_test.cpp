@@ -3,8 +3,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "arm/arm_load.hpp"
 #include "base/number_table.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "identification/payload_fit.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
@@ -239,6 +242,121 @@ TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)
   EXPECT_LT(worst, 0.05);
 }
 
+/// Two joints swing, with or without the velocity recorded beside.
+std::vector<MotionRow> swinging(double time, double stamp, bool with_velocity)
+{
+  constexpr double RATE = 4.0;
+  Angles angles = BENT;
+  angles[1] += 0.4 * std::sin(RATE * time);
+  angles[2] -= 0.3 * std::cos(RATE * time);
+  std::vector<MotionRow> rows = rowsOf(stamp, angles);
+  for (std::size_t i = 0; with_velocity && i < rows.size(); ++i)
+  {
+    rows[i].recorded_velocity =
+        i == 1 ? 0.4 * RATE * std::cos(RATE * time) : (i == 2 ? 0.3 * RATE * std::sin(RATE * time) : 0.0);
+  }
+  return rows;
+}
+
+/// Largest error of the elbow's load where rows of 8 and 24 ms are stamped every 16 ms [N.m].
+double errorOfUnevenRows(bool with_velocity)
+{
+  ArmLoad load(shipped("ur5"));
+  ArmLoad exact(shipped("ur5"));
+  std::vector<double> stamps;
+  std::vector<double> expected;
+  double worst = 0.0;
+  const auto take = [&](ArmLoad& from, const std::function<void(const ArmSample&)>& visit)
+  {
+    while (const ArmSample* sample = from.pop())
+    {
+      visit(*sample);
+    }
+  };
+  std::size_t compared = 0;
+  for (int i = 0; i < 400; ++i)
+  {
+    const double time = 0.016 * i + (i % 2 == 1 ? -0.004 : 0.004);
+    exact.push(swinging(time, time, false));
+    load.push(swinging(time, 0.016 * i, with_velocity));
+    take(exact, [&](const ArmSample& sample) { expected.push_back(sample.torques[2]); });
+    take(load,
+         [&](const ArmSample& sample)
+         {
+           EXPECT_NEAR(sample.joints[2].time, 0.016 * static_cast<double>(compared), 1e-9) << "stamps stay";
+           stamps.push_back(sample.torques[2]);
+           ++compared;
+         });
+  }
+  for (std::size_t i = 20; i < std::min(stamps.size(), expected.size()); ++i)
+  {
+    worst = std::max(worst, std::abs(stamps[i] - expected[i]));
+  }
+  return worst;
+}
+
+TEST(ArmLoad, VelocitiesMendTheTimesOfUnevenRows)
+{
+  EXPECT_GT(errorOfUnevenRows(false), 0.5);
+  EXPECT_LT(errorOfUnevenRows(true), 0.1);
+}
+
+TEST(ArmLoad, VelocitiesOfAnotherUnitMendNothing)
+{
+  ArmLoad with(shipped("ur5"));
+  ArmLoad without(shipped("ur5"));
+  int samples = 0;
+  for (int i = 0; i < 300; ++i)
+  {
+    std::vector<MotionRow> rows = swinging(0.008 * i, 0.008 * i, true);
+    for (MotionRow& row : rows)
+    {
+      row.recorded_velocity *= 180.0 / M_PI;
+    }
+    with.push(rows);
+    without.push(swinging(0.008 * i, 0.008 * i, false));
+    const ArmSample* a = with.pop();
+    const ArmSample* b = without.pop();
+    ASSERT_EQ(a == nullptr, b == nullptr);
+    if (a != nullptr)
+    {
+      EXPECT_EQ(a->torques, b->torques);
+      ++samples;
+    }
+  }
+  EXPECT_GT(samples, 250);
+}
+
+TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
+{
+  constexpr double RATE = 2.0 * M_PI * 15.0;
+  constexpr double SIZE = 2e-4;
+  ArmDynamics dynamics(shipped("ur5"));
+  ArmLoad load(shipped("ur5"));
+  Angles upward = BENT;
+  const std::vector<double> weight = torquesOf(dynamics, motionOf(upward));
+  const std::vector<double> unit = torquesOf(dynamics, motionOf(upward, {}, { 0.0, 1.0 }));
+  const double inertia = unit[1] - weight[1];
+  double in_phase = 0.0;
+  double reference = 0.0;
+  double slow = 0.0;
+  for (int i = 0; i < 500; ++i)
+  {
+    Angles angles = BENT;
+    angles[1] += SIZE * std::sin(RATE * 0.008 * i);
+    load.push(rowsOf(0.008 * i, angles));
+    while (const ArmSample* sample = load.pop())
+    {
+      const double expected = -inertia * SIZE * RATE * RATE * std::sin(RATE * sample->joints[1].time);
+      in_phase += sample->joints[1].vibration * expected;
+      reference += expected * expected;
+      slow = std::max(slow, std::abs(sample->torques[1] - weight[1]));
+    }
+  }
+  EXPECT_NEAR(in_phase / reference, 0.42, 0.02) << "of it, by the parabola over 72 ms";
+  EXPECT_LT(slow, 0.3 * inertia * SIZE * RATE * RATE);
+}
+
 TEST(ArmLoad, AllocatesNothingAfterConstruction)
 {
   ArmLoad load(shipped("ur5"));
@@ -257,6 +375,68 @@ TEST(ArmLoad, AllocatesNothingAfterConstruction)
     }
   }
   EXPECT_EQ(allocationCount(), before);
+}
+
+/// Currents of an arm with a payload, of which the twins know nothing, with friction and gains that they know badly.
+TEST(IdentifyPayload, FindsMassAndCentreBesideWrongFrictionAndGain)
+{
+  const ArmDescription arm = shipped("ur5");
+  ArmDescription loaded = arm;
+  loaded.payload = { 3.0, { 0.02, -0.03, 0.08 } };
+  ArmDynamics bare(arm);
+  ArmDynamics heavy(loaded);
+  const std::vector<double> gains(6, 10.7);
+  std::vector<std::vector<MotionSample>> samples(6);
+  std::vector<std::vector<double>> predicted(6);
+  std::mt19937 engine(11);
+  std::normal_distribution<double> unit;
+  for (int row = 0; row < 5000; ++row)
+  {
+    const double time = 0.008 * row;
+    std::vector<JointMotion> motion(6);
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      const double rate = 0.9 + 0.13 * static_cast<double>(i);
+      motion[i] = { BENT[i] + 0.8 * std::sin(rate * time), 0.8 * rate * std::cos(rate * time),
+                    -0.8 * rate * rate * std::sin(rate * time) };
+    }
+    const std::vector<double> expected = torquesOf(bare, motion);
+    const std::vector<double> torques = torquesOf(heavy, motion);
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      MotionSample sample;
+      sample.time = time;
+      sample.position = motion[i].position;
+      sample.velocity = motion[i].velocity;
+      sample.acceleration = motion[i].acceleration;
+      sample.load = expected[i];
+      const double friction = 0.2 * std::copysign(1.0, sample.velocity) + 0.1 * sample.velocity;
+      sample.current = 1.04 * torques[i] / gains[i] + friction + 0.3 * unit(engine);
+      samples[i].push_back(sample);
+      predicted[i].push_back(expected[i] / gains[i]);
+    }
+  }
+  const IdentifiedPayload found = identifyPayload(arm, samples, predicted, gains);
+  EXPECT_NEAR(found.mass, 3.0, found.mass_half_width);
+  EXPECT_TRUE(found.differs());
+  EXPECT_GT(found.mass_half_width, 0.0);
+  EXPECT_LT(found.mass_half_width, 0.5);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    EXPECT_NEAR(found.moment[axis], 3.0 * loaded.payload.centre[axis], 0.05) << axis;
+  }
+
+  // Once it is configured, nothing more is found.
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    for (std::size_t row = 0; row < samples[i].size(); ++row)
+    {
+      predicted[i][row] = samples[i][row].current;
+    }
+  }
+  const IdentifiedPayload again = identifyPayload(loaded, samples, predicted, gains);
+  EXPECT_NEAR(again.mass, 3.0, 1e-9);
+  EXPECT_FALSE(again.differs());
 }
 
 /// The controller's rigid-body torque in recordings of a UR5, from its own target motion. It takes the links for points

@@ -78,7 +78,7 @@ std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, co
 
 std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const MotionDriven& twin)
 {
-  MotionDifferentiator smoother;
+  MotionDifferentiator smoother(0.05);  // the output's swing, which the motor does not share, is less in it
   std::vector<MotionSample> samples;
   for (const RobotRow& row : rows)
   {
@@ -274,6 +274,27 @@ TEST(MotionDifferentiator, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
   EXPECT_EQ(cuts, 1);
 }
 
+TEST(MotionDifferentiator, TakesTwoRowsToEitherSideHoweverFarApart)
+{
+  MotionDifferentiator smoother;
+  int samples = 0;
+  for (int i = 0; i < 50; ++i)
+  {
+    const double time = 0.09 * i;
+    smoother.push({ time, 0.3 + 0.7 * time - 0.9 * time * time, 0.0, 0.0 });
+    while (const auto sample = smoother.pop())
+    {
+      if (samples > 0)  // the first has too few
+      {
+        EXPECT_NEAR(sample->velocity, 0.7 - 1.8 * sample->time, 1e-6);
+        EXPECT_NEAR(sample->acceleration, -1.8, 1e-6);
+      }
+      ++samples;
+    }
+  }
+  EXPECT_EQ(samples, 48);
+}
+
 TEST(Presliding, BuildsUpAfterAReversalAndFadesAtRest)
 {
   TelemetryParameters parameters;
@@ -314,6 +335,7 @@ TEST(TorqueRipple, IsTheErrorTimesStiffnessFarAboveTheResonanceAndNothingAtRest)
   parameters.ripple_circular_spline_2 = { 1.2, -0.5 };
   parameters.ripple_resonance = 1.0;
   parameters.ripple_damping = 0.1;
+  parameters.ripple_fastest = 200.0;
   constexpr double RATIO = 101.0;
   const TorqueRipple ripple(parameters, RATIO);
   EXPECT_EQ(ripple.at(0.3, 0.0), 0.0);
@@ -327,6 +349,9 @@ TEST(TorqueRipple, IsTheErrorTimesStiffnessFarAboveTheResonanceAndNothingAtRest)
   parameters.ripple_resonance = 2.0 * (RATIO - 1.0) * 0.5 / TWO_PI;
   EXPECT_NEAR(TorqueRipple(parameters, RATIO).at(0.0, 0.5), 0.0, 1e-9);
   EXPECT_NEAR(TorqueRipple(parameters, RATIO).at(0.25 * TWO_PI / 200.0, 0.5), -5.0, 1e-9);
+  // Beyond the speed up to which it is known there is none.
+  parameters.ripple_fastest = 0.4;
+  EXPECT_EQ(TorqueRipple(parameters, RATIO).at(0.25 * TWO_PI / 200.0, 0.5), 0.0);
 }
 
 TEST(Identification, FindsTheRippleOfACircularSplineAndNoneOfTheFlexspline)

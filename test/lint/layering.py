@@ -23,7 +23,7 @@ SEES = {
     "twin": ["surface", "sensors", "health"],
     "tracking": ["twin"],
     "arm": ["tracking"],
-    "identification": ["tracking"],
+    "identification": ["arm"],
     "life": ["twin"],
     "studies": ["twin", "life"],
     "ros_io": ["arm", "life"],

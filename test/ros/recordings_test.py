@@ -35,29 +35,53 @@ class Recordings(unittest.TestCase):
             listener.wait_for_connection()
         wait_until(lambda: self.publisher.get_num_connections() == 1, "the node")
 
-    def play(self, path):
-        """Returns how many rows were sent, and how many seconds they cover."""
+    def play(self, path, slower=1.0, torque_per_effort=None):
+        """Returns how many rows were sent, and how many seconds they cover. `slower`: the stamps than the recording's,
+        and then the velocities are sent too; `torque_per_effort`: of the joints, else efforts are currents [N.m/A]."""
         with open(path) as file:
             rows = list(csv.DictReader(file))
         begin, first = rospy.Time.now(), float(rows[0]["timestamp"])
         for row in rows:
-            since = float(row["timestamp"]) - first
+            since = slower * (float(row["timestamp"]) - first)
             time.sleep(max(0.0, (begin - rospy.Time.now()).to_sec() + since / FASTER))
             message = JointState(name=list(JOINTS.values()),
                                  position=[float(row[f"actual_q_{i}"]) for i in NUMBERS.values()],
-                                 effort=[float(row[f"actual_current_{i}"]) for i in NUMBERS.values()])
+                                 effort=[float(row[f"actual_current_{i}"]) * (torque_per_effort or {}).get(joint, 1.0)
+                                         for joint, i in NUMBERS.items()])
+            if slower != 1.0:
+                message.velocity = [float(row[f"actual_qd_{i}"]) for i in NUMBERS.values()]
             message.header.stamp = begin + rospy.Duration.from_sec(since)
             self.publisher.publish(message)
         return len(rows), since
+
+    def restart(self):
+        for joint in JOINTS:
+            self.assertTrue(rospy.ServiceProxy(f"/{joint}/joint_twin/reset", Trigger)().success)
+        return {joint: {task: len(self.diagnostics[joint].statuses(task)) for task in ("Drive", "Health")}
+                for joint in JOINTS}
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_telemetry_that_does_not_fit_is_not_judged(self):
+        path = next(path for path in RECORDINGS if path.endswith("no5.csv"))
+        gains = dict(zip(sorted(NUMBERS, key=NUMBERS.get), (10.7, 10.7, 10.7, 10.21, 11.9, 11.92)))
+        for change, expected in (({"torque_per_effort": gains}, "telemetry.effort: joint_torque"),
+                                 ({"slower": 0.5}, "stamps")):
+            seen = self.restart()
+            self.play(path, **change)
+            for joint in JOINTS:
+                for task in ("Drive", "Health"):
+                    statuses = self.diagnostics[joint].statuses(task)[seen[joint][task]:]
+                    self.assertTrue(any("Not judged" in status.message and expected in status.message
+                                        for status in statuses), (expected, joint, task, statuses[-1:]))
+                    levels = {status.level for status in statuses
+                              if "stopped" not in status.message and "Nothing" not in status.message}
+                    self.assertEqual(levels, {OK}, (expected, joint, task))
 
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_sound_joints_are_ok_and_have_tooth_forces(self):
         for path in RECORDINGS:
             name = os.path.basename(path)
-            for joint in JOINTS:
-                self.assertTrue(rospy.ServiceProxy(f"/{joint}/joint_twin/reset", Trigger)().success)
-            seen = {joint: {task: len(self.diagnostics[joint].statuses(task)) for task in ("Drive", "Health")}
-                    for joint in JOINTS}
+            seen = self.restart()
             for listener in [*self.comparisons.values(), *self.forces.values()]:
                 listener.clear()
             rows, seconds = self.play(path)

@@ -74,7 +74,7 @@ class Identify(tool.ToolTest):
             rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions",
                                      "4",
                                      "--config", "joints/elbow.yaml", *options)["rows"]
-            return robot.RATIO * rows[0]["gear_loss"]
+            return robot.RATIO * (rows[0]["gear_loss"] + rows[0]["motor"])
         expected = robot.COULOMB + robot.VISCOUS * speed
         self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
         self.assertGreater(abs(friction() - expected), 0.12 * expected)

@@ -272,6 +272,14 @@ enum class LoadSource
   ARM             ///< of links and payload, from the motion of all joints of the arm
 };
 
+/// What a robot gives as effort of a measured joint.
+enum class EffortUnit
+{
+  CURRENT,       ///< of the motor [A]
+  JOINT_TORQUE,  ///< of the motor through the gear without its losses, at the joint [N.m]
+  MOTOR_TORQUE   ///< of the motor, at its shaft [N.m]
+};
+
 struct InputParameters
 {
   InputMode mode{};
@@ -295,7 +303,9 @@ struct TelemetryParameters
   double ripple_resonance{};
   double ripple_damping{};
   double ripple_lag{};
+  double ripple_fastest{};
   double current_deviation{};
+  EffortUnit effort{};
   LoadSource load{};
 };
 

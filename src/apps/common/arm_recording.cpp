@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/arm_recording.hpp"
 
+#include <iostream>
+
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/effort.hpp"
 
 namespace hjt
 {
@@ -28,15 +31,39 @@ Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
   }
   return parameters;
 }
+/// Says on stderr with what nothing can be judged; of the stamps warnOfStamps does.
+void warnOf(const RecordingFit& fit, const std::vector<ArmJoint>& joints)
+{
+  const auto say = [](const std::string& of, const std::vector<RecordingFinding>& findings)
+  {
+    for (const RecordingFinding& finding : findings)
+    {
+      if (finding.stops && finding.kind != "stamps")
+      {
+        std::cerr << "joint_twin: " << of << finding.text << '\n';
+      }
+    }
+  };
+  say("", fit.ofArm());
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    say(joints[i].short_name + ": ", fit.ofJoint(i));
+  }
+}
 }  // namespace
+
+void addArmOption(Command& command, ArmOptions& options)
+{
+  command
+      .add("--arm", options.arm, "all joints of an arm in place of one: ur5, ur5e, or a file as config/arms/ur5.yaml")
+      .type("NAME|FILE.yaml");
+}
 
 void addArmOptions(Command& command, ArmOptions& options)
 {
   addRecordingOptions(command, options);
   options.load = FROM_ARM;
-  command
-      .add("--arm", options.arm, "all joints of an arm in place of one: ur5, ur5e, or a file as config/arms/ur5.yaml")
-      .type("NAME|FILE.yaml");
+  addArmOption(command, options);
   command
       .add("--load", options.load,
            "load of an arm's joints: of its links and payload by rigid-body dynamics, or as recorded")
@@ -83,6 +110,15 @@ MotionSource ArmRecording::source(std::size_t joint) const
 
 MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const
 {
+  RecordingFit fit(parameters_);
+  const MotionFindings findings = read(visit, fit);
+  warnOf(fit, arm_.joints);
+  return findings;
+}
+
+MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit,
+                                  RecordingFit& fit) const
+{
   std::vector<std::string> names;
   for (const ArmJoint& joint : arm_.joints)
   {
@@ -90,6 +126,7 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
   }
   ArmLoad load(arm_);
   std::vector<ArmJointRow> rows(names.size());
+  std::vector<MotionRow> in_current;
   MotionFindings findings;
   findings.has_load = has_load_;
   Progress progress("reading");
@@ -107,6 +144,7 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
           rows[i].row.load = sample->torques[i];
         }
       }
+      fit.update(sample->joints, sample->torques);
       findings.gaps += sample->joints.front().after_gap ? 1 : 0;
       visit(rows);
     }
@@ -115,12 +153,18 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
       source_, names,
       [&](const std::vector<MotionRow>& motion)
       {
-        findings.refused += load.push(motion) ? 0 : 1;
+        in_current = motion;
+        for (std::size_t i = 0; i < motion.size(); ++i)
+        {
+          in_current[i].current *= currentPerEffort(parameters_[i]);
+        }
+        findings.refused += load.push(in_current) ? 0 : 1;
         forward(false);
         return interruptSignal() == 0;
       },
       [&](double done) { progress.update(done); });
   forward(true);
+  findings.velocity_ratio = fit.stampFactor().value;
   return findings;
 }
 }  // namespace hjt

@@ -8,6 +8,7 @@
 #include "apps/common/motion_options.hpp"
 
 #include "arm/arm_load.hpp"
+#include "arm/recording_fit.hpp"
 
 namespace hjt
 {
@@ -18,6 +19,9 @@ struct ArmOptions : MotionOptions
   std::string load;        ///< arm or target_moment
   std::string identified;  ///< directory of overlays, SHORT_NAME.yaml; empty: none
 };
+
+/// `--arm` alone.
+void addArmOption(Command& command, ArmOptions& options);
 
 /// `--joint` or `--arm`, and what goes with them.
 void addArmOptions(Command& command, ArmOptions& options);
@@ -37,16 +41,21 @@ public:
   /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
   explicit ArmRecording(const ArmOptions& options);
 
+  const ArmDescription& arm() const { return arm_; }
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   MotionSource source(std::size_t joint) const;  ///< of that joint alone
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
+  const std::vector<Parameters>& parameters() const { return parameters_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
 
-  /// Calls `visit` for each time with a row of each joint, in memory that does not grow. @throws InputError.
+  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and says on stderr what does
+  /// not fit. @throws InputError.
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const;
+  /// The same without that; `fit` is given all rows.
+  MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit) const;
 
 private:
   MotionSource source_;

@@ -10,6 +10,7 @@
 #include "apps/common/progress.hpp"
 #include "apps/common/text_table.hpp"
 
+#include "base/number_text.hpp"
 #include "ros_io/topics.hpp"
 
 namespace hjt
@@ -44,6 +45,7 @@ MotionSource motionSource(const MotionOptions& options)
   source.topic = options.topic;
   source.load_topic = options.joint_namespace + "/" + topics::LOAD;
   source.joint = options.joint;
+  source.time_scale = options.time_scale;
   if (const std::optional<UrJoint> known = findUrJoint(options.joint))
   {
     source.joint = known->name;
@@ -52,21 +54,35 @@ MotionSource motionSource(const MotionOptions& options)
   return source;
 }
 
-namespace
+void addRecording(Command& command, MotionOptions& options)
 {
-CommandOption addAll(Command& command, MotionOptions& options)
-{
-  options.joint_namespace = DEFAULT_NAMESPACE;
-  options.topic = "/joint_states";
   command.add("recording", options.recording, "a bag, or a UR controller's CSV recording")
       .required()
       .type("IN.bag|IN.csv")
       .bagOrCsv();
-  const CommandOption joint = command.add(
-      "--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
-  command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort in A");
+}
+
+void addReadingOptions(Command& command, MotionOptions& options)
+{
+  options.joint_namespace = DEFAULT_NAMESPACE;
+  options.topic = DEFAULT_TOPIC;
+  command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  command
+      .add("--time-scale", options.time_scale,
+           "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")
+      .positive();
   addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
+}
+
+namespace
+{
+CommandOption addAll(Command& command, MotionOptions& options)
+{
+  addRecording(command, options);
+  const CommandOption joint = command.add(
+      "--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
+  addReadingOptions(command, options);
   return joint;
 }
 }  // namespace
@@ -83,18 +99,22 @@ void addMotionOptions(Command& command, MotionOptions& options)
 
 void warnOfStamps(const MotionCount& count)
 {
-  constexpr double TOLERANCE = 0.1;
-  if (count.velocity_ratio != 0.0 && std::abs(count.velocity_ratio - 1.0) > TOLERANCE)
+  constexpr double TOLERANCE = 0.03;
+  if (std::isfinite(count.velocity_ratio) && std::abs(count.velocity_ratio - 1.0) > TOLERANCE)
   {
-    std::cerr
-        << "joint_twin: by their stamps the angles change " << shortNumber(count.velocity_ratio)
-        << " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all results\n";
+    const std::string factor = roundedText(count.velocity_ratio, 3);
+    std::cerr << "joint_twin: by their stamps the angles change " << factor
+              << " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all "
+                 "results"
+              << (count.velocity_ratio > 0.0 ? "; --time-scale " + factor + " makes them agree\n" : "\n");
   }
 }
 
-MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
+MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& twin,
                            const std::function<void(const MotionSample&)>& visit)
 {
+  MotionSource source = recording;
+  source.current_per_effort = twin.currentPerEffort();
   MotionFindings findings;
   findings.has_load = recordsLoad(source);
   MotionDifferentiator smoother;

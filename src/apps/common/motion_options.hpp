@@ -18,6 +18,7 @@ struct MotionOptions : CommonOptions
   std::string joint;
   std::string joint_namespace;
   std::string topic;
+  double time_scale{ 1.0 };
 };
 
 /// A joint of UR's robots: its place in the columns of a controller's recording.
@@ -30,6 +31,12 @@ struct UrJoint
 /// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
 std::optional<UrJoint> findUrJoint(const std::string& name);
 
+constexpr const char* DEFAULT_TOPIC = "/joint_states";
+
+/// Those but the joint: the recording itself, then how it is read.
+void addRecording(Command& command, MotionOptions& options);
+void addReadingOptions(Command& command, MotionOptions& options);
+
 /// `addMotionOptions` leaves `--joint` no choice.
 void addRecordingOptions(Command& command, MotionOptions& options);
 void addMotionOptions(Command& command, MotionOptions& options);
@@ -37,7 +44,7 @@ void addMotionOptions(Command& command, MotionOptions& options);
 /// The recording and joint they name.
 MotionSource motionSource(const MotionOptions& options);
 
-/// Says on stderr if stamps and angles disagree with the recorded velocities.
+/// Says on stderr if stamps and angles of a joint disagree with the recorded velocities.
 void warnOfStamps(const MotionCount& count);
 
 /// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.

@@ -119,8 +119,13 @@ const char* wrongLoad(LoadOrigin load)
 }
 
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
-std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters, LoadOrigin load)
+std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters,
+                            const JointContext& context)
 {
+  if (!context.misfit.empty())
+  {
+    return context.misfit;
+  }
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
@@ -143,7 +148,7 @@ std::string whyItDoesNotFit(const RecordingComparison& comparison, const Paramet
   if (unexplained > noticeable && unexplained > MAX_UNEXPLAINED * measured)
   {
     return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
-           " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(load);
+           " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(context.load);
   }
   return {};
 }
@@ -432,7 +437,7 @@ double medianOf(std::vector<double> values)
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context)
 {
-  if (!whyItDoesNotFit(comparison, parameters, context.load).empty() ||
+  if (!whyItDoesNotFit(comparison, parameters, context).empty() ||
       !whyNoFriction(comparison.friction().points(), context.load).empty())
   {
     return std::nullopt;
@@ -533,7 +538,7 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
   Verdict verdict;
   verdict.findings = { judgeFriction(comparison, parameters, context),
                        judgeTorsion(comparison, parameters, context.own), judgeSignals(comparison, context) };
-  const std::string why_not = whyItDoesNotFit(comparison, parameters, context.load);
+  const std::string why_not = whyItDoesNotFit(comparison, parameters, context);
   for (Finding& finding : verdict.findings)
   {
     if (!why_not.empty())

@@ -35,6 +35,7 @@ struct JointContext
   double duration{};  ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
+  std::string misfit;  ///< why the recording says nothing of this joint; empty: it fits
 };
 
 /// One thing that was judged, in words.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -157,13 +158,13 @@ public:
   const RecordingComparison& comparison() const { return comparison_; }
 
   /// Friction as a multiple of the reference's; none: the recording does not show it.
-  std::optional<double> frictionRatio(LoadOrigin load) const
+  std::optional<double> frictionRatio(LoadOrigin load, const std::string& misfit) const
   {
-    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load });
+    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load, 0.0, 1.0, misfit });
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparisonRecord write(const MotionFindings& found, LoadOrigin load, double arm_friction,
+  ComparisonRecord write(const MotionFindings& found, LoadOrigin load, double arm_friction, const std::string& misfit,
                          const std::string& twin_topic)
   {
     windows_.close();
@@ -176,7 +177,7 @@ public:
                                    comparison_.reach().temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, found.start);
     record.verdict =
-        judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction });
+        judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction, misfit });
     writeComparison(directory_, comparison_, parameters_, record);
     return record;
   }
@@ -203,7 +204,7 @@ int compareJoint(const CompareOptions& options)
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   const ComparisonRecord record = joint.write(found, found.has_load ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
-                                              1.0, options.joint_namespace + "/" + topics::JOINT_STATES);
+                                              1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
@@ -223,6 +224,7 @@ struct ArmLine
 {
   std::string joint;
   Verdict verdict;
+  std::string misfit;  // of its recording; empty: it fits
   std::optional<double> friction_ratio;
   double temperature{};  // [degC]
   const char* temperature_source{};
@@ -240,6 +242,16 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
   { "current_rms", &ArmLine::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ArmLine::residual_rms, "less predicted [A]" }
 };
+
+std::string sentence(std::string clause)
+{
+  if (!clause.empty())
+  {
+    clause[0] = static_cast<char>(std::toupper(clause[0]));
+    clause += ".";
+  }
+  return clause;
+}
 
 /// Joints of the worst level, and what they have in common.
 std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, const ArmFriction& arm)
@@ -264,7 +276,7 @@ std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, const
     }
     if (!line.verdict.judged)
     {
-      unjudged.push_back(line.joint);
+      unjudged.push_back(line.joint + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
     }
   }
   if (level == HealthLevel::OK && unjudged.size() < lines.size())
@@ -302,6 +314,7 @@ int compareArm(const CompareOptions& options)
       joints[i]->update(*sample);
     }
   };
+  RecordingFit fit(recording.parameters());
   const MotionFindings found = recording.read(
       [&](const std::vector<ArmJointRow>& rows)
       {
@@ -310,19 +323,21 @@ int compareArm(const CompareOptions& options)
           differentiators[i].push(rows[i].row);
           forward(i, false);
         }
-      });
+      },
+      fit);
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   warnOfStamps(found);
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
+  const std::vector<std::string> misfits = fit.whyNotJudged();
   std::vector<std::optional<double>> ratios;
   std::vector<const RecordingComparison*> comparisons;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
-    ratios.push_back(joints[i]->frictionRatio(load));
+    ratios.push_back(joints[i]->frictionRatio(load, sentence(misfits[i])));
     comparisons.push_back(&joints[i]->comparison());
   }
   const Parameters& parameters = recording.parameters(0);
@@ -335,16 +350,18 @@ int compareArm(const CompareOptions& options)
   {
     const std::string& name = recording.joints()[i].short_name;
     const RecordingComparison& comparison = joints[i]->comparison();
-    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i],
+    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i], misfits[i],
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
     temperatures += comparison.temperature();
-    lines.push_back({ name, std::move(record.verdict), ratios[i], comparison.temperature(),
+    lines.push_back({ name, std::move(record.verdict), misfits[i], ratios[i], comparison.temperature(),
                       temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
-  const std::string reason = reasonOf(lines, level, arm);
+  const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
+                                                    static_cast<std::ptrdiff_t>(misfits.size());
+  const std::string reason = same ? sentence(misfits.front()) : reasonOf(lines, level, arm);
   const Table table(ARM_COLUMNS, lines);
   const Json all{ { "recording", options.recording },
                   { "arm", options.arm },

@@ -20,6 +20,7 @@
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
 
+#include "tracking/effort.hpp"
 #include "tracking/tracker.hpp"
 
 namespace hjt
@@ -89,10 +90,8 @@ struct FollowSummary
   Rms position;
 };
 
-FollowSummary compare(const FollowOptions& options, Tracker& tracker,
-                      const std::function<void(const Comparison&)>& visit)
+FollowSummary compare(const MotionSource& source, Tracker& tracker, const std::function<void(const Comparison&)>& visit)
 {
-  const MotionSource source = motionSource(options);
   const bool has_load = recordsLoad(source);
   Progress progress("reading");
   FollowSummary summary;
@@ -160,7 +159,8 @@ int followJoint(const FollowOptions& options)
   {
     csv.emplace(options.out, COLUMNS);
   }
-  const MotionSource source = motionSource(options);
+  MotionSource source = motionSource(options);
+  source.current_per_effort = currentPerEffort(parameters);
   if (parameters.telemetry.load == LoadSource::MODEL && recordsLoad(source))
   {
     std::cerr << "joint_twin: the recording holds a load (" << (isCsv(source) ? "target_moment" : source.load_topic)
@@ -168,7 +168,7 @@ int followJoint(const FollowOptions& options)
                  "recorded_load.yaml after the joint's own file\n";
   }
   Tracker tracker(parameters, MODES.at(options.mode), surfaceSource());
-  const FollowSummary summary = compare(options, tracker,
+  const FollowSummary summary = compare(source, tracker,
                                         [&](const Comparison& now)
                                         {
                                           if (csv)

@@ -18,6 +18,7 @@
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
+#include "identification/payload_fit.hpp"
 
 namespace hjt
 {
@@ -69,6 +70,7 @@ Sections identifiedSections(const Identification& found)
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
   add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
+  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest), "Beyond, none is known [rad/s].");
   return sections;
 }
 
@@ -140,7 +142,8 @@ void print(const IdentifyReport& report, bool json)
                                  { "lines", "", Table(LINE_COLUMNS, found.lines).rows() },
                                  { "ripple_resonance", "", telemetry.ripple_resonance },
                                  { "ripple_damping", "", telemetry.ripple_damping },
-                                 { "ripple_lag", "", telemetry.ripple_lag } };
+                                 { "ripple_lag", "", telemetry.ripple_lag },
+                                 { "ripple_fastest", "", telemetry.ripple_fastest } };
   std::vector<std::string> refused;
   const auto tell = [&](const std::string& name, const auto& value, double size, const std::string& unit)
   {
@@ -260,6 +263,8 @@ int identifyJoint(const IdentifyOptions& options)
 }
 
 constexpr int ARM_FOLDS = 5;
+/// Largest error of pieces left out with ripple over that without, moving, at which the ripple is kept.
+constexpr double RIPPLE_GAIN = 0.95;
 
 /// Fits an arm's joint to all of its samples; the pieces left out in turn judge. @throws InputError if it hardly moves.
 IdentifyReport identifyArmJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
@@ -274,8 +279,18 @@ IdentifyReport identifyArmJoint(const IdentifyOptions& options, const Parameters
   report.judge = span(options.judge);
   const JudgedPart judge{ samplesWithin(samples, { -HUGE_VAL, report.judge.to }), report.judge.from };
   report.found = identify(parameters, samplesWithin(samples, report.train), judge, load_recorded);
-  report.left_out =
+  JudgedErrors& left_out = report.left_out;
+  left_out =
       leaveOneOut(parameters, samples, report.train, options.folds > 0 ? options.folds : ARM_FOLDS, load_recorded);
+  if (left_out.identified.moving > RIPPLE_GAIN * left_out.without_ripple.moving)
+  {
+    left_out.identified = left_out.without_ripple;
+    for (RippleLine& line : report.found.lines)
+    {
+      line.torque = {};
+      line.refusal = "predicts pieces left out no better";
+    }
+  }
   return report;
 }
 
@@ -298,6 +313,49 @@ const std::vector<Column<IdentifiedJoint>> JOINT_COLUMNS{
   { "values", &IdentifiedJoint::found },
   { "refusal", &IdentifiedJoint::refusal, "stays as configured" }
 };
+
+/// By the currents that the twins predict as configured.
+IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples)
+{
+  std::vector<std::vector<double>> predicted(samples.size());
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    MotionDriven twin(recording.parameters(i));
+    for (const MotionSample& sample : samples[i])
+    {
+      predicted[i].push_back(twin.step(sample).current);
+    }
+    gains.push_back(recording.parameters(i).telemetry.torque_per_current);
+  }
+  return identifyPayload(recording.arm(), samples, predicted, gains);
+}
+
+std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
+{
+  const auto list = [](const std::array<double, 3>& values)
+  { return std::vector<double>(values.begin(), values.end()); };
+  std::vector<ReportLine> lines{ { "payload.configured", "", found.configured.mass },
+                                 { "payload.mass", "", found.mass },
+                                 { "payload.mass_half_width", "", found.mass_half_width },
+                                 { "payload.moment", "", list(found.moment) },
+                                 { "payload.moment_half_width", "", list(found.moment_half_width) },
+                                 { "", "payload by the currents",
+                                   shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width), "kg" },
+                                 { "", "payload configured", found.configured.mass, "kg" } };
+  if (found.differs() && found.mass > found.mass_half_width)
+  {
+    std::string centre;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      centre += (axis > 0 ? ", " : "") + shortNumber(found.moment[axis] / found.mass) + " +- " +
+                shortNumber(found.moment_half_width[axis] / found.mass);
+    }
+    lines.push_back({ "", "its centre in the frame of the tip", centre, "m" });
+    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file, identify again" });
+  }
+  return lines;
+}
 
 int identifyArm(const IdentifyOptions& options)
 {
@@ -375,8 +433,10 @@ int identifyArm(const IdentifyOptions& options)
     }
     joints.push_back(joint);
   }
-  printReport(options.json, { { "rows", "rows", found.rows }, { "load", "load", options.load } },
-              { { "joints", Table(JOINT_COLUMNS, joints) } });
+  std::vector<ReportLine> lines{ { "rows", "rows", found.rows }, { "load", "load", options.load } };
+  const std::vector<ReportLine> payload = linesOf(payloadOf(recording, samples));
+  lines.insert(lines.end(), payload.begin(), payload.end());
+  printReport(options.json, lines, { { "joints", Table(JOINT_COLUMNS, joints) } });
   return any ? EXIT_DONE : EXIT_FAILED;
 }
 

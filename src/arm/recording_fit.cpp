@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/recording_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "base/number_text.hpp"
+#include "gear/angle.hpp"
+#include "params/choices.hpp"
+#include "tracking/effort.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double MOVING = 0.02;       // beyond stiction and the noise of a slope [rad/s]
+constexpr double MOVED = 0.02;        // a joint whose range is less does not move [rad]
+constexpr double FASTEST = 10.0;      // no joint of an arm turns faster [rad/s]
+constexpr double FACTOR_OFF = 0.03;   // of angle over velocity: more than gains and scales of encoders are off
+constexpr double DEVIATIONS = 3.0;    // beyond which a difference is no chance
+constexpr double WIDEST_FACTOR = 20;  // of stamps; beyond it another unit is likelier
+constexpr double LAG_OFF = 0.05;      // [s]
+constexpr std::uint64_t MIN_ROWS = 100;
+constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
+constexpr double DEGREE = PI / 180.0;
+
+bool differs(const FittedFactor& factor, double from)
+{
+  return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
+}
+
+std::string rounded(double value)
+{
+  return roundedText(value, 3);
+}
+
+double median(std::vector<double> values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What is wrong between angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
+RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
+{
+  if (std::isinf(own.value))
+  {
+    return { "velocity_zero", "velocity zero: taken from the angles", false };
+  }
+  if (own.value < 0.0)
+  {
+    return { "velocity_sign", "angle and velocity of opposite sign", true };
+  }
+  if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
+  {
+    return { "velocity_unit", "velocity in deg/s: taken from angles", false };
+  }
+  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity", true };
+}
+}  // namespace
+
+const char* effortUnitName(EffortUnit unit)
+{
+  switch (unit)
+  {
+    case EffortUnit::CURRENT:
+      break;
+    case EffortUnit::JOINT_TORQUE:
+      return "a torque at the joint in N.m";
+    case EffortUnit::MOTOR_TORQUE:
+      return "a torque of the motor in N.m";
+  }
+  return "the motor's current in A";
+}
+
+const char* effortKeyword(EffortUnit unit)
+{
+  const auto names = choiceNames(unit);
+  return std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == unit; })->first;
+}
+
+void RecordingFit::LoadRegression::add(double step, double velocity, double load, double current) noexcept
+{
+  constexpr double MEMORY = 120.0;  // of motion [s]
+  Eigen::Matrix<double, 5, 1> row;
+  row << 1.0, velocity > 0.0 ? 1.0 : -1.0, velocity, load, current;
+  sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
+}
+
+FittedFactor RecordingFit::LoadRegression::slope(double& content) const
+{
+  constexpr double RIDGE = 1e-9;      // of the mean square: motion one way only leaves constant and friction alike
+  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
+  constexpr double MIN_SECONDS = 3.0;
+  const double seconds = sums_(0, 0);
+  FittedFactor slope;
+  if (seconds < MIN_SECONDS)
+  {
+    return slope;
+  }
+  // What constant and friction leave of load and current.
+  const Eigen::Matrix3d friction =
+      sums_.topLeftCorner<3, 3>() + Eigen::Matrix3d(RIDGE * sums_.diagonal().head<3>().asDiagonal());
+  const Eigen::Matrix<double, 3, 2> both = sums_.topRightCorner<3, 2>();
+  const Eigen::Matrix2d left =
+      sums_.bottomRightCorner<2, 2>() - both.transpose() * Eigen::Matrix<double, 3, 2>(friction.ldlt().solve(both));
+  if (left(0, 0) <= RIDGE * sums_(3, 3) || left(0, 0) <= 0.0)
+  {
+    return slope;
+  }
+  content = left(0, 0);
+  slope.value = left(0, 1) / left(0, 0);
+  const double rest = std::max(0.0, left(1, 1) - slope.value * left(0, 1));
+  slope.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / seconds);
+  return slope;
+}
+
+RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
+{
+  for (const Parameters& parameters : joints)
+  {
+    Joint joint;
+    joint.gain = parameters.telemetry.torque_per_current;
+    joint.effort = parameters.telemetry.effort;
+    for (const auto& [name, unit] : choiceNames(EffortUnit()))
+    {
+      joint.current_per_effort.push_back(currentPerEffort(unit, parameters));
+    }
+    joints_.push_back(joint);
+  }
+}
+
+void RecordingFit::reset() noexcept
+{
+  for (Joint& joint : joints_)
+  {
+    joint.time.reset();
+    joint.load = LoadRegression();
+    joint.reach = JointReach();
+    joint.moving_rows = 0;
+    joint.fast_rows = 0;
+  }
+  last_time_ = std::numeric_limits<double>::quiet_NaN();
+  moving_ = 0.0;
+  cut_ = 0.0;
+  cuts_ = 0;
+  rows_ = 0;
+}
+
+void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
+{
+  const double step = joints.front().time - last_time_;
+  last_time_ = joints.front().time;
+  bool moves = false;
+  const bool follows = step > 0.0 && step <= MotionDifferentiator::MAX_GAP;
+  ++rows_;
+  if (step > MotionDifferentiator::MAX_GAP)
+  {
+    cut_ += step;
+    ++cuts_;
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    Joint& joint = joints_[i];
+    const MotionSample& sample = joints[i];
+    JointReach& reach = joint.reach;
+    ++reach.rows;
+    reach.least_angle = std::min(reach.least_angle, sample.position);
+    reach.most_angle = std::max(reach.most_angle, sample.position);
+    reach.least_speed = std::min(reach.least_speed, sample.velocity);
+    reach.most_speed = std::max(reach.most_speed, sample.velocity);
+    reach.least_current = std::min(reach.least_current, sample.current);
+    reach.most_current = std::max(reach.most_current, sample.current);
+    const bool joint_moves = std::abs(sample.velocity) > MOVING;
+    moves = moves || joint_moves;
+    joint.moving_rows += joint_moves ? 1 : 0;
+    joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
+    joint.time.add(sample.time, sample.position, sample.recorded_velocity);
+    if (follows && joint_moves && std::isfinite(torques[i]))
+    {
+      joint.load.add(step, sample.velocity, torques[i] / joint.gain, sample.current);
+    }
+  }
+  moving_ += follows && moves ? step : 0.0;
+}
+
+std::vector<FittedFactor> RecordingFit::timeFactors() const
+{
+  std::vector<FittedFactor> factors;
+  for (const Joint& joint : joints_)
+  {
+    factors.push_back(joint.time.factor());
+  }
+  return factors;
+}
+
+FittedFactor RecordingFit::stampFactor() const
+{
+  std::vector<double> likely;
+  for (const FittedFactor& factor : timeFactors())
+  {
+    if (factor.value > 1.0 / WIDEST_FACTOR && factor.value < WIDEST_FACTOR)
+    {
+      likely.push_back(factor.value);
+    }
+  }
+  if (likely.empty())
+  {
+    return {};
+  }
+  FittedFactor middle{ median(likely), 0.0 };
+  std::size_t agree = 0;
+  double weights = 0.0;
+  for (const FittedFactor& factor : timeFactors())
+  {
+    if (std::isfinite(factor.value) && !differs(factor, middle.value))
+    {
+      ++agree;
+      weights += 1.0 / std::max(LEAST_SQUARE, factor.uncertainty * factor.uncertainty);
+    }
+  }
+  middle.uncertainty = std::sqrt(1.0 / weights);
+  return 2 * agree > likely.size() ? middle : FittedFactor();
+}
+
+EffortFit RecordingFit::effort() const
+{
+  constexpr double WIDE = 2.0;             // a payload or another gain make no more of it
+  constexpr double MAX_UNCERTAINTY = 0.2;  // of the factor itself
+  EffortFit fit;
+  fit.unit = joints_.front().effort;
+  double weights = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  const auto units = choiceNames(EffortUnit());
+  std::vector<double> expected(units.size());
+  for (const Joint& joint : joints_)
+  {
+    // By the load, not by the uncertainty: a dead current would be the most certain one.
+    double weight = 0.0;
+    const FittedFactor slope = joint.load.slope(weight);
+    if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
+    {
+      continue;
+    }
+    weights += weight;
+    sum += weight * slope.value;
+    squares += weight * weight * slope.uncertainty * slope.uncertainty;
+    for (std::size_t unit = 0; unit < units.size(); ++unit)
+    {
+      // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
+      expected[unit] +=
+          weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
+    }
+  }
+  if (weights == 0.0 || std::sqrt(squares) > MAX_UNCERTAINTY * sum)
+  {
+    return fit;
+  }
+  fit.factor = { sum / weights, std::sqrt(squares) / weights };
+  const auto distance = [&](EffortUnit unit)
+  { return std::abs(std::log(fit.factor.value * weights / expected[static_cast<std::size_t>(unit)])); };
+  fit.is_known = distance(fit.unit) < std::log(WIDE);
+  for (const auto& [name, unit] : units)
+  {
+    if (!fit.is_known && distance(unit) < std::log(WIDE) && distance(unit) < distance(fit.unit) - std::log(WIDE))
+    {
+      fit.unit = unit;
+      fit.is_known = true;
+    }
+  }
+  return fit;
+}
+
+std::vector<RecordingFinding> RecordingFit::ofArm() const
+{
+  constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
+  const auto isTooFast = [](const Joint& joint)
+  { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
+  std::vector<RecordingFinding> findings;
+  if (rows_ >= MIN_ROWS && 2 * cuts_ > rows_)
+  {
+    constexpr double LONG = 0.5;  // no telemetry comes so rarely [s]
+    const double period = cut_ / static_cast<double>(cuts_);
+    findings.push_back({ "period",
+                         "rows come " + rounded(period) + " s apart by their stamps, more than " +
+                             rounded(MotionDifferentiator::MAX_GAP) + " s: no speeds, no loads" +
+                             (period > LONG ? " (are they in ms? of a recording --time-scale 0.001)" : ""),
+                         true });
+    return findings;
+  }
+  const FittedFactor stamps = stampFactor();
+  if (std::isfinite(stamps.value) && differs(stamps, 1.0))
+  {
+    const std::string factor = rounded(stamps.value);
+    findings.push_back({ "stamps",
+                         "by their stamps the angles change " + factor +
+                             " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
+                             "recording --time-scale " +
+                             factor + " mends them)",
+                         true });
+    return findings;  // the load is wrong too
+  }
+  if (std::any_of(joints_.begin(), joints_.end(), isTooFast))
+  {
+    findings.push_back(
+        { "angle_unit",
+          "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
+          true });
+  }
+  const EffortFit found = effort();
+  if (found.is_known && found.unit != joints_.front().effort)
+  {
+    findings.push_back({ "effort_unit",
+                         std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
+                             effortUnitName(joints_.front().effort) +
+                             ": set telemetry.effort: " + effortKeyword(found.unit),
+                         true });
+  }
+  else if (std::isfinite(found.factor.value) && !found.is_known)
+  {
+    findings.push_back({ "gain",
+                         "effort changes " + rounded(found.factor.value) +
+                             " times as much with the load as telemetry.torque_per_current says: another gain, or a "
+                             "payload that is not configured",
+                         false });
+  }
+  return findings;
+}
+
+std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
+{
+  const Joint& joint = joints_[number];
+  std::vector<RecordingFinding> findings;
+  if (joint.reach.rows < MIN_ROWS)
+  {
+    return findings;
+  }
+  if (joint.reach.least_current == joint.reach.most_current)
+  {
+    findings.push_back(
+        { "effort_constant", joint.reach.least_current == 0.0 ? "effort is zero" : "effort never changes", true });
+  }
+  const FittedFactor stamps = stampFactor();
+  const double of_stamps = std::isfinite(stamps.value) ? stamps.value : 1.0;
+  const FittedFactor own = joint.time.factor();
+  const FittedFactor lag = joint.time.lag();
+  if (!std::isnan(own.value) && !(std::isfinite(own.value) && !differs(own, of_stamps)))
+  {
+    findings.push_back(velocityFinding(own, of_stamps));
+  }
+  else if (std::isfinite(own.value) && std::isfinite(lag.value) &&
+           std::abs(lag.value) > LAG_OFF + DEVIATIONS * lag.uncertainty)
+  {
+    findings.push_back(
+        { "lag",
+          "velocity " + rounded(std::abs(lag.value)) + " s " + (lag.value > 0.0 ? "after" : "before") + " the angle",
+          true });
+  }
+  if (!joint.time.hasVelocity())
+  {
+    findings.push_back({ "no_velocity", "velocity taken from the angles", false });
+  }
+  if (joint.reach.most_angle - joint.reach.least_angle < MOVED)
+  {
+    findings.push_back({ "at_rest", "does not move", false });
+  }
+  return findings;
+}
+
+bool RecordingFit::isSettled() const
+{
+  const bool has_velocity =
+      std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) { return joint.time.hasVelocity(); });
+  const bool knows_stamps = !has_velocity || std::isfinite(stampFactor().value);
+  return moving_ > PATIENCE || (knows_stamps && std::isfinite(effort().factor.value));
+}
+
+std::vector<std::string> RecordingFit::whyNotJudged() const
+{
+  const auto first = [](const std::vector<RecordingFinding>& findings)
+  {
+    const auto stops =
+        std::find_if(findings.begin(), findings.end(), [](const RecordingFinding& finding) { return finding.stops; });
+    return stops == findings.end() ? std::string() : stops->text;
+  };
+  const std::string of_arm = first(ofArm());
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    reasons.push_back(of_arm.empty() ? first(ofJoint(i)) : of_arm);
+  }
+  return reasons;
+}
+}  // namespace hjt

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "arm/arm_load.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/time_fit.hpp"
+
+namespace hjt
+{
+/// Something in a recording of an arm that does not fit.
+struct RecordingFinding
+{
+  std::string kind;  ///< for documents: period, stamps, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
+                     ///< velocity_sign, velocity_unit, velocity_scale, lag, no_velocity, at_rest
+  std::string text;  ///< a clause without a full stop
+  bool stops{};      ///< nothing can be judged with it
+};
+
+/// What a joint does in a recording; empty ranges before the first row.
+struct JointReach
+{
+  std::uint64_t rows{};
+  double least_angle{ std::numeric_limits<double>::infinity() };    ///< [rad]
+  double most_angle{ -std::numeric_limits<double>::infinity() };    ///< [rad]
+  double least_speed{};                                             ///< 0: never moves in negative direction [rad/s]
+  double most_speed{};                                              ///< [rad/s]
+  double least_current{ std::numeric_limits<double>::infinity() };  ///< of the effort [A]
+  double most_current{ -std::numeric_limits<double>::infinity() };  ///< [A]
+};
+
+/// How much of the load is found in the currents of an arm.
+struct EffortFit
+{
+  FittedFactor factor;  ///< current per load, over that of telemetry.torque_per_current; NaN: too little load to tell
+  EffortUnit unit{};    ///< that the recording shows; as configured where it does not show another
+  bool is_known{};      ///< the factor is that of a unit
+};
+
+/// For people: "the motor's current in A".
+const char* effortUnitName(EffortUnit unit);
+/// In configuration.
+const char* effortKeyword(EffortUnit unit);
+
+/// Does a recording of an arm fit together: angles, velocities and stamps; currents and the load of the arm?
+///
+/// Fed with the rows of all joints, live or offline. What it knows is of the last minutes of motion. `update` neither
+/// throws nor allocates.
+class RecordingFit
+{
+public:
+  static constexpr double PATIENCE = 30.0;  ///< [s]
+
+  /// @param joints of the arm; the currents in the samples follow from their efforts as these are configured.
+  explicit RecordingFit(const std::vector<Parameters>& joints);
+
+  void reset() noexcept;
+  /// `torques`: NaN where the load is not known.
+  void update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept;
+
+  /// By how much the stamps must be stretched to fit the velocities of most joints; NaN: not known.
+  FittedFactor stampFactor() const;
+  EffortFit effort() const;
+  const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
+  bool hasVelocity(std::size_t joint) const { return joints_[joint].time.hasVelocity(); }
+  /// Of angle and velocity of the joint.
+  const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
+
+  std::vector<RecordingFinding> ofArm() const;
+  std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
+
+  /// It has seen enough for its findings, or PATIENCE of motion without.
+  bool isSettled() const;
+
+  /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
+  std::vector<std::string> whyNotJudged() const;
+
+private:
+  /// Regression of the current on a constant, Coulomb and viscous friction and the load.
+  class LoadRegression
+  {
+  public:
+    void add(double step, double velocity, double load, double current) noexcept;
+    /// Slope of the current over the load; `content`: square of the load that no friction explains, summed over time.
+    FittedFactor slope(double& content) const;
+
+  private:
+    Eigen::Matrix<double, 5, 5> sums_{ Eigen::Matrix<double, 5, 5>::Zero() };  // of 1, sign, speed, load, current
+  };
+
+  struct Joint
+  {
+    double gain{};  // [N.m/A]
+    EffortUnit effort{};
+    std::vector<double> current_per_effort;  // by unit [A], [A/(N.m)]
+    TimeFit time;
+    LoadRegression load;
+    JointReach reach;
+    std::uint64_t moving_rows{};
+    std::uint64_t fast_rows{};  // faster than any joint
+  };
+
+  std::vector<FittedFactor> timeFactors() const;
+
+  std::vector<Joint> joints_;
+  double last_time_{ std::numeric_limits<double>::quiet_NaN() };
+  double moving_{};  // time in which a joint moved [s]
+  double cut_{};     // time between rows too far from each other [s]
+  std::uint64_t cuts_{};
+  std::uint64_t rows_{};
+};
+}  // namespace hjt

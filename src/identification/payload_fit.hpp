@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "arm/arm_description.hpp"
+#include "tracking/motion_differentiator.hpp"
+
+namespace hjt
+{
+/// The payload that an arm's currents show, beside the configured one.
+struct IdentifiedPayload
+{
+  Payload configured;
+  double mass{};                              ///< [kg]
+  double mass_half_width{};                   ///< of its 95 % interval [kg]
+  std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
+  std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
+
+  /// The configured mass is outside the interval.
+  bool differs() const;
+};
+
+/// Mass and centre of an arm's payload from the currents of all joints while they move, by least squares.
+///
+///   residual_i = (Y_i . (m, m c) + e_i (load_i + Y_i . (m, m c))) / gain_i + s a_i + b_i v + o_i
+/// with Y_i the torque of a unit payload at joint i (rigid-body dynamics), and for each joint, as nuisances, an error
+/// of the gain, of the Coulomb and the viscous friction and an offset, each normally distributed about zero. Each row
+/// of the fit is the mean over 0.1 s of one joint that moves one way; it counts by the deviation and the correlation of
+/// that joint's rows, outliers less. The intervals hold no error of the links' own masses.
+/// @param samples of each joint, from the base on, of the same times. @param predicted current of each [A]
+/// @param gains [N.m/A]
+IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
+                                  const std::vector<std::vector<double>>& predicted, const std::vector<double>& gains);
+}  // namespace hjt

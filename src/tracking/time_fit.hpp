@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "tracking/motion_differentiator.hpp"
+
+namespace hjt
+{
+/// A multiple, and how far it may be off.
+struct FittedFactor
+{
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
+  double uncertainty{};                                      ///< standard deviation
+};
+
+/// Do the velocities that a recording gives of a joint agree with the slopes of its angles, by their stamps?
+///
+/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which
+/// the joint moves, so a join or a damaged row does not count. The lag is that of least squares, to first order. Only
+/// the last MEMORY of motion counts. Fixed memory; nothing allocates.
+class TimeFit
+{
+public:
+  static constexpr double PIECE = 0.1;     ///< [s]
+  static constexpr double SLOWEST = 0.05;  ///< slower windows tell nothing [rad/s]
+
+  void reset() noexcept { *this = TimeFit(); }
+
+  /// `velocity`: as recorded; NaN: none.
+  void add(double time, double position, double velocity) noexcept
+  {
+    const double step = time - time_;
+    if (step >= 0.0 && step < MotionDifferentiator::MIN_STEP)
+    {
+      return;
+    }
+    if (step < 0.0 || step > MotionDifferentiator::MAX_GAP || !std::isfinite(velocity))
+    {
+      pieces_ = 0;
+      piece_ = {};
+    }
+    else
+    {
+      piece_.seconds += step;
+      piece_.angle += position - position_;
+      piece_.integral += 0.5 * (velocity + velocity_) * step;
+      if (piece_.seconds > PIECE - MotionDifferentiator::MIN_STEP)
+      {
+        close();
+      }
+    }
+    time_ = time;
+    position_ = position;
+    velocity_ = velocity;
+    has_velocity_ = has_velocity_ || std::isfinite(velocity);
+  }
+
+  /// Change of the angles over the integral of the velocities; 1: they agree; infinite: the velocities are zero.
+  FittedFactor factor() const noexcept
+  {
+    const std::size_t count = std::min<std::uint64_t>(windows_, KEPT);
+    if (count < MIN_WINDOWS)
+    {
+      return {};
+    }
+    std::array<std::size_t, KEPT> order;
+    std::array<double, KEPT> values;
+    double weight = 0.0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      order[i] = i;
+      values[i] = kept_[i].integral != 0.0 ? kept_[i].angle / kept_[i].integral : HUGE_VAL;
+      weight += kept_[i].weight();
+    }
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(count);
+    std::sort(order.begin(), end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+    double sum = 0.0;
+    const auto middle = std::find_if(order.begin(), end,
+                                     [&](std::size_t i)
+                                     {
+                                       sum += kept_[i].weight();
+                                       return sum >= 0.5 * weight;
+                                     });
+    FittedFactor factor;
+    factor.value = values[*middle];
+    if (!std::isfinite(factor.value))
+    {
+      return factor;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      values[i] = std::abs(values[i] - factor.value);
+    }
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count / 2),
+                     values.begin() + static_cast<std::ptrdiff_t>(count));
+    constexpr double DEVIATION = 1.48;  // of a normal distribution, over its median magnitude
+    factor.uncertainty = DEVIATION * values[count / 2] / std::sqrt(static_cast<double>(count));
+    return factor;
+  }
+
+  /// Of the recorded velocity behind the slope of the angles [s]. Means something where the factor is near 1.
+  FittedFactor lag() const noexcept
+  {
+    FittedFactor lag;
+    if (accelerated_ >= MIN_ACCELERATED)
+    {
+      lag.value = -products_ / accelerations_;
+      const double rest = std::max(0.0, differences_ + products_ * lag.value);
+      lag.uncertainty = std::sqrt(rest / accelerations_ / accelerated_);
+    }
+    return lag;
+  }
+
+  bool hasVelocity() const noexcept { return has_velocity_; }
+
+private:
+  static constexpr int PIECES = 8;                   // of a window
+  static constexpr std::size_t MIN_WINDOWS = 6;      // for a median
+  static constexpr std::size_t KEPT = 256;           // windows: 200 s of motion
+  static constexpr double MEMORY = 2000.0;           // pieces that the lag is made of
+  static constexpr double MIN_ACCELERATED = 20.0;    // such pieces
+  static constexpr double LEAST_ACCELERATION = 0.1;  // of those [rad/s^2]
+
+  struct Piece
+  {
+    double seconds{};
+    double angle{};     // its change
+    double integral{};  // of the velocity
+
+    double slope() const { return angle / seconds; }
+    double velocity() const { return integral / seconds; }
+    double weight() const { return std::max(std::abs(angle), std::abs(integral)); }
+  };
+
+  void close() noexcept
+  {
+    last_[0] = last_[1];
+    last_[1] = last_[2];
+    last_[2] = piece_;
+    window_ = pieces_ % PIECES == 0 ? Piece() : window_;
+    window_.seconds += piece_.seconds;
+    window_.angle += piece_.angle;
+    window_.integral += piece_.integral;
+    ++pieces_;
+    piece_ = {};
+    if (pieces_ % PIECES == 0 && window_.weight() > SLOWEST * window_.seconds)
+    {
+      kept_[windows_++ % KEPT] = window_;
+    }
+    if (pieces_ < 3)
+    {
+      return;
+    }
+    const double acceleration =
+        (last_[2].slope() - last_[0].slope()) / (0.5 * last_[0].seconds + last_[1].seconds + 0.5 * last_[2].seconds);
+    if (std::abs(acceleration) > LEAST_ACCELERATION)
+    {
+      const double difference = last_[1].velocity() - last_[1].slope();
+      const double kept = 1.0 - 1.0 / MEMORY;
+      accelerations_ = kept * accelerations_ + acceleration * acceleration;
+      products_ = kept * products_ + acceleration * difference;
+      differences_ = kept * differences_ + difference * difference;
+      accelerated_ = kept * accelerated_ + 1.0;
+    }
+  }
+
+  double time_{ -std::numeric_limits<double>::infinity() };
+  double position_{};
+  double velocity_{};
+  bool has_velocity_{};
+  Piece piece_;
+  std::uint64_t pieces_{};  // without a gap
+  std::array<Piece, 3> last_;
+  Piece window_;
+  std::array<Piece, KEPT> kept_;
+  std::uint64_t windows_{};
+  double accelerations_{};  // sums of squares and products
+  double products_{};
+  double differences_{};
+  double accelerated_{};
+};
+}  // namespace hjt

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin check`: what of an arm's recording is usable, and the command to run next.
+
+Recordings of a UR5 are used where they are at hand, in HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
+"""
+import csv
+import glob
+import json
+import os
+import shlex
+import unittest
+
+import genpy
+import numpy as np
+import rosbag
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState, Temperature
+from std_msgs.msg import Float64
+
+import tool
+
+NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+GAINS = [10.7, 10.7, 10.7, 10.21, 11.9, 11.92]  # of config/arms/ur5.yaml [N.m/A]
+DRIVER_ORDER = [2, 1, 0, 3, 4, 5]
+DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
+RECORDINGS = {os.path.basename(path)[7:-4]: path
+              for path in sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))}
+MAX_LINES, MAX_COLUMNS = 25, 100
+
+
+def swinging(seconds=40.0, period=0.008):
+    """A made-up arm: columns as those of a controller. The shoulder and the elbow carry a weight."""
+    time = np.arange(0.0, seconds, period)
+    columns = {"timestamp": time}
+    noise = np.random.default_rng(3)
+    for joint in range(6):
+        rate = 0.7 + 0.17 * joint
+        columns[f"actual_q_{joint}"] = 0.6 * np.sin(rate * time)
+        columns[f"actual_qd_{joint}"] = 0.6 * rate * np.cos(rate * time)
+        friction = 10.0 * np.sign(columns[f"actual_qd_{joint}"])
+        columns[f"actual_current_{joint}"] = friction / GAINS[joint] + noise.normal(0.0, 0.05, len(time))
+    return columns
+
+
+def write_csv(path, columns):
+    with open(path, "w", encoding="ascii") as file:
+        file.write(",".join(columns) + "\n")
+        for row in zip(*columns.values()):
+            file.write(",".join(f"{value:.9g}" for value in row) + "\n")
+    return path
+
+
+def read_csv(path):
+    with open(path, encoding="ascii") as file:
+        rows = list(csv.reader(file))
+    kept = [i for i, name in enumerate(rows[0]) if not name.startswith("target_") or "moment" in name]
+    values = np.array([[row[i] for i in kept] for row in rows[1:]], dtype=float)
+    return {rows[0][i]: values[:, column] for column, i in enumerate(kept)}
+
+
+def write_driver_bag(path, columns, rate=500.0, names=tool.JOINT_NAMES, with_velocity=True, with_effort=True):
+    """As a UR's driver publishes: the elbow first, effort in A, a gripper on the same topic, other topics beside it."""
+    time = np.arange(columns["timestamp"][0], columns["timestamp"][-1], 1.0 / rate)
+    rows = {(quantity, joint): np.interp(time, columns["timestamp"], columns[f"actual_{quantity}_{joint}"])
+            for quantity in ("q", "qd", "current") for joint in range(6)}
+    jitter = np.random.default_rng(5)
+    with rosbag.Bag(path, "w") as bag:
+        for row, seconds in enumerate(time):
+            at = genpy.Time(tool.START) + genpy.Duration.from_sec(seconds)
+            recorded = at + genpy.Duration.from_sec(0.0005 + 0.0005 * jitter.random())
+            order = [joint for joint in DRIVER_ORDER if joint < len(names)]
+            state = JointState(name=[names[joint] for joint in order],
+                               position=[rows["q", joint][row] for joint in order],
+                               velocity=[rows["qd", joint][row] for joint in order] if with_velocity else [],
+                               effort=[rows["current", joint][row] for joint in order] if with_effort else [])
+            state.header.stamp = at
+            bag.write("/joint_states", state, recorded)
+            if row % 5 == 0:
+                gripper = JointState(name=["finger_joint"], position=[0.3], velocity=[0.0], effort=[0.0])
+                gripper.header.stamp = at
+                bag.write("/joint_states", gripper, recorded)
+                wrench = WrenchStamped()
+                wrench.header.stamp = at
+                bag.write("/wrench", wrench, recorded)
+                bag.write("/speed_slider", Float64(1.0), recorded)
+    return path
+
+
+class Check(tool.ToolTest):
+    def check(self, recording, *more, exit_code=0):
+        done = self.run_tool("check", recording, *more, "--json")
+        self.assertEqual(done.returncode, exit_code, done.stdout + done.stderr)
+        return json.loads(done.stdout)
+
+    def kinds(self, found):
+        return [finding["kind"] for finding in found["findings"]]
+
+    def lines(self, recording, *more):
+        """What it prints for people, within a page."""
+        printed = self.run_tool("check", recording, *more).stdout.splitlines()
+        self.assertLessEqual(len(printed), MAX_LINES, printed)
+        self.assertLessEqual(max(len(line) for line in printed if "joint_twin" not in line), MAX_COLUMNS, printed)
+        return printed
+
+    def run_all_next(self, found):
+        for command in found["next"]:
+            words = shlex.split(command)
+            self.assertEqual(words[0], "joint_twin")
+            done = self.run_tool(*words[1:])
+            # identify answers 1 where nothing could be identified
+            self.assertIn(done.returncode, (0, 1) if words[1] == "identify" else (0,), (command, done.stderr))
+            self.assertTrue(done.returncode == 0 or "identif" in done.stdout + done.stderr, (command, done.stderr))
+
+    def test_a_sound_recording_is_usable_as_it_is(self):
+        write_csv(self.path("arm.csv"), swinging())
+        found = self.check("arm.csv")
+        self.assertTrue(found["usable"])
+        self.assertEqual((found["arms"], found["arm"], found["load"]), (["ur5", "ur5e"], "ur5", "arm"))
+        self.assertAlmostEqual(found["stamp_factor"], 1.0, delta=0.005)
+        self.assertAlmostEqual(found["period"], 0.008, places=6)
+        self.assertEqual([joint["name"] for joint in found["joints"]], NAMES)
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
+        self.assertEqual(found["next"], ["joint_twin identify arm.csv --arm ur5 --out my_arm",
+                                         "joint_twin compare arm.csv --arm ur5 --report report",
+                                         "joint_twin follow arm.csv --arm ur5 --out rows"])
+        printed = self.lines("arm.csv", "--arm", "ur5e")
+        self.assertIn("arm         ur5e", printed)
+        self.assertEqual(sum(line.startswith(tuple(f"{name} " for name in NAMES)) for line in printed), 6)
+
+    def test_stamps_of_another_period_are_named_and_mended(self):
+        columns = swinging(period=0.016)
+        columns["timestamp"] = columns["timestamp"] / 2.0
+        write_csv(self.path("fast.csv"), columns)
+        found = self.check("fast.csv", exit_code=1)
+        self.assertEqual(self.kinds(found), ["stamps"])
+        self.assertAlmostEqual(found["stamp_factor"], 2.0, delta=0.02)
+        self.assertEqual(found["next"][0], "joint_twin check fast.csv --arm ur5 --time-scale 2")
+        self.assertTrue(any("--time-scale 2" in line for line in self.lines("fast.csv")))
+        mended = self.check("fast.csv", "--time-scale", 2)
+        self.assertTrue(mended["usable"])
+        self.assertAlmostEqual(mended["period"], 0.016, places=6)
+        self.assertIn("--time-scale 2", mended["next"][0])
+        arm = self.succeed_json("compare", "fast.csv", "--arm", "ur5", "--report", "report")
+        self.assertEqual((arm["level"], {joint["level"] for joint in arm["joints"]}), ("NOT JUDGED", {"NOT JUDGED"}))
+        self.assertIn("--time-scale 2", arm["reason"])
+        done = self.succeed("follow", "fast.csv", "--arm", "ur5")
+        self.assertIn("--time-scale 2", done.stderr)
+        self.assertNotIn("--time-scale", self.succeed("follow", "fast.csv", "--arm", "ur5", "--time-scale", 2).stderr)
+
+    def test_a_joint_that_does_not_fit_is_named_and_not_judged(self):
+        columns = swinging()
+        columns["actual_current_0"][:] = 0.0
+        columns["actual_qd_1"] *= -1.0
+        columns["actual_qd_2"] = np.roll(columns["actual_qd_2"], 20)
+        columns["actual_qd_3"][:] = 0.0
+        columns["actual_q_5"][:] = 1.0
+        columns["actual_qd_5"][:] = 0.0
+        write_csv(self.path("arm.csv"), columns)
+        found = self.check("arm.csv")
+        self.assertEqual([[finding["kind"] for finding in joint["findings"]] for joint in found["joints"]],
+                         [["effort_constant"], ["velocity_sign"], ["lag"], ["velocity_zero"], [], ["at_rest"]])
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [False, False, False, True, True, False])
+        self.assertAlmostEqual(found["joints"][2]["velocity_lag"], 0.16, delta=0.01)
+        self.lines("arm.csv")
+        arm = self.succeed_json("compare", "arm.csv", "--arm", "ur5", "--report", "report")
+        levels = [joint["level"] for joint in arm["joints"]]
+        self.assertEqual(levels[:3], ["NOT JUDGED"] * 3)
+        self.assertIn("effort is zero", arm["reason"] + arm["joints"][0]["reason"])
+        done = self.succeed("follow", "arm.csv", "--arm", "ur5")
+        for part in ("base: effort is zero", "shoulder: angle and velocity of opposite sign", "elbow: velocity 0.1"):
+            self.assertIn(part, done.stderr)
+
+    def test_a_bag_without_effort_or_without_a_known_arm(self):
+        columns = swinging(seconds=12.0)
+        write_driver_bag(self.path("mute.bag"), columns, rate=125.0, with_effort=False)
+        found = self.check("mute.bag", exit_code=1)
+        self.assertEqual((found["joints"], found["usable"], found["next"]), ([], False, []))
+        self.assertEqual(found["missing_joints"], tool.JOINT_NAMES)
+        self.assertTrue(any(line.startswith("effort      none") for line in self.lines("mute.bag")))
+
+        write_driver_bag(self.path("crane.bag"), columns, rate=125.0, names=["slew", "lift"])
+        found = self.check("crane.bag")
+        self.assertEqual((found["arm"], found["load"], found["arms"]), (None, "unknown", []))
+        self.assertEqual({joint["name"] for joint in found["joints"]}, {"slew", "lift"})
+        self.assertEqual(found["next"], ["joint_twin compare crane.bag --joint lift --report report"])
+
+        write_driver_bag(self.path("short.bag"), columns, rate=125.0, names=tool.JOINT_NAMES[:5])
+        found = self.check("short.bag", "--arm", "ur5")
+        self.assertEqual(found["missing_joints"], ["wrist_3_joint"])
+        self.assertTrue(any("no effort of wrist_3_joint" in line for line in self.lines("short.bag", "--arm", "ur5")))
+        self.fail_with(1, ["no messages on /states", "/joint_states"], "check", "short.bag", "--topic", "/states")
+
+    def test_velocity_may_be_empty_and_a_temperature_is_found(self):
+        write_driver_bag(self.path("arm.bag"), swinging(seconds=12.0), rate=125.0, with_velocity=False)
+        with rosbag.Bag(self.path("arm.bag"), "a") as bag:
+            bag.write("/elbow/temperature", Temperature(temperature=31.0), genpy.Time(tool.START))
+        found = self.check("arm.bag")
+        self.assertEqual({joint["has_velocity"] for joint in found["joints"]}, {False})
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
+        self.assertEqual(found["temperature"], "/elbow/temperature")
+        self.assertIsNone(found["stamp_factor"])
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_sound_recordings_have_nothing_that_stops_judging(self):
+        for name, path in RECORDINGS.items():
+            found = self.check(path)
+            print(f"{name:10} stamps {found['stamp_factor']:.4f}, effort {found['effort_factor']:.3f}, lags",
+                  [None if joint["velocity_lag"] is None else round(joint["velocity_lag"], 3)
+                   for joint in found["joints"]])
+            findings = found["findings"] + [finding for joint in found["joints"] for finding in joint["findings"]]
+            self.assertEqual([finding for finding in findings if finding["stops"]], [], name)
+            self.assertEqual(found["effort"], "current", name)
+            self.assertTrue(found["usable"] and found["load_recorded"], name)
+            self.lines(path)
+
+    @unittest.skipUnless("no2" in RECORDINGS, "no recording of a UR5 stamped by another period")
+    def test_a_log_of_62_hz_stamped_as_125_is_recognised(self):
+        columns = read_csv(RECORDINGS["no2"])
+        columns["timestamp"] = 0.008 * np.arange(len(columns["timestamp"]))
+        write_csv(self.path("no2.csv"), columns)
+        found = self.check("no2.csv", exit_code=1)
+        self.assertEqual(self.kinds(found), ["stamps"])
+        self.assertIn("--time-scale 2", found["next"][0])
+        self.assertEqual(self.kinds(self.check("no2.csv", "--time-scale", 2)), [])
+
+    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    def test_effort_in_newton_metres_is_recognised_from_gravity(self):
+        for name in ("no2", "no5", "no6"):
+            for unit, factors in (("joint_torque", GAINS), ("motor_torque", [gain / 101.0 for gain in GAINS])):
+                columns = read_csv(RECORDINGS[name])
+                for joint, factor in enumerate(factors):
+                    columns[f"actual_current_{joint}"] *= factor
+                write_csv(self.path("torque.csv"), columns)
+                found = self.check("torque.csv", exit_code=1)
+                print(f"{name:4} {unit:12} {found['effort_factor']:.3f} +- {found['effort_factor_uncertainty']:.3f}")
+                self.assertEqual((self.kinds(found), found["effort"]), (["effort_unit"], unit), name)
+                self.assertIn(f"--set telemetry.effort={unit}", found["next"][0])
+                mended = self.check("torque.csv", "--set", f"telemetry.effort={unit}")
+                self.assertEqual((self.kinds(mended), mended["effort"]), ([], unit))
+        follow = ("follow", "torque.csv", "--arm", "ur5", "--set", f"telemetry.effort={unit}")
+        mended = self.succeed_json(*follow)["joints"]
+        for one, same in zip(self.succeed_json("follow", RECORDINGS[name], "--arm", "ur5")["joints"], mended):
+            self.assertAlmostEqual(one["current_residual_rms"], same["current_residual_rms"], places=5)
+
+    @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 with slow motion")
+    def test_a_drivers_bag_at_500_hz_works_as_it_is(self):
+        write_driver_bag(self.path("ur.bag"), read_csv(RECORDINGS["no5"]))
+        found = self.check("ur.bag")
+        self.assertTrue(found["usable"])
+        self.assertEqual((found["arm"], found["effort"], self.kinds(found)), ("ur5", "current", []))
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
+        self.assertAlmostEqual(found["period"], 0.002, places=6)
+        self.lines("ur.bag")
+        self.run_all_next(found)
+        self.assertEqual(sorted(os.listdir(self.path("my_arm"))), sorted(f"{name}.yaml" for name in NAMES))
+        with open(self.path("report/arm.json"), encoding="utf-8") as file:
+            arm = json.load(file)
+        self.assertEqual(arm["level"], "OK", arm)
+        plain = self.succeed_json("follow", RECORDINGS["no5"], "--arm", "ur5")["joints"]
+        for joint, same in zip(self.succeed_json("follow", "ur.bag", "--arm", "ur5")["joints"], plain):
+            print(f"{joint['joint']:9} {joint['current_residual_rms']:.3f} A, at 125 Hz "
+                  f"{same['current_residual_rms']:.3f} A")
+            # Between two rows a line holds less of their noise than each of them.
+            ratio = joint["current_residual_rms"] / same["current_residual_rms"]
+            self.assertTrue(0.8 < ratio < 1.02, (joint, same))
+
+
+if __name__ == "__main__":
+    tool.main()
