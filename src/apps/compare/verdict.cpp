@@ -470,7 +470,7 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
   {
     return arm;
   }
-  const auto leftOver = [&](const std::vector<double>& factors)
+  const auto left_over = [&](const std::vector<double>& factors)
   {
     std::vector<double> left;
     for (const std::size_t i : known)
@@ -481,20 +481,20 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
   };
   const auto agreeing = [&](const std::vector<double>& factors)
   {
-    const std::vector<double> left = leftOver(factors);
+    const std::vector<double> left = left_over(factors);
     return static_cast<std::size_t>(
         std::count_if(left.begin(), left.end(), [&](double ratio) { return std::abs(ratio - 1.0) <= tolerance; }));
   };
   const auto misfit = [&](const std::vector<double>& factors)
   {
     double sum = 0.0;
-    for (const double ratio : leftOver(factors))
+    for (const double ratio : left_over(factors))
     {
       sum += std::abs(std::log(std::max(ratio, TINY)));
     }
     return sum;
   };
-  const auto factorsAt = [&](double temperature)
+  const auto factors_at = [&](double temperature)
   {
     std::vector<double> factors;
     for (const RecordingComparison* joint : joints)
@@ -504,18 +504,18 @@ ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints
     return factors;
   };
 
-  const double median = medianOf(leftOver(arm.factors));
+  const double median = medianOf(left_over(arm.factors));
   const std::vector<double> alike(ratios.size(), median);
   double low = COLDEST;
   double high = WARMEST;
-  const auto isColder = [&](double temperature) { return medianOf(leftOver(factorsAt(temperature))) > 1.0; };
-  const bool has_temperature = !is_received && !isColder(low) && isColder(high);
+  const auto is_colder = [&](double temperature) { return medianOf(left_over(factors_at(temperature))) > 1.0; };
+  const bool has_temperature = !is_received && !is_colder(low) && is_colder(high);
   for (int i = 0; has_temperature && i < HALVINGS; ++i)  // the twins' friction falls with the temperature
   {
     const double middle = 0.5 * (low + high);
-    (isColder(middle) ? high : low) = middle;
+    (is_colder(middle) ? high : low) = middle;
   }
-  const std::vector<double> at_temperature = has_temperature ? factorsAt(low) : arm.factors;
+  const std::vector<double> at_temperature = has_temperature ? factors_at(low) : arm.factors;
 
   const std::size_t most = known.size() / 2 + 1;
   const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
