@@ -124,8 +124,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
   {
     const double speed = ratio * sample.velocity;
     const double joint = weight * std::copysign(ratio, speed);
-    const FrictionShares shares =
-        friction.at(speed, sample.load, sample.temperatureOr(parameters.input.temperature));
+    const FrictionShares shares = friction.at(speed, sample.load, sample.temperatureOr(parameters.input.temperature));
     block.current += weight * sample.current;
     block.known += weight * (sample.load + sample.vibration) + joint * shares.rest;
     block.column[INERTIA] += weight * ratio * ratio * sample.acceleration;

@@ -368,10 +368,10 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   PreslidingFit(result.parameters, train).run(result);
   const bool is_warmed = std::any_of(train.begin(), train.end(),
                                      [](const MotionSample& sample) { return std::isfinite(sample.temperature); });
-  result.values.push_back({ "temperature of the friction", "bearing.viscosity_slope", "-",
-                            parameters.bearing.viscosity_slope, parameters.bearing.viscosity_slope, 0.0,
-                            is_warmed ? "not identified; the slope of the oil is taken" :
-                                        "the recording has no temperature" });
+  result.values.push_back(
+      { "temperature of the friction", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
+        parameters.bearing.viscosity_slope, 0.0,
+        is_warmed ? "not identified; the slope of the oil is taken" : "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });
