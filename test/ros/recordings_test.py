@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings of a sound UR5, played as its driver publishes: angles, velocities and currents, nothing else. They are taken from
-HJT_TELEMETRY_DIR, else from shared/telemetry beside the checkout; without them nothing is tested."""
+"""Recordings of a sound UR5, played as its driver publishes: angles, velocities and currents, nothing else. They are
+taken from HJT_TELEMETRY_DIR, else from shared/telemetry beside the checkout; without them nothing is tested."""
 import csv
 import glob
 import os
