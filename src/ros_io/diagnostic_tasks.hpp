@@ -51,7 +51,7 @@ public:
     : name_(name)
     , hardware_id_(hardware_id)
     , period_(ros::NodeHandle("~").param("diagnostic_period", 1.0))
-    , publisher_(ros::NodeHandle().advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1))
+    , publisher_(ros::NodeHandle().advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", QUEUE_SIZE))
   {
   }
 
@@ -108,6 +108,8 @@ private:
     }
     publisher_.publish(message);
   }
+
+  static constexpr unsigned QUEUE_SIZE = 20;  // the joints of an arm report at once
 
   const std::string name_;
   const std::string hardware_id_;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings of a sound UR5, played as its driver publishes: angles and currents, nothing else. They are taken from
-HJT_TELEMETRY_DIR, else from shared/telemetry beside the checkout; without them nothing is tested."""
+"""Recordings of a sound UR5, played as its driver publishes: angles, velocities and currents, nothing else. They are
+taken from HJT_TELEMETRY_DIR, else from shared/telemetry beside the checkout; without them nothing is tested."""
 import csv
 import glob
 import os
@@ -36,8 +36,8 @@ class Recordings(unittest.TestCase):
         wait_until(lambda: self.publisher.get_num_connections() == 1, "the node")
 
     def play(self, path, slower=1.0, torque_per_effort=None):
-        """Returns how many rows were sent, and how many seconds they cover. `slower`: the stamps than the recording's,
-        and then the velocities are sent too; `torque_per_effort`: of the joints, else efforts are currents [N.m/A]."""
+        """Returns how many rows were sent, and how many seconds they cover. `slower`: the stamps than the recording's;
+        `torque_per_effort`: of the joints, else efforts are currents [N.m/A]."""
         with open(path) as file:
             rows = list(csv.DictReader(file))
         begin, first = rospy.Time.now(), float(rows[0]["timestamp"])
@@ -46,10 +46,9 @@ class Recordings(unittest.TestCase):
             time.sleep(max(0.0, (begin - rospy.Time.now()).to_sec() + since / FASTER))
             message = JointState(name=list(JOINTS.values()),
                                  position=[float(row[f"actual_q_{i}"]) for i in NUMBERS.values()],
+                                 velocity=[float(row[f"actual_qd_{i}"]) for i in NUMBERS.values()],
                                  effort=[float(row[f"actual_current_{i}"]) * (torque_per_effort or {}).get(joint, 1.0)
                                          for joint, i in NUMBERS.items()])
-            if slower != 1.0:
-                message.velocity = [float(row[f"actual_qd_{i}"]) for i in NUMBERS.values()]
             message.header.stamp = begin + rospy.Duration.from_sec(since)
             self.publisher.publish(message)
         return len(rows), since
@@ -70,9 +69,11 @@ class Recordings(unittest.TestCase):
             self.play(path, **change)
             for joint in JOINTS:
                 for task in ("Drive", "Health"):
-                    statuses = self.diagnostics[joint].statuses(task)[seen[joint][task]:]
-                    self.assertTrue(any("Not judged" in status.message and expected in status.message
-                                        for status in statuses), (expected, joint, task, statuses[-1:]))
+                    def since(joint=joint, task=task):
+                        return self.diagnostics[joint].statuses(task)[seen[joint][task]:]
+                    wait_until(lambda: any("Not judged" in status.message and expected in status.message
+                                           for status in since()), (expected, joint, task))
+                    statuses = since()
                     levels = {status.level for status in statuses
                               if "stopped" not in status.message and "Nothing" not in status.message}
                     self.assertEqual(levels, {OK}, (expected, joint, task))
