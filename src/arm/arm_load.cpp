@@ -14,7 +14,8 @@ ArmLoad::ArmLoad(const ArmDescription& arm)
   , times_(dynamics_.joints())
   , slow_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
   , fast_(dynamics_.joints())
-  , sample_{ std::vector<MotionSample>(dynamics_.joints()), std::vector<double>(dynamics_.joints()) }
+  , waiting_(ROOM, { std::vector<MotionSample>(dynamics_.joints()), std::vector<double>(dynamics_.joints()) })
+  , rows_(dynamics_.joints())
   , motion_(dynamics_.joints())
   , fast_samples_(dynamics_.joints())
   , fast_torques_(dynamics_.joints())
@@ -26,6 +27,7 @@ void ArmLoad::reset() noexcept
   std::fill(slow_.begin(), slow_.end(), MotionDifferentiator(HALF_WIDTH));
   std::fill(fast_.begin(), fast_.end(), MotionDifferentiator());
   times_.reset();
+  first_waiting_ = end_waiting_ = 0;
   last_time_ = -std::numeric_limits<double>::infinity();
 }
 
@@ -43,16 +45,33 @@ bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
   {
     return false;
   }
+  if (std::isinf(last_time_))
+  {
+    has_velocities_ = std::all_of(rows.begin(), rows.end(),
+                                  [](const MotionRow& row) { return std::isfinite(row.recorded_velocity); });
+  }
   last_time_ = time;
-  const double stamp_error = times_.stampError(rows);
+  rows_ = rows;
+  if (has_velocities_)
+  {
+    pushFast();
+  }
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    MotionRow row = rows[i];
-    row.stamp_error = stamp_error;
-    slow_[i].push(row);
-    fast_[i].push(row);
+    slow_[i].push(rows_[i]);
   }
   return true;
+}
+
+/// The rows at hand, whose times are mended.
+void ArmLoad::pushFast() noexcept
+{
+  const double stamp_error = times_.stampError(rows_);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    rows_[i].stamp_error = stamp_error;
+    fast_[i].push(rows_[i]);
+  }
 }
 
 /// The next sample of every joint, and the torques that their motion takes. False: one is not ready.
@@ -75,15 +94,34 @@ bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::ve
 
 const ArmSample* ArmLoad::pop(bool at_end) noexcept
 {
-  // The slow ones are ready last; both hold the same rows.
-  if (!take(slow_, at_end, sample_.joints, sample_.torques) || !take(fast_, at_end, fast_samples_, fast_torques_))
+  while (end_waiting_ < first_waiting_ + ROOM)
+  {
+    ArmSample& slow = waiting_[end_waiting_ % ROOM];
+    if (!take(slow_, at_end, slow.joints, slow.torques))
+    {
+      break;
+    }
+    ++end_waiting_;
+    if (!has_velocities_)
+    {
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+      {
+        rows_[i] = slow.joints[i];
+        rows_[i].recorded_velocity = slow.joints[i].velocity;
+      }
+      pushFast();
+    }
+  }
+  if (first_waiting_ == end_waiting_ || !take(fast_, at_end, fast_samples_, fast_torques_))
   {
     return nullptr;
   }
+  ArmSample& sample = waiting_[first_waiting_++ % ROOM];
   for (std::size_t i = 0; i < motion_.size(); ++i)
   {
-    sample_.joints[i].vibration = fast_torques_[i] - sample_.torques[i];
+    sample.joints[i].stamp_error = fast_samples_[i].stamp_error;
+    sample.joints[i].vibration = fast_torques_[i] - sample.torques[i];
   }
-  return &sample_;
+  return &sample;
 }
 }  // namespace hjt

@@ -24,8 +24,9 @@ struct ArmSample
 ///
 /// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
 /// and have no phase, and a row comes out at most HALF_WIDTH late. What faster rates, within a joint's own half width,
-/// take beyond that is the torque of the arm's vibration: mostly the answer to the drives' ripple. Velocities, if
-/// recorded, mend the rows' times (RowTimes). Live and offline alike. After construction nothing throws;
+/// take beyond that is the torque of the arm's vibration: mostly the answer to the drives' ripple. Velocities mend the rows'
+/// times (RowTimes): for load and vibration if they are recorded, else, from the slow rates, for the vibration alone, and
+/// a row comes out later by MotionDifferentiator::HALF_WIDTH. Live and offline alike. After construction nothing throws;
 /// nothing allocates.
 class ArmLoad
 {
@@ -50,18 +51,26 @@ public:
   const ArmSample* pop(bool at_end = false) noexcept;
 
 private:
+  /// Rows that wait for their fast rates, at most.
+  static constexpr std::size_t ROOM = 256;
+
   bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples,
             std::vector<double>& torques) noexcept;
+  void pushFast() noexcept;
 
   ArmDynamics dynamics_;
   RowTimes times_;
   // One a joint, all with rows of the same times, for load and vibration.
   std::vector<MotionDifferentiator> slow_;
   std::vector<MotionDifferentiator> fast_;
-  ArmSample sample_;
+  std::vector<ArmSample> waiting_;  // with slow rates, from first_waiting_ to end_waiting_, round and round
+  std::uint64_t first_waiting_{};
+  std::uint64_t end_waiting_{};
+  std::vector<MotionRow> rows_;
   std::vector<JointMotion> motion_;
   std::vector<MotionSample> fast_samples_;
   std::vector<double> fast_torques_;
+  bool has_velocities_{};  // of the first row
   double last_time_{ -std::numeric_limits<double>::infinity() };
 };
 }  // namespace hjt

@@ -14,30 +14,38 @@ namespace hjt
 /// all joints, with the stamps' own interval d as an observation beside them:
 ///   e = (v.dq / ANGLE^2 + d / STAMP^2) / (v.v / ANGLE^2 + 1 / STAMP^2)
 /// A log that stamps its rows evenly but took them unevenly, or lost one, shows as e other than d. Differences below
-/// SIGNIFICANT are noise and passed over. Only the differences between errors count, until the next gap. A recording
-/// without velocities keeps its stamps. Nothing allocates or throws after construction.
+/// SIGNIFICANT are noise and passed over. A joint counts while its velocities agree with its angles and the stamps within
+/// AGREES in the mean of the last seconds: one of the wrong sign or unit does not. Only the differences between errors
+/// count, until the next gap. Nothing allocates or throws after construction.
 class RowTimes
 {
 public:
   static constexpr double ANGLE = 1e-4;        ///< deviation of an angle's change from its velocity's integral [rad]
   static constexpr double STAMP = 4e-3;        ///< deviation of a stamp's interval [s]
   static constexpr double SIGNIFICANT = 0.35;  ///< of the interval by the stamps
+  static constexpr double AGREES = 0.1;        ///< [-]
 
-  explicit RowTimes(std::size_t joints) : last_(joints) {}
+  explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
   /// What the stamp of these rows, one of each joint, is late by [s]. The rows are later than those before.
   double stampError(const std::vector<MotionRow>& rows) noexcept;
 
-  void reset() noexcept
-  {
-    started_ = false;
-    error_ = 0.0;
-  }
+  void reset() noexcept;
 
 private:
-  double interval(const std::vector<MotionRow>& rows) const noexcept;
+  /// Of one joint: sums of v dq and v v d, forgotten over MEMORY. They begin in agreement.
+  struct Agreement
+  {
+    double change{ START };
+    double expected{ START };
+  };
+  static constexpr double MEMORY = 10.0;  // [s]
+  static constexpr double START = 0.25;   // as after 1 s at 0.5 rad/s [rad^2/s]
+
+  double interval(const std::vector<MotionRow>& rows) noexcept;
 
   std::vector<MotionRow> last_;
+  std::vector<Agreement> agreements_;
   bool started_{};
   double error_{};
 };
