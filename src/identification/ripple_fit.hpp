@@ -18,8 +18,8 @@ struct RippleRow
 };
 
 /// The lines of TorqueRipple in that torque, by least squares (Ceres), with the resonance of what the joint carries.
-/// A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of them, and to that at
-/// which a wave of two a turn of the motor still has two rows. Four a turn are refused if they have fewer there.
+/// A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of them, and to that
+/// at which a wave of two a turn of the motor still has two rows. Four a turn are refused if they have fewer there.
 class RippleFit
 {
 public:
