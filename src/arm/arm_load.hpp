@@ -23,11 +23,11 @@ struct ArmSample
 /// Load of each joint of an arm from a stream of the angles of all, rows of one time each.
 ///
 /// Rates are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
-/// and have no phase, and a row comes out at most HALF_WIDTH late. What faster rates, within a joint's own half width,
-/// take beyond that is the torque of the arm's vibration: mostly the answer to the drives' ripple. Velocities mend the rows'
-/// times (RowTimes): for load and vibration if they are recorded, else, from the slow rates, for the vibration alone, and
-/// a row comes out later by MotionDifferentiator::HALF_WIDTH. Live and offline alike. After construction nothing throws;
-/// nothing allocates.
+/// and have no phase, and a row comes out at most HALF_WIDTH late. What faster rates, within a joint's own half
+/// width, take beyond that is the torque of the arm's vibration: mostly the answer to the drives' ripple. Velocities
+/// mend the rows' times (RowTimes): for load and vibration if they are recorded, else, from the slow rates, for the
+/// vibration alone, and a row comes out later by MotionDifferentiator::HALF_WIDTH. Live and offline alike. After
+/// construction nothing throws; nothing allocates.
 class ArmLoad
 {
 public:

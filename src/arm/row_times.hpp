@@ -14,9 +14,9 @@ namespace hjt
 /// all joints, with the stamps' own interval d as an observation beside them:
 ///   e = (v.dq / ANGLE^2 + d / STAMP^2) / (v.v / ANGLE^2 + 1 / STAMP^2)
 /// A log that stamps its rows evenly but took them unevenly, or lost one, shows as e other than d. Differences below
-/// SIGNIFICANT are noise and passed over. A joint counts while its velocities agree with its angles and the stamps within
-/// AGREES in the mean of the last seconds: one of the wrong sign or unit does not. Only the differences between errors
-/// count, until the next gap. Nothing allocates or throws after construction.
+/// SIGNIFICANT are noise and passed over. A joint counts while its velocities agree with its angles and the stamps
+/// within AGREES in the mean of the last seconds: one of the wrong sign or unit does not. Only the differences
+/// between errors count, until the next gap. Nothing allocates or throws after construction.
 class RowTimes
 {
 public:
