@@ -283,7 +283,7 @@ EffortFit RecordingFit::effort() const
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
   constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
-  const auto isTooFast = [](const Joint& joint)
+  const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
   if (rows_ >= MIN_ROWS && 2 * cuts_ > rows_)
@@ -309,7 +309,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          true });
     return findings;  // the load is wrong too
   }
-  if (std::any_of(joints_.begin(), joints_.end(), isTooFast))
+  if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {
     findings.push_back(
         { "angle_unit",

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What the node reads from the parameter server: every shipped file starts it, every bad value ends it at once."""
+import os
 import signal
 import sys
 import tempfile
@@ -136,4 +137,8 @@ class Parameters(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("parameters_test")
-    rostest.rosrun(PACKAGE, "parameters", Parameters, sys.argv)
+    with tempfile.NamedTemporaryFile("w", suffix=".config") as console:
+        console.write(f"log4j.logger.ros.{PACKAGE}=DEBUG\n")  # the parameters that the node has read
+        console.flush()
+        os.environ["ROSCONSOLE_CONFIG_FILE"] = console.name
+        rostest.rosrun(PACKAGE, "parameters", Parameters, sys.argv)
