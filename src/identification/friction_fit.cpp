@@ -161,14 +161,14 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
 }
 
 /// Of the blocks at the present values [A].
-std::vector<double> FrictionFit::residuals() const
+Eigen::VectorXd FrictionFit::residuals() const
 {
   std::array<const double*, QUANTITIES> values{};
   std::transform(values_.begin(), values_.end(), values.begin(), [](const double& value) { return &value; });
-  std::vector<double> residuals;
-  for (const Block& block : blocks_)
+  Eigen::VectorXd residuals(static_cast<Eigen::Index>(blocks_.size()));
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
   {
-    Residual{ block }(values.data(), &residuals.emplace_back());
+    Residual{ blocks_[i] }(values.data(), &residuals[static_cast<Eigen::Index>(i)]);
   }
   return residuals;
 }
@@ -177,19 +177,13 @@ std::vector<double> FrictionFit::residuals() const
 void FrictionFit::solve()
 {
   double correlation_rows = 1.0;
+  Eigen::VectorXd errors = residuals();
   constexpr int ROUNDS = 3;
   for (int round = 0; round < ROUNDS; ++round)
   {
-    const std::vector<double> errors = residuals();
-    std::vector<double> sizes = errors;
-    std::transform(sizes.begin(), sizes.end(), sizes.begin(), [](double error) { return std::abs(error); });
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    constexpr double NORMAL_MEDIAN = 0.6745;
-    solveOnce(std::max(*middle / NORMAL_MEDIAN, 1e-6), correlation_rows);
-    const std::vector<double> left = residuals();
-    correlation_rows =
-        hjt::correlationRows(Eigen::Map<const Eigen::VectorXd>(left.data(), static_cast<Eigen::Index>(left.size())));
+    solveOnce(std::max(robustDeviation(errors), 1e-6), correlation_rows);
+    errors = residuals();
+    correlation_rows = correlationRows(errors);
   }
 }
 

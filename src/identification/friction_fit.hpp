@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
@@ -59,7 +61,7 @@ private:
 
   void addBlocks(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples);
   void setKnown(const Parameters& parameters, const FrictionMap& friction);
-  std::vector<double> residuals() const;
+  Eigen::VectorXd residuals() const;
   void solve();
   void solveOnce(double deviation, double correlation_rows);
   double share(std::size_t quantity) const;

@@ -150,17 +150,12 @@ private:
       return row;
     };
     Eigen::VectorXd errors(static_cast<Eigen::Index>(rows.residuals.size()));
-    std::vector<double> sizes;
     for (std::size_t k = 0; k < rows.residuals.size(); ++k)
     {
       errors[static_cast<Eigen::Index>(k)] = rows.residuals[k] - columns(k).dot(values);
-      sizes.push_back(std::abs(errors[static_cast<Eigen::Index>(k)]));
     }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    constexpr double NORMAL_MEDIAN = 0.6745;
     constexpr double LEAST = 0.01;  // [A]
-    const double deviation = std::max(*middle / NORMAL_MEDIAN, LEAST);
+    const double deviation = std::max(robustDeviation(errors), LEAST);
     const double weight = 1.0 / (deviation * deviation * correlationRows(errors));
     for (std::size_t k = 0; k < rows.residuals.size(); ++k)
     {

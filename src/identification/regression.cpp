@@ -29,7 +29,17 @@ double correlationRows(const Eigen::VectorXd& residuals)
   return length;
 }
 
-Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations)
+double robustDeviation(const Eigen::VectorXd& residuals)
+{
+  const Eigen::VectorXd sizes = residuals.cwiseAbs();
+  std::vector<double> sorted(sizes.data(), sizes.data() + sizes.size());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  constexpr double NORMAL_MEDIAN = 0.6745;
+  return *middle / NORMAL_MEDIAN;
+}
+
+Eigen::VectorXd solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations)
 {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -41,9 +51,9 @@ Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters
   ceres::Problem::EvaluateOptions evaluate;
   evaluate.apply_loss_function = false;
   evaluate.parameter_blocks = parameters;
-  std::vector<double> residuals;
+  std::vector<double> errors;
   ceres::CRSMatrix sparse;
-  problem.Evaluate(evaluate, nullptr, &residuals, nullptr, &sparse);
+  problem.Evaluate(evaluate, nullptr, &errors, nullptr, &sparse);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
   for (int row = 0; row < sparse.num_rows; ++row)
   {
@@ -53,19 +63,16 @@ Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters
     }
   }
 
-  Regression result;
-  result.residuals = Eigen::Map<Eigen::VectorXd>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
-  result.correlation_rows = correlationRows(result.residuals);
+  const Eigen::VectorXd residuals =
+      Eigen::Map<Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size()));
   const Eigen::VectorXd norm = jacobian.colwise().norm();
   const Eigen::VectorXd size = norm.unaryExpr([](double length) { return length > 0.0 ? length : 1.0; });
   const Eigen::Index n = jacobian.cols();
   const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd normal = scaled.transpose() * scaled + 1e-12 * Eigen::MatrixXd::Identity(n, n);
   const Eigen::VectorXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)).diagonal();
-  const double variance =
-      result.residuals.squaredNorm() / std::max(1.0, static_cast<double>(result.residuals.size() - n));
-  result.half_width = NORMAL_95 * (variance * result.correlation_rows * inverse).cwiseSqrt().cwiseQuotient(size);
-  return result;
+  const double variance = residuals.squaredNorm() / std::max(1.0, static_cast<double>(residuals.size() - n));
+  return NORMAL_95 * (variance * correlationRows(residuals) * inverse).cwiseSqrt().cwiseQuotient(size);
 }
 
 std::string percentText(double share)

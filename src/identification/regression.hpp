@@ -9,17 +9,12 @@
 
 namespace hjt
 {
-/// What a least-squares solution says about itself.
-struct Regression
-{
-  Eigen::VectorXd residuals;
-  Eigen::VectorXd half_width;  ///< of each parameter's 95 % interval, widened by the residual's correlation
-  double correlation_rows{};   ///< rows after which the residual forgets itself
-};
+/// Solves a problem. Returns half widths of the 95 % intervals of the parameters named, one value each, widened by the
+/// residual's correlation; rows in the order in which they were added, one residual each.
+Eigen::VectorXd solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations);
 
-/// Solves a problem, and says how well by the parameters named, one value each; rows in the order in which they were
-/// added, one residual each.
-Regression solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations);
+/// Standard deviation of residuals whose outliers do not count: by their median size, as of a normal distribution.
+double robustDeviation(const Eigen::VectorXd& residuals);
 
 /// 1 + 2 sum of the correlations until they first turn negative.
 double correlationRows(const Eigen::VectorXd& residuals);

@@ -177,10 +177,10 @@ void RippleFit::solve(const std::vector<RippleRow>& rows)
     problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
   }
   constexpr int MAX_ITERATIONS = 60;
-  const Regression found = hjt::solve(problem, asked, MAX_ITERATIONS);
+  const Eigen::VectorXd half_widths = hjt::solve(problem, asked, MAX_ITERATIONS);
   for (std::size_t k = 0; k < asked.size(); ++k)
   {
-    half_width_[asked[k] - values_.data()] = found.half_width[static_cast<Eigen::Index>(k)];
+    half_width_[asked[k] - values_.data()] = half_widths[static_cast<Eigen::Index>(k)];
   }
 }
 

@@ -31,6 +31,7 @@ Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
   }
   return parameters;
 }
+
 /// Says on stderr with what nothing can be judged; of the stamps warnOfStamps does.
 void warnOf(const RecordingFit& fit, const std::vector<ArmJoint>& joints)
 {
