@@ -32,7 +32,7 @@ Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
   return parameters;
 }
 
-/// Says on stderr with what nothing can be judged; of the stamps warnOfStamps does.
+/// Prints to stderr why a joint cannot be judged. Wrong stamps are reported by warnOfStamps.
 void warnOf(const RecordingFit& fit, const std::vector<ArmJoint>& joints)
 {
   const auto say = [](const std::string& of, const std::vector<RecordingFinding>& findings)

@@ -51,10 +51,10 @@ public:
   /// The load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
 
-  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and says on stderr what does
+  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and prints to stderr what does
   /// not fit. @throws InputError.
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const;
-  /// The same without that; `fit` is given all rows.
+  /// The same without printing; `fit` receives all rows.
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit) const;
 
 private:
