@@ -27,6 +27,16 @@ void openForReading(rosbag::Bag& bag, const std::string& path)
   }
 }
 
+void refuseTopics(const rosbag::Bag& bag, const std::string& path, const std::vector<std::string>& topics)
+{
+  rosbag::View view(bag, rosbag::TopicQuery(topics));
+  for (const rosbag::ConnectionInfo* connection : view.getConnections())
+  {
+    throw InputError(path + " holds " + connection->topic +
+                     " already; leave it out, or choose another --joint-namespace");
+  }
+}
+
 std::string listTopics(const rosbag::Bag& bag)
 {
   std::map<std::string, std::string> types;

@@ -6,6 +6,7 @@
 
 #include "ros_io/bag_writer.hpp"
 #include "ros_io/channels.hpp"
+#include "ros_io/recorded_topic.hpp"
 
 namespace hjt
 {
@@ -35,19 +36,13 @@ public:
   }
 
 private:
-  struct Context
-  {
-    BagWriter& bag;
-    std::string prefix;
-  };
-
-  /// Sink of a recorded topic.
+  /// Sink of a channel.
   template <class Message>
   class RecordedChannel
   {
   public:
-    RecordedChannel(const Context& context, const Channel<Message>& channel, Message first)
-      : bag_(context.bag), topic_(context.prefix + channel.name), message_(std::move(first))
+    RecordedChannel(const BagContext& context, const Channel<Message>& channel, Message first)
+      : topic_(context, channel.name, std::move(first))
     {
     }
     bool isWanted() const { return true; }
@@ -55,19 +50,17 @@ private:
     template <class Fill>
     void write(Fill&& fill)
     {
-      if (fill(message_))
+      if (fill(topic_.message()))
       {
-        bag_.write(topic_, fromRosTime(message_.header.stamp), message_);
+        topic_.send();
       }
     }
 
   private:
-    BagWriter& bag_;
-    std::string topic_;
-    Message message_;
+    RecordedTopic<Message> topic_;
   };
 
-  Context context_;
+  BagContext context_;
   JointNames names_;
   std::uint64_t recorded_faults_;  // version of the list that was recorded last
   Outputs<RecordedChannel> outputs_;

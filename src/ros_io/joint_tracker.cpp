@@ -45,15 +45,8 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
-  , gear_(node, parameters)
+  , outputs_(node, parameters)
   , life_(node, parameters)
-  , comparison_(makeMessage<harmonic_joint_twin::Comparison>(parameters))
-  , indicators_(makeIndicators(parameters))
-  , assessment_(makeAssessment(parameters))
-  , indicators_periods_(parameters.publish.indicators_rate)
-  , comparison_publisher_(node.advertise<harmonic_joint_twin::Comparison>(topics::COMPARISON, InputTopics::QUEUE_SIZE))
-  , indicators_publisher_(node.advertise<harmonic_joint_twin::Indicators>(topics::INDICATORS, 10))
-  , assessment_publisher_(node.advertise<harmonic_joint_twin::Assessment>(topics::ASSESSMENT, 10))
   , tasks_(name_, parameters.joint.hardware_id)
   , reset_service_(node.advertiseService("reset", &JointTracker::reset, this))
 {
@@ -208,18 +201,10 @@ void JointTracker::publish()
   while (const std::optional<Comparison> comparison = tracker_.pop())
   {
     const Stamp stamp = stream_.clock.stamp(comparison->time);
-    fillComparison(stamp, *comparison, comparison_);
-    comparison_publisher_.publish(comparison_);
-    gear_.offer(stamp, *comparison);
+    outputs_.offer(stamp, *comparison, tracker_);
     life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
                 comparison->temperature);
-    if (indicators_periods_.begins(stamp))
-    {
-      fillIndicators(stamp, tracker_.signalIndicators(), indicators_);
-      fillAssessment(stamp, tracker_.assessment(), assessment_);
-      indicators_publisher_.publish(indicators_);
-      assessment_publisher_.publish(assessment_);
-    }
+    comparison_ = *comparison;
   }
 }
 
@@ -275,7 +260,8 @@ bool JointTracker::hasStopped() const
 
 bool JointTracker::loadIsUnknown() const
 {
-  return parameters_.telemetry.load != LoadSource::MODEL && tracker_.counters().compared > 0 && !comparison_.load_told;
+  return parameters_.telemetry.load != LoadSource::MODEL && tracker_.counters().compared > 0 &&
+         !comparison_.load_provided;
 }
 
 /// Empty: it is judged.
@@ -369,19 +355,18 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
 {
   const TrackerCounters counters = tracker_.counters();
   const std::optional<double> lag = tracker_.lag();
-  status.add("Residual of the current [A]", comparison_.current_residual);
-  status.add("Its band [A]", comparison_.current_band);
-  status.add("Residual of the position [rad]", comparison_.position_residual);
-  status.add("Residual of the velocity [rad/s]", comparison_.velocity_residual);
+  status.add("Residual of the current [A]", comparison_.current.residual());
+  status.add("Its band [A]", comparison_.current.band);
+  status.add("Residual of the position [rad]", comparison_.position.residual());
+  status.add("Residual of the velocity [rad/s]", comparison_.velocity.residual());
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
-  const bool is_received = comparison_.temperature_received != 0;
-  status.add("Temperature [degC]", is_received ? comparison_.temperature : parameters_.input.temperature);
-  status.add("Temperature is", is_received ? "received" : "configured");
+  status.add("Temperature [degC]", counters.compared > 0 ? comparison_.temperature : parameters_.input.temperature);
+  status.add("Temperature is", comparison_.temperature_received ? "received" : "configured");
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
   status.add("Share of the last ones outside [-]", tracker_.outsideShare());
-  status.add("Steps failed", counters.solver_failures + gear_.failures());
+  status.add("Steps failed", counters.solver_failures + outputs_.failures());
   if (lag)
   {
     status.add("Measured after predicted [s]", *lag);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
@@ -19,15 +20,36 @@
 
 #include "ros_io/diagnostics.hpp"
 #include "ros_io/life_publisher.hpp"
-#include "ros_io/measured_gear_publisher.hpp"
 #include "ros_io/recent_events.hpp"
-#include "ros_io/stamp_periods.hpp"
 #include "ros_io/telemetry_messages.hpp"
 #include "ros_io/telemetry_stream.hpp"
+#include "ros_io/tracker_outputs.hpp"
 #include "tracking/tracker.hpp"
 
 namespace hjt
 {
+/// Sink of a topic that is published live.
+template <class Message>
+class PublishedTopic
+{
+public:
+  PublishedTopic(ros::NodeHandle& node, const char* name, Message first)
+    : message_(std::move(first)), publisher_(node.advertise<Message>(name, QUEUE_SIZE))
+  {
+  }
+
+  bool isWanted() const { return publisher_.getNumSubscribers() > 0; }
+
+  Message& message() { return message_; }
+  void send() { publisher_.publish(message_); }
+
+private:
+  static constexpr std::uint32_t QUEUE_SIZE = 4096;  // comparisons come in bursts
+
+  Message message_;
+  ros::Publisher publisher_;
+};
+
 /// The twin of one joint beside a robot, live: a `Tracker` with its topics, diagnostics and service. Whatever a message
 /// brings is worked off in its callback: nothing here waits for a clock. The node's mutex guards everything.
 class JointTracker
@@ -113,16 +135,13 @@ private:
   std::string misfit_;
   bool fit_settled_{ true };
   Tracker tracker_;
-  MeasuredGearPublisher gear_;
+  TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;
   std::optional<Stamp> last_load_stamp_;            // [ns]
   std::deque<LoadAt> early_loads_;                  // received before the start
   std::optional<TemperatureAt> early_temperature_;  // the last received before the start
   Refusals refusals_;
-  harmonic_joint_twin::Comparison comparison_;
-  harmonic_joint_twin::Indicators indicators_;
-  harmonic_joint_twin::Assessment assessment_;
-  StampPeriods indicators_periods_;
+  Comparison comparison_;  // the last one
   RecentEvents recent_refusals_;
   RecentEvents recent_disorder_;
   RecentEvents recent_missing_;
@@ -130,9 +149,6 @@ private:
   RecentEvents recent_failures_;
   bool departs_{};  // the current, from a healthy joint's
   std::optional<std::uint8_t> logged_level_;
-  ros::Publisher comparison_publisher_;
-  ros::Publisher indicators_publisher_;
-  ros::Publisher assessment_publisher_;
   DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;
   ros::Subscriber load_torque_subscriber_;

@@ -80,7 +80,7 @@ public:
     if (!start_)
     {
       start_ = held.stamp;
-      count_.start = toSeconds(held.stamp);
+      count_.start = held.stamp;
       count_.least_delay = count_.most_delay = held.delay();
     }
     MotionRow row = held.row;
@@ -316,7 +316,7 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
     std::optional<BagRows> rows;
   };
   SideBySide side_by_side(names.size(), visit);
-  std::optional<double> start;  // of the first joint that has a row; times count from there
+  std::optional<Stamp> start;  // of the first joint that has a row; times count from there
   std::vector<Joint> joints(names.size());
   for (std::size_t i = 0; i < names.size(); ++i)
   {
@@ -324,11 +324,11 @@ MotionCount readArmBag(const MotionSource& source, const std::vector<std::string
     joints[i].source.joint = names[i];
     joints[i].visit = [&, i](const MotionRow& row)
     {
-      const double own_start = joints[i].rows->count().start;
+      const Stamp own_start = joints[i].rows->count().start;
       start = start.value_or(own_start);
       MotionRow shifted = row;
-      shifted.time += own_start - *start;
-      shifted.received += own_start - *start;
+      shifted.time += toSeconds(own_start - *start);
+      shifted.received += toSeconds(own_start - *start);
       return side_by_side.add(i, shifted);
     };
     joints[i].rows.emplace(joints[i].source, joints[i].visit);
@@ -418,6 +418,7 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   }
 
   MotionCount count;
+  double first = 0.0;
   std::array<TemperatureRecord, CSV_JOINTS> temperatures;
   std::array<double, COLUMNS> values{};
   std::fill(values.begin() + column(3, 0), values.end(), std::nan(""));
@@ -426,9 +427,10 @@ MotionCount readArmCsv(const MotionSource& source, const std::vector<std::string
   {
     if (count.rows++ == 0)
     {
-      count.start = values[0];
+      first = values[0];
+      count.start = std::llround(1e9 * first);
     }
-    const double time = values[0] - count.start;
+    const double time = values[0] - first;
     count.duration = std::max(count.duration, time);
     for (std::size_t i = 0; i < CSV_JOINTS; ++i)
     {
@@ -474,6 +476,7 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
 {
   CsvTable table = openCsv(source, 3);
   MotionCount count;
+  double first = 0.0;
   TemperatureRecord temperatures;
   std::array<double, 6> row{};
   row[4] = std::nan("");
@@ -481,9 +484,10 @@ MotionCount readCsv(const MotionSource& source, const std::function<bool(const M
   {
     if (count.rows++ == 0)
     {
-      count.start = row[0];
+      first = row[0];
+      count.start = std::llround(1e9 * first);
     }
-    const double time = row[0] - count.start;
+    const double time = row[0] - first;
     count.duration = std::max(count.duration, time);
     MotionRow motion{ time, row[1], source.current_per_effort * row[2], row[3] };
     motion.received = time;

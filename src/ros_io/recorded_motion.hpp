@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -31,7 +32,7 @@ struct MotionCount
   std::uint64_t rows{};
   std::uint64_t corrupt{};  ///< messages that could not be read, hold no finite angle and current, or cannot be true
   double duration{};        ///< of the recording [s]
-  double start{};           ///< stamp of the first row [s]
+  Stamp start{};            ///< stamp of the first row [ns]
   double least_delay{};     ///< bag: of the recording behind the stamps [s]
   double most_delay{};      ///< [s]
   std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have

@@ -48,8 +48,8 @@ def arm_csv(currents=None, seconds=20.0, without=(), temperature=None):
     return "\n".join(lines) + "\n"
 
 
-def arm_bag(path, joints, seconds=20.0):
-    """As a driver publishes it: the elbow first, another joint between, no velocity."""
+def arm_bag(path, joints, seconds=20.0, effort=0.0):
+    """As a driver publishes it: the elbow first, another joint between, no velocity; the same effort of all."""
     order = [joint for joint in [2, 1, 0, 5, 4, 3] if joint in joints]
     with rosbag.Bag(path, "w") as bag:
         for row in range(round(seconds / PERIOD)):
@@ -57,7 +57,7 @@ def arm_bag(path, joints, seconds=20.0):
             position = angles(row * PERIOD)
             state = JointState(name=["finger_joint"] + [tool.JOINT_NAMES[joint] for joint in order],
                                position=[0.3] + [position[joint] for joint in order],
-                               effort=[9.0] + [0.0] * len(order))
+                               effort=[9.0] + [effort] * len(order))
             state.header.stamp = at
             bag.write("/joint_states", state, at + genpy.Duration(0, 2_000_000))
 
@@ -85,6 +85,40 @@ class Arm(tool.ToolTest):
         shoulder = elbow + 9.82 * (8.393 * 0.2125 + (2.275 + wrists) * 0.425)
         weights = [self.columns(f"from_csv/{name}.csv")["load_torque"][50] for name in ("base", "shoulder", "elbow")]
         np.testing.assert_allclose(np.abs(weights), [0.0, shoulder, elbow], atol=0.05)
+
+    def test_topics_of_the_node_are_added_to_a_bag(self):
+        arm_bag(self.path("arm.bag"), range(6), seconds=5.0, effort=1.5)
+        self.succeed("follow", "arm.bag", "--arm", "ur5", "--bag", "all.bag", "--out", "rows")
+        with rosbag.Bag(self.path("arm.bag")) as bag:
+            original = list(bag.read_messages(raw=True))
+        with rosbag.Bag(self.path("all.bag")) as bag:
+            kept = list(bag.read_messages("/joint_states", raw=True))
+            self.assertEqual([(m.message[1], m.timestamp) for m in kept],
+                             [(m.message[1], m.timestamp) for m in original])
+            for name in SHORT_NAMES:
+                comparisons = [m.message for m in bag.read_messages(f"/{name}/joint_twin/comparison")]
+                self.assertEqual([m.header.stamp for m in comparisons],
+                                 [genpy.Time(tool.START) + genpy.Duration.from_sec(row * PERIOD) for row in range(625)])
+                np.testing.assert_array_equal([m.current_predicted for m in comparisons],
+                                              self.columns(f"rows/{name}.csv")["current_predicted"])
+                forces = [m.message for m in bag.read_messages(f"/{name}/joint_twin/contact_forces")]
+                self.assertEqual((len(forces), {len(m.mesh_force) for m in forces}), (50, {200}))
+                # Flank forces carry the joint's torque, on radii of 31 and 17 mm, some 10 degrees off the tangent.
+                torques = {m.header.stamp: m.joint_torque for m in comparisons}
+                self.assertGreater(abs(torques[forces[0].header.stamp]), 1.0)
+                np.testing.assert_allclose([abs(sum(m.mesh_force)) for m in forces],
+                                           [(32.6 if name in SHORT_NAMES[:3] else 58.3) * abs(torques[m.header.stamp])
+                                            for m in forces], rtol=0.01, atol=5.0)
+                for topic in ("encoders", "health"):
+                    self.assertEqual(bag.get_message_count(f"/{name}/joint_twin/{topic}"), 50)
+        self.succeed("follow", "arm.bag", "--joint", "elbow", "--bag", "elbow.bag")
+        with rosbag.Bag(self.path("elbow.bag")) as bag:
+            self.assertEqual(bag.get_message_count("/joint_twin/comparison"), 625)
+        self.fail_with(1, ["all.bag holds /base/joint_twin/", "--joint-namespace"], "follow", "all.bag", "--arm", "ur5",
+                       "--bag", "again.bag")
+        self.fail_with(1, ["--bag", "--time-scale"], "follow", "arm.bag", "--arm", "ur5", "--bag", "again.bag",
+                       "--time-scale", 2)
+        self.assertFalse(os.path.exists(self.path("again.bag")))
 
     def identify(self, *changes):
         """Identifies a robot that is the twin with these changes: robot.csv, found/."""

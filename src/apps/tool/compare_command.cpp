@@ -175,7 +175,7 @@ public:
     record.found = found;
     record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows,
                                    comparison_.reach().temperature_rows, found.has_load);
-    record.twin_states = readTwinStates(source_, twin_topic, found.start);
+    record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
     record.verdict =
         judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction, misfit });
     writeComparison(directory_, comparison_, parameters_, record);

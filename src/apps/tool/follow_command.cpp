@@ -20,6 +20,7 @@
 #include "apps/common/surface_source.hpp"
 #include "apps/common/text_table.hpp"
 
+#include "apps/tool/tracked_bag.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/tracker.hpp"
 
@@ -35,6 +36,7 @@ struct FollowOptions : ArmOptions
 {
   std::string mode;
   std::string out;
+  std::string bag;
 };
 
 /// As the fields of Comparison.msg.
@@ -154,6 +156,7 @@ int followJoint(const FollowOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   requireWritable(options.out, options.force, options.recording);
+  requireWritable(options.bag, options.force, options.recording);
   std::optional<TableFile<Comparison>> csv;
   if (!options.out.empty())
   {
@@ -168,6 +171,12 @@ int followJoint(const FollowOptions& options)
                  "recorded_load.yaml after the joint's own file\n";
   }
   Tracker tracker(parameters, MODES.at(options.mode), surfaceSource());
+  std::optional<TrackedBag> bag;
+  if (!options.bag.empty())
+  {
+    bag.emplace(options.bag, source,
+                std::vector<TrackedBag::Joint>{ { source.joint, options.joint_namespace, parameters } });
+  }
   const FollowSummary summary = compare(source, tracker,
                                         [&](const Comparison& now)
                                         {
@@ -175,10 +184,18 @@ int followJoint(const FollowOptions& options)
                                           {
                                             csv->write(now);
                                           }
+                                          if (bag)
+                                          {
+                                            bag->offer(0, now, tracker);
+                                          }
                                         });
   if (csv)
   {
     csv->close();
+  }
+  if (bag)
+  {
+    bag->close();
   }
   warnOfStamps(summary.count);
   print(summary, options.json);
@@ -189,8 +206,13 @@ int followJoint(const FollowOptions& options)
 class ArmFollower
 {
 public:
-  ArmFollower(const Parameters& parameters, const FollowOptions& options, bool uses_recorded, const std::string& out)
-    : has_arm_load_(!uses_recorded), tracker_(parameters, MODES.at(options.mode), surfaceSource())
+  /// `bag`: gets the comparisons as those of joint `number`, if there is one.
+  ArmFollower(const Parameters& parameters, const FollowOptions& options, bool uses_recorded, const std::string& out,
+              TrackedBag* bag, std::size_t number)
+    : has_arm_load_(!uses_recorded)
+    , bag_(bag)
+    , number_(number)
+    , tracker_(parameters, MODES.at(options.mode), surfaceSource())
   {
     if (!out.empty())
     {
@@ -232,6 +254,10 @@ private:
   {
     while (std::optional<Comparison> now = tracker_.pop(at_end))
     {
+      if (bag_ != nullptr)
+      {
+        bag_->offer(number_, *now, tracker_);
+      }
       // The column is the torque of a controller, whichever load is taken.
       while (!motor_parts_.empty() && motor_parts_.front().time < now->time)
       {
@@ -257,6 +283,8 @@ private:
   };
 
   bool has_arm_load_;
+  TrackedBag* bag_;
+  std::size_t number_;  // of the joint in the bag
   Tracker tracker_;
   std::optional<TableFile<Comparison>> csv_;
   std::deque<MotorPart> motor_parts_;  // of rows whose comparison is to come
@@ -284,6 +312,22 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
     "load less recorded [N.m]" }
 };
 
+/// Topics as those of ur5.launch. Null: no `--bag`.
+std::unique_ptr<TrackedBag> armBag(const ArmRecording& recording, const FollowOptions& options)
+{
+  if (options.bag.empty())
+  {
+    return nullptr;
+  }
+  std::vector<TrackedBag::Joint> joints;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    const ArmJoint& joint = recording.joints()[i];
+    joints.push_back({ joint.name, "/" + joint.short_name + options.joint_namespace, recording.parameters(i) });
+  }
+  return std::make_unique<TrackedBag>(options.bag, recording.source(0), joints);
+}
+
 int followArm(const FollowOptions& options)
 {
   const ArmRecording recording(options);
@@ -291,6 +335,8 @@ int followArm(const FollowOptions& options)
   {
     std::filesystem::create_directories(options.out);
   }
+  requireWritable(options.bag, options.force, options.recording);
+  const std::unique_ptr<TrackedBag> bag = armBag(recording, options);
   std::vector<std::unique_ptr<ArmFollower>> followers;
   std::vector<ArmLine> lines;
   const bool has_load_error = recording.hasRecordedLoad() && !recording.usesRecordedLoad();
@@ -302,8 +348,8 @@ int followArm(const FollowOptions& options)
     {
       requireWritable(out, options.force, options.recording);
     }
-    followers.push_back(
-        std::make_unique<ArmFollower>(recording.parameters(i), options, recording.usesRecordedLoad(), out));
+    followers.push_back(std::make_unique<ArmFollower>(recording.parameters(i), options, recording.usesRecordedLoad(),
+                                                      out, bag.get(), i));
     lines.push_back({ name, followers.back().get(), has_load_error });
   }
   const MotionFindings found = recording.read(
@@ -317,6 +363,10 @@ int followArm(const FollowOptions& options)
   for (const std::unique_ptr<ArmFollower>& follower : followers)
   {
     follower->finish();
+  }
+  if (bag)
+  {
+    bag->close();
   }
   warnOfStamps(found);
   printReport(
@@ -345,6 +395,11 @@ void declare(Command& command, FollowOptions& options)
       .choice({ "motion", "observer", "torque" });
   command.add("--out", options.out, "every row, measured and predicted; of an arm a directory, a file for each joint")
       .type("FILE.csv|DIR");
+  command
+      .add("--bag", options.bag,
+           "the topics of the node beside a robot, with the forces on every tooth; of a bag its own messages too")
+      .type("OUT.bag")
+      .bag();
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",

@@ -35,17 +35,6 @@ struct ReplayOptions : CommonOptions
   bool without_command{};
 };
 
-/// An original message under an output's name would look like a simulated one.
-void refuseTakenTopics(const rosbag::Bag& bag, const ReplayOptions& options)
-{
-  rosbag::View view(bag, rosbag::TopicQuery(outputTopics(options.joint_namespace)));
-  for (const rosbag::ConnectionInfo* connection : view.getConnections())
-  {
-    throw InputError(options.bag + " holds " + connection->topic +
-                     " already; leave it out, or choose another --joint-namespace");
-  }
-}
-
 /// True if a file or --set other than the default configuration names the joint.
 bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
@@ -64,7 +53,9 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
   }
   throw InputError(options.bag + " has no motor torque on an input topic (" +
                    joined(inputTopics(options.joint_namespace)) +
-                   "); --without-command replays other inputs alone. It holds:" + listTopics(bag));
+                   "); --without-command replays other inputs alone, `joint_twin follow --bag` the motion of a "
+                   "robot. It holds:" +
+                   listTopics(bag));
 }
 
 /// Whether the bag holds what is replayed: a motor torque, or any input if that is left out on purpose.
@@ -183,7 +174,7 @@ int replay(const ReplayOptions& options)
   requireWritable(options.out, options.force, options.bag);
   rosbag::Bag bag;
   openForReading(bag, options.bag);
-  refuseTakenTopics(bag, options);
+  refuseTopics(bag, options.bag, outputTopics(options.joint_namespace));
   checkSpan(bag, options.bag);
   const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters, surfaceSource());

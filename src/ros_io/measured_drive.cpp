@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_io/measured_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gear/ratio.hpp"
+#include "ros_io/time.hpp"
+
+namespace hjt
+{
+MeasuredDrive::MeasuredDrive(const Parameters& parameters)
+  : torque_per_current_(parameters.telemetry.torque_per_current / nominalRatio(parameters.gear))
+  , current_offset_(parameters.telemetry.current_offset)
+  , ratio_(nominalRatio(parameters.gear))
+  , gear_(parameters)
+  , sensors_(parameters.sensors, 1.0 / parameters.publish.encoders_rate)
+{
+}
+
+bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
+{
+  now_ = comparison;
+  motor_torque_ = torque_per_current_ * (comparison.current.measured - current_offset_);
+  const bool found = gear_.moveTo(comparison.position.measured, comparison.joint_torque);
+  failures_ += found ? 0 : 1;
+  return found;
+}
+
+void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept
+{
+  fillContactForces(stamp, gear_, message);
+}
+
+void MeasuredDrive::fill(Stamp stamp, std::int64_t sample, harmonic_joint_twin::Encoders& message) noexcept
+{
+  sensors_.update(sample, gear_.motorAngle(), gear_.position(), motor_torque_);
+  fillEncoders(stamp, sensors_.encoders(), gear_.motorAngle(), gear_.position(), message);
+}
+
+void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept
+{
+  const LobeLoads lobes = gear_.lobes();
+  message.header.stamp = toRosTime(stamp);
+  message.torsion = gear_.torsion();
+  message.torsional_stiffness_model = gear_.stiffness();
+  message.teeth_loaded = static_cast<std::uint32_t>(lobes.teeth_loaded);
+  std::copy(lobes.mesh_force.begin(), lobes.mesh_force.end(), message.lobe_mesh_force.begin());
+  message.lobe_asymmetry = lobes.asymmetry;
+  message.wave_generator_load = lobes.wave_generator_force;
+  message.friction_torque = std::abs(now_.friction_torque) / ratio_;
+  message.motor_torque = motor_torque_;
+  message.joint_torque = now_.joint_torque;
+  message.solver_residual = gear_.residual();
+  message.solver_failures = failures_;
+}
+}  // namespace hjt
