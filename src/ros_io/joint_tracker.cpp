@@ -267,7 +267,15 @@ bool JointTracker::loadIsUnknown() const
 /// Empty: it is judged.
 std::string JointTracker::whyNotJudged() const
 {
-  return misfit_.empty() && loadIsUnknown() ? "the load is unknown" : misfit_;
+  if (!misfit_.empty())
+  {
+    return misfit_;
+  }
+  if (loadIsUnknown())
+  {
+    return "the load is unknown";
+  }
+  return tracker_.isTouched() ? contactText(tracker_.contact()) : std::string();
 }
 
 DiagnosticVerdict JointTracker::judgeTelemetry() const

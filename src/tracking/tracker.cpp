@@ -127,6 +127,7 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   , ratio_(nominalRatio(parameters.gear))
   , temperature_(parameters.input.temperature)
   , follower_(makeFollower(parameters, mode, surface_source))
+  , contact_(parameters.output.load_torque_limit)
   , watch_(parameters)
 {
 }
@@ -141,6 +142,7 @@ void Tracker::reset() noexcept
   restarted_ = true;
   loads_.clear();
   temperatures_.clear();
+  contact_.reset();
   outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
@@ -229,22 +231,37 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  if (is_known && fits_)
-  {
-    watch_.update(*sample);
-  }
+  watch(*sample, now, is_known);
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
     lag_.add(now.time, judged.predicted, judged.measured);
   }
-  const double step = now.after_gap ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
-  outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
-  last_compared_ = now.time;
   ++counters_.compared;
   counters_.outside += now.isOutside() ? 1 : 0;
   counters_.without_load += is_known ? 0 : 1;
   return now;
+}
+
+/// Contact, health, and the share of rows outside.
+void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
+{
+  if (load_source_ != LoadSource::MODEL && load_is_known)
+  {
+    const bool was_touched = isTouched();
+    contact_.update(sample, now.residual_torque, now.friction_torque, now.sticking);
+    if (isTouched() && !was_touched)
+    {
+      watch_.reset();
+    }
+  }
+  if (load_is_known && fits_ && !isTouched())
+  {
+    watch_.update(sample);
+  }
+  const double step = now.after_gap || isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
+  outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
+  last_compared_ = now.time;
 }
 
 TrackerCounters Tracker::counters() const noexcept

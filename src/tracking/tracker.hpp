@@ -9,6 +9,7 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
+#include "tracking/contact_watch.hpp"
 #include "tracking/delay_estimate.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/motion_differentiator.hpp"
@@ -103,6 +104,11 @@ public:
   /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
   double outsideShare() const noexcept { return outside_share_; }
 
+  /// Something touches the arm, or did less than ContactWatch::HOLD ago; health is not judged and starts again
+  /// afterwards, and the rows do not count as outside. Where the load is the configured one alone, never.
+  bool isTouched() const noexcept { return contact_.isRecent(); }
+  const Contact& contact() const noexcept { return contact_.contact(); }  ///< all since the last reset
+
   /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
   /// [s].
   std::optional<double> lag() const noexcept { return lag_.lag(); }
@@ -123,6 +129,7 @@ public:
 
 private:
   std::optional<double> loadAt(double time) const noexcept;
+  void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;
 
   InputMode mode_;
   LoadSource load_source_;
@@ -137,6 +144,7 @@ private:
   double last_time_{};
   HeldValues loads_;
   TemperatureRecord temperatures_;
+  ContactWatch contact_;
   double outside_share_{};
   double last_compared_{};  // [s]
   StreamTiming timing_;

@@ -24,6 +24,7 @@ RecordingComparison::RecordingComparison(const Parameters& parameters, std::vect
   , twin_(parameters)
   , spectrum_(ratio_)
   , torsion_(parameters)
+  , contact_(parameters.output.load_torque_limit)
   , load_step_(std::max(parameters.output.load_torque_limit, 1.0) / LOAD_STEPS)
   , loads_(static_cast<std::size_t>(LOAD_STEPS) + 2)
   , health_(parameters)
@@ -50,6 +51,8 @@ void RecordingComparison::update(const MotionSample& sample)
   const Eigen::Vector3d terms(1.0, row.predicted.friction_torque / parameters_.telemetry.torque_per_current,
                               row.residual());
   products_ += terms * terms.transpose();
+  contact_.update(sample, parameters_.telemetry.torque_per_current * row.residual(), row.predicted.friction_torque,
+                  row.predicted.band > parameters_.telemetry.current_deviation);
   ++loads_[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   if (reach_.rows++ == 0)
   {

@@ -14,6 +14,7 @@
 #include "apps/compare/residual_spectrum.hpp"
 #include "apps/compare/torsion_points.hpp"
 
+#include "tracking/contact_watch.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/signal_watch.hpp"
 
@@ -79,6 +80,7 @@ public:
   /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
+  const ContactWatch& contact() const { return contact_; }  ///< means something where the load is that of the arm
   double temperature() const;  ///< that the rows were judged at, mean [degC]
   /// More than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * reach_.temperature_rows > reach_.rows; }
@@ -108,6 +110,7 @@ private:
   FrictionPoints friction_;
   ResidualSpectrum spectrum_;
   TorsionPoints torsion_;
+  ContactWatch contact_;
   const double load_step_;            // [N.m]
   std::vector<std::uint64_t> loads_;  // histogram of magnitudes
   double current_squares_{};

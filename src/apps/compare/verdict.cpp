@@ -342,7 +342,8 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
   if (context.load == LoadOrigin::ARM)
   {
     missing.emplace_back(
-        "Whether the payload is as configured, and contact: no torque was recorded; both look like current.");
+        "Whether the payload is as configured, and what presses on the arm all the time: no torque was recorded; both "
+        "look like current.");
   }
   if (context.load == LoadOrigin::CONFIGURED)
   {

@@ -134,6 +134,16 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
                        { "", "measured less predicted current, rms", comparison.residualRms(), "A" } });
 }
 
+std::string sentence(std::string clause)
+{
+  if (!clause.empty())
+  {
+    clause[0] = static_cast<char>(std::toupper(clause[0]));
+    clause += ".";
+  }
+  return clause;
+}
+
 /// A joint that is compared, its source, and the directory of its report.
 class ComparedJoint
 {
@@ -161,6 +171,12 @@ public:
   std::optional<double> frictionRatio(LoadOrigin load, const std::string& misfit) const
   {
     return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load, 0.0, 1.0, misfit });
+  }
+
+  /// As a clause; empty: nothing touched the arm.
+  std::string contactText() const
+  {
+    return comparison_.contact().hasSeen() ? hjt::contactText(comparison_.contact().contact()) : std::string();
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
@@ -203,8 +219,9 @@ int compareJoint(const CompareOptions& options)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
+  const std::string misfit = found.has_load ? sentence(joint.contactText()) : "";
   const ComparisonRecord record = joint.write(found, found.has_load ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
-                                              1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
+                                              1.0, misfit, options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
@@ -242,16 +259,6 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
   { "current_rms", &ArmLine::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ArmLine::residual_rms, "less predicted [A]" }
 };
-
-std::string sentence(std::string clause)
-{
-  if (!clause.empty())
-  {
-    clause[0] = static_cast<char>(std::toupper(clause[0]));
-    clause += ".";
-  }
-  return clause;
-}
 
 /// Joints of the worst level, and what they have in common.
 std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, const ArmFriction& arm)
@@ -331,12 +338,16 @@ int compareArm(const CompareOptions& options)
   }
   warnOfStamps(found);
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
-  const std::vector<std::string> misfits = fit.whyNotJudged();
+  std::vector<std::string> misfits = fit.whyNotJudged();
   std::vector<std::optional<double>> ratios;
   std::vector<const RecordingComparison*> comparisons;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
+    if (misfits[i].empty())
+    {
+      misfits[i] = joints[i]->contactText();
+    }
     ratios.push_back(joints[i]->frictionRatio(load, sentence(misfits[i])));
     comparisons.push_back(&joints[i]->comparison());
   }
@@ -350,7 +361,7 @@ int compareArm(const CompareOptions& options)
   {
     const std::string& name = recording.joints()[i].short_name;
     const RecordingComparison& comparison = joints[i]->comparison();
-    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i], misfits[i],
+    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i], sentence(misfits[i]),
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
