@@ -308,6 +308,8 @@ DiagnosticVerdict JointTracker::judgeComparison() const
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
         { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
         { departs_ && !fit_settled_, { D::OK, "Not judged yet: whether angles and efforts fit is not known" } },
+        { departs_ && arm_friction_ != 1.0,
+          { D::OK, "The current departs from a healthy joint's, as that of the whole arm does: temperature or gain" } },
         { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
       { D::OK, "Within the band of a healthy joint" });
 }
@@ -370,7 +372,11 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Temperature [degC]", counters.compared > 0 ? comparison_.temperature : parameters_.input.temperature);
-  status.add("Temperature is", comparison_.temperature_received ? "received" : "configured");
+  status.add("Temperature is", comparison_.temperature_received ? "received" :
+                               counters.compared > 0 && comparison_.temperature != parameters_.input.temperature ?
+                                                                  "estimated from the friction of all joints" :
+                                                                  "configured");
+  status.add("Friction that all joints have in common [-]", arm_friction_);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
   status.add("Share of the last ones outside [-]", tracker_.outsideShare());

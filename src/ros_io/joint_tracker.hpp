@@ -74,6 +74,11 @@ public:
   /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits, or that is not yet `settled`.
   void setMisfit(const std::string& reason, bool settled);
 
+  Tracker& tracker() { return tracker_; }
+
+  /// What the friction of the arm's joints has in common, a multiple of the expected [-]; 1: nothing.
+  void setArmFriction(double ratio) { arm_friction_ = ratio; }
+
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 
@@ -134,6 +139,7 @@ private:
   const double current_per_effort_;  // [A], [A/(N.m)]
   std::string misfit_;
   bool fit_settled_{ true };
+  double arm_friction_{ 1.0 };
   Tracker tracker_;
   TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;

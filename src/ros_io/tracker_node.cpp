@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <ros/console.h>
 #include <ros/names.h>
 #include <ros/this_node.h>
 
 #include "base/joined.hpp"
+#include "base/number_text.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/printable.hpp"
 #include "ros_io/topics.hpp"
@@ -39,6 +41,12 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const
   {
     addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i]);
   }
+  std::vector<Tracker*> trackers;
+  for (const auto& joint : joints_)
+  {
+    trackers.push_back(&joint->tracker());
+  }
+  friction_.emplace(std::move(trackers), parameters.front().comparison.repeat_tolerance);
   subscribe(node);
 }
 
@@ -153,6 +161,7 @@ void TrackerNode::push(Stamp stamp)
       }
       joints_[i]->push(sample->joints[i]);
     }
+    lookAtFriction(sample->joints.front().time);
   }
 }
 
@@ -162,6 +171,27 @@ void TrackerNode::resetFit()
   {
     fit_->reset();
     next_fit_ = -HUGE_VAL;
+    friction_->reset();
+  }
+}
+
+void TrackerNode::lookAtFriction(double time)
+{
+  if (!friction_->look(time))
+  {
+    return;
+  }
+  const ArmFriction& found = friction_->found();
+  std::ostringstream text;
+  text << "Friction of the whole arm is " << roundedText(found.median, 3) << " times the expected";
+  if (found.temperature)
+  {
+    text << ": it is predicted at " << roundedText(*found.temperature, 2) << " degC now";
+  }
+  ROS_INFO_STREAM(text.str());
+  for (const auto& joint : joints_)
+  {
+    joint->setArmFriction(found.median);
   }
 }
 

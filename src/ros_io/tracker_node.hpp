@@ -45,6 +45,7 @@ private:
   void receiveTemperature(const ros::MessageEvent<const sensor_msgs::Temperature>& event);
   void push(Stamp stamp);
   void resetFit();
+  void lookAtFriction(double time);
   void updateFit(const ArmSample& sample);
   void look();
 
@@ -53,9 +54,10 @@ private:
   std::vector<std::unique_ptr<JointTracker>> joints_;
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
-  double next_fit_{};                // when its findings are looked at [s]
-  std::vector<MotionRow> rows_;      // of the joints, in the message at hand
-  double last_time_{};               // [s]
+  std::optional<ArmFrictionWatch> friction_;
+  double next_fit_{};            // when its findings are looked at [s]
+  std::vector<MotionRow> rows_;  // of the joints, in the message at hand
+  double last_time_{};           // [s]
   ros::WallTimer timer_;
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;

@@ -59,6 +59,10 @@ public:
     now.friction_torque = predicted.friction_torque;
     now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
   }
+  double frictionAt(double velocity, double load, double temperature) const noexcept override
+  {
+    return twin_.frictionAt(velocity, load, temperature);
+  }
 
 private:
   MotionDriven twin_;
@@ -143,6 +147,9 @@ void Tracker::reset() noexcept
   loads_.clear();
   temperatures_.clear();
   contact_.reset();
+  friction_.reset();
+  estimated_temperature_.reset();
+  temperature_received_ = false;
   outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
@@ -154,6 +161,7 @@ void Tracker::setFits(bool fits) noexcept
   if (fits_ && !fits)
   {
     watch_.reset();
+    friction_.reset();
   }
   fits_ = fits;
 }
@@ -206,6 +214,13 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
     sample->temperature = temperatures_.at(sample->time);
   }
 
+  const bool has_temperature = std::isfinite(sample->temperature);
+  temperature_received_ = temperature_received_ || has_temperature;
+  if (!has_temperature)
+  {
+    sample->temperature = estimated_temperature_.value_or(temperature_);
+  }
+
   const std::optional<double> received = loadAt(sample->time);
   const bool is_all = received && holdsAll(load_source_);
   const bool is_known = received || load_source_ == LoadSource::MODEL;
@@ -221,8 +236,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.current = { sample->current, sample->current, 0.0 };
   now.load_torque = sample->load;
   now.load_provided = received.has_value();
-  now.temperature = sample->temperatureOr(temperature_);
-  now.temperature_received = std::isfinite(sample->temperature);
+  now.temperature = sample->temperature;
+  now.temperature_received = has_temperature;
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
   if (!is_known)
@@ -243,7 +258,30 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   return now;
 }
 
-/// Contact, health, and the share of rows outside.
+MeasuredFriction Tracker::friction() const
+{
+  return { friction_.ratio(), temperature_, temperature_received_, [this](double temperature) {
+            return follower_->frictionAt(friction_.speed(), friction_.load(), temperature);
+          } };
+}
+
+/// In steady motion.
+void Tracker::addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept
+{
+  constexpr double STEADY = 0.95;  // share of the friction that is mobilised
+  const double limit = follower_->frictionAt(sample.velocity, sample.load, now.temperature);
+  if (!(std::abs(now.friction_torque) > STEADY * limit) || limit == 0.0)
+  {
+    return;
+  }
+  const double expected =
+      now.temperature_received ?
+          now.friction_torque :
+          now.friction_torque * follower_->frictionAt(sample.velocity, sample.load, temperature_) / limit;
+  friction_.add(step, expected, now.friction_torque + now.residual_torque, sample.velocity, sample.load);
+}
+
+/// Contact, friction, health, and the share of rows outside.
 void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
 {
   if (load_source_ != LoadSource::MODEL && load_is_known)
@@ -260,6 +298,10 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
     watch_.update(sample);
   }
   const double step = now.after_gap || isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
+  if (load_is_known && fits_ && !isTouched() && !now.sticking)
+  {
+    addFriction(step, sample, now);
+  }
   outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
   last_compared_ = now.time;
 }

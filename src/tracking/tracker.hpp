@@ -9,8 +9,10 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
+#include "tracking/common_friction.hpp"
 #include "tracking/contact_watch.hpp"
 #include "tracking/delay_estimate.hpp"
+#include "tracking/friction_scale.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/signal_watch.hpp"
@@ -42,7 +44,7 @@ struct Comparison
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
                              ///< expects one, no band
   double temperature{};      ///< that the prediction was made at [degC]
-  bool temperature_received{};  ///< it was received; else as configured
+  bool temperature_received{};  ///< it was received; else estimated or as configured
   bool sticking{};              ///< friction holds the joint: any current within the band fits
   bool after_gap{};             ///< first after a gap in the telemetry
 
@@ -91,6 +93,9 @@ public:
   /// The temperature of the drive from `time` on, for rows without their own [degC]. Bad ones are refused and counted.
   void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
+  /// An estimate for rows without a received temperature [degC]; none: the configured one.
+  void setTemperature(std::optional<double> temperature) noexcept { estimated_temperature_ = temperature; }
+
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
   void push(const MotionRow& row) noexcept;
 
@@ -109,6 +114,9 @@ public:
   bool isTouched() const noexcept { return contact_.isRecent(); }
   const Contact& contact() const noexcept { return contact_.contact(); }  ///< all since the last reset
 
+  /// Of the last minutes of motion, over the twin's at the received or configured temperature. Mode MOTION only.
+  MeasuredFriction friction() const;
+
   /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
   /// [s].
   std::optional<double> lag() const noexcept { return lag_.lag(); }
@@ -125,10 +133,16 @@ public:
     virtual ~Follower() = default;
     virtual void follow(const MotionSample& sample, double external, Comparison& now) noexcept = 0;
     virtual std::uint64_t solverFailures() const noexcept { return 0; }
+    /// Of a healthy joint in steady motion at a temperature, >= 0 [N.m]; 0: not known.
+    virtual double frictionAt(double /*velocity*/, double /*load*/, double /*temperature*/) const noexcept
+    {
+      return 0.0;
+    }
   };
 
 private:
   std::optional<double> loadAt(double time) const noexcept;
+  void addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept;
   void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;
 
   InputMode mode_;
@@ -136,7 +150,8 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;  // of rows without one [degC]
+  double temperature_;                           // of rows without one [degC]
+  std::optional<double> estimated_temperature_;  // in its place [degC]
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};
@@ -145,6 +160,8 @@ private:
   HeldValues loads_;
   TemperatureRecord temperatures_;
   ContactWatch contact_;
+  FrictionScale friction_;
+  bool temperature_received_{};  // ever
   double outside_share_{};
   double last_compared_{};  // [s]
   StreamTiming timing_;

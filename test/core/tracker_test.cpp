@@ -2,6 +2,7 @@
 // The twin beside measured rows: what a stream does to it, which load it reckons with, how it judges time.
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -334,6 +335,127 @@ TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
   EXPECT_LT(share_with(0.8, static_cast<int>(memory) * seconds), 0.05);
   EXPECT_NEAR(share_with(5.0, static_cast<int>(memory) * seconds), 1.0 - std::exp(-1.0), 0.02);
   EXPECT_NEAR(share_with(5.0, 2 * seconds), 1.0 - std::exp(-2.0 / memory), 0.01);
+}
+
+/// A swing at a time [s], with the current that the twin of `parameters` predicts for it and `more` [A] of it.
+class SwingingRobot
+{
+public:
+  SwingingRobot(const Parameters& parameters, double seconds) : parameters_(parameters)
+  {
+    Tracker twin(parameters_, InputMode::MOTION);
+    twin.pushLoad(0.0, 0.0);
+    for (int i = 0; i * PERIOD < seconds; ++i)
+    {
+      twin.push(rowAt(PERIOD * i));
+      takeAll(twin, false, predicted_);
+    }
+    takeAll(twin, true, predicted_);
+  }
+
+  std::size_t rows() const { return predicted_.size(); }
+  const Comparison& predicted(std::size_t row) const { return predicted_[row]; }
+
+  void push(Tracker& tracker, std::size_t row, double more) const
+  {
+    MotionRow measured = rowAt(PERIOD * static_cast<double>(row));
+    measured.current = predicted_[row].current.predicted + more;
+    tracker.push(measured);
+    hjt::takeAll(tracker);
+  }
+
+private:
+  static void takeAll(Tracker& tracker, bool at_end, std::vector<Comparison>& all)
+  {
+    const std::vector<Comparison> taken = hjt::takeAll(tracker, at_end);
+    all.insert(all.end(), taken.begin(), taken.end());
+  }
+
+  Parameters parameters_;
+  std::vector<Comparison> predicted_;
+};
+
+const std::vector<std::string> KNOWN_LOAD{ "telemetry.load=load_torque", "output.load_inertia=0.5" };
+
+TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
+{
+  const Parameters parameters = parametersWith(KNOWN_LOAD);
+  const SwingingRobot robot(parameters, 60.0);
+  Tracker tracker(parameters, InputMode::MOTION);
+  tracker.pushLoad(0.0, 0.0);
+  std::vector<double> touched;
+  for (std::size_t i = 0; i < robot.rows(); ++i)
+  {
+    const double time = PERIOD * static_cast<double>(i);
+    const bool is_pushed = time > 20.0 && time < 20.5;  // midway in a swing
+    robot.push(tracker, i, is_pushed ? 3.0 : 0.0);
+    if (tracker.isTouched())
+    {
+      touched.push_back(time);
+    }
+  }
+  ASSERT_THAT(touched, SizeIs(Gt(10)));
+  EXPECT_NEAR(touched.front(), 20.3, 0.2);
+  EXPECT_NEAR(touched.back(), 20.5 + ContactWatch::HOLD, 0.5);
+  EXPECT_NEAR(tracker.contact().largest, 3.0 * parameters.telemetry.torque_per_current, 5.0);
+  EXPECT_LT(tracker.outsideShare(), 0.02);
+}
+
+TEST(Tracker, WhatStaysIsNoContact)
+{
+  const Parameters parameters = parametersWith(KNOWN_LOAD);
+  const SwingingRobot robot(parameters, 200.0);
+  Tracker tracker(parameters, InputMode::MOTION);
+  tracker.pushLoad(0.0, 0.0);
+  for (std::size_t i = 0; i < robot.rows(); ++i)
+  {
+    robot.push(tracker, i, i > robot.rows() / 5 ? 3.0 : 0.0);
+  }
+  EXPECT_FALSE(tracker.isTouched());
+  EXPECT_GT(tracker.outsideShare(), 0.5);
+}
+
+TEST(ArmFrictionWatch, PredictsAtTheTemperatureThatAllJointsShow)
+{
+  const Parameters parameters = parametersWith(KNOWN_LOAD);
+  const SwingingRobot robot(parameters, 120.0);
+  for (const int raised : { 1, 3 })
+  {
+    std::vector<std::unique_ptr<Tracker>> joints;
+    std::vector<Tracker*> watched;
+    for (int joint = 0; joint < 3; ++joint)
+    {
+      joints.push_back(std::make_unique<Tracker>(parameters, InputMode::MOTION));
+      joints.back()->pushLoad(0.0, 0.0);
+      watched.push_back(joints.back().get());
+    }
+    ArmFrictionWatch watch(watched, parameters.comparison.repeat_tolerance);
+    for (std::size_t i = 0; i < robot.rows(); ++i)
+    {
+      const double friction = robot.predicted(i).friction_torque / parameters.telemetry.torque_per_current;
+      for (int joint = 0; joint < 3; ++joint)
+      {
+        robot.push(*joints[static_cast<std::size_t>(joint)], i, joint < raised ? 0.4 * friction : 0.0);
+      }
+      watch.look(PERIOD * static_cast<double>(i));
+    }
+    joints.front()->push(rowAt(PERIOD * static_cast<double>(robot.rows())));
+    const std::vector<Comparison> last = takeAll(*joints.front(), true);
+    ASSERT_THAT(last, SizeIs(Gt(0)));
+    EXPECT_FALSE(last.back().temperature_received);
+    if (raised == 1)
+    {
+      EXPECT_EQ(watch.found().median, 1.0);
+      EXPECT_EQ(last.back().temperature, parameters.input.temperature);
+    }
+    else
+    {
+      EXPECT_NEAR(watch.found().median, 1.4, 0.02);
+      ASSERT_TRUE(watch.found().temperature.has_value());
+      EXPECT_LT(*watch.found().temperature, parameters.input.temperature - 3.0);
+      EXPECT_EQ(last.back().temperature, *watch.found().temperature);
+    }
+  }
 }
 
 TEST(Tracker, SeesTheMeasuredJointWithTheHealthMonitor)

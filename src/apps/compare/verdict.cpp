@@ -424,17 +424,6 @@ std::string reasonOf(const Verdict& verdict)
 }
 }  // namespace
 
-namespace
-{
-/// Of at least one value.
-double medianOf(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-}  // namespace
-
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context)
 {
@@ -445,93 +434,6 @@ std::optional<double> frictionRatio(const RecordingComparison& comparison, const
   }
   const double to_own = frictionToOwn(comparison, context);
   return std::isfinite(to_own) ? to_own : comparison.friction().ratio();
-}
-
-ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
-                           const std::vector<std::optional<double>>& ratios, double tolerance)
-{
-  constexpr std::size_t MIN_JOINTS = 3;
-  constexpr double COLDEST = 0.0;  // [degC]
-  constexpr double WARMEST = 60.0;
-  constexpr int HALVINGS = 20;
-  constexpr double TINY = 1e-3;        // of a ratio, which may be zero
-  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
-  ArmFriction arm{ std::vector<double>(ratios.size(), 1.0), 1.0, std::nullopt };
-  std::vector<std::size_t> known;
-  bool is_received = false;
-  for (std::size_t i = 0; i < ratios.size(); ++i)
-  {
-    is_received = is_received || joints[i]->reach().temperature_rows > 0;
-    if (ratios[i])
-    {
-      known.push_back(i);
-    }
-  }
-  if (known.size() < MIN_JOINTS)
-  {
-    return arm;
-  }
-  const auto left_over = [&](const std::vector<double>& factors)
-  {
-    std::vector<double> left;
-    for (const std::size_t i : known)
-    {
-      left.push_back(*ratios[i] / factors[i]);
-    }
-    return left;
-  };
-  const auto agreeing = [&](const std::vector<double>& factors)
-  {
-    const std::vector<double> left = left_over(factors);
-    return static_cast<std::size_t>(
-        std::count_if(left.begin(), left.end(), [&](double ratio) { return std::abs(ratio - 1.0) <= tolerance; }));
-  };
-  const auto misfit = [&](const std::vector<double>& factors)
-  {
-    double sum = 0.0;
-    for (const double ratio : left_over(factors))
-    {
-      sum += std::abs(std::log(std::max(ratio, TINY)));
-    }
-    return sum;
-  };
-  const auto factors_at = [&](double temperature)
-  {
-    std::vector<double> factors;
-    for (const RecordingComparison* joint : joints)
-    {
-      factors.push_back(joint->twinFrictionAt(temperature) / joint->twinFrictionAt(joint->temperature()));
-    }
-    return factors;
-  };
-
-  const double median = medianOf(left_over(arm.factors));
-  const std::vector<double> alike(ratios.size(), median);
-  double low = COLDEST;
-  double high = WARMEST;
-  const auto is_colder = [&](double temperature) { return medianOf(left_over(factors_at(temperature))) > 1.0; };
-  const bool has_temperature = !is_received && !is_colder(low) && is_colder(high);
-  for (int i = 0; has_temperature && i < HALVINGS; ++i)  // the twins' friction falls with the temperature
-  {
-    const double middle = 0.5 * (low + high);
-    (is_colder(middle) ? high : low) = middle;
-  }
-  const std::vector<double> at_temperature = has_temperature ? factors_at(low) : arm.factors;
-
-  const std::size_t most = known.size() / 2 + 1;
-  const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
-  const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
-  const std::size_t agree = agreeing(otherwise);
-  if (has_temperature && agree < known.size() && agreeing(at_temperature) >= std::max(most, agree) &&
-      misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
-  {
-    arm = { at_temperature, median, low };
-  }
-  else if (is_factor)
-  {
-    arm = { alike, median, has_temperature ? std::make_optional(low) : std::nullopt };
-  }
-  return arm;
 }
 
 Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)

@@ -78,19 +78,4 @@ inline const char* temperatureSource(const RecordingComparison& comparison)
 /// Friction as a multiple of the joint's own when sound, else of the twin's; none: the recording does not show it.
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context);
-
-/// What the friction of an arm's joints has in common.
-struct ArmFriction
-{
-  std::vector<double> factors;        ///< of each joint
-  double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
-  std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
-};
-
-/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
-/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
-/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
-/// are the median joint's, so that one faulty joint changes neither.
-ArmFriction commonFriction(const std::vector<const RecordingComparison*>& joints,
-                           const std::vector<std::optional<double>>& ratios, double tolerance);
 }  // namespace hjt

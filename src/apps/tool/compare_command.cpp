@@ -34,6 +34,7 @@
 #include "params/configuration_files.hpp"
 #include "ros_io/conversions.hpp"
 #include "ros_io/topics.hpp"
+#include "tracking/common_friction.hpp"
 
 extern char** environ;
 
@@ -339,8 +340,7 @@ int compareArm(const CompareOptions& options)
   warnOfStamps(found);
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
   std::vector<std::string> misfits = fit.whyNotJudged();
-  std::vector<std::optional<double>> ratios;
-  std::vector<const RecordingComparison*> comparisons;
+  std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
@@ -348,11 +348,13 @@ int compareArm(const CompareOptions& options)
     {
       misfits[i] = joints[i]->contactText();
     }
-    ratios.push_back(joints[i]->frictionRatio(load, sentence(misfits[i])));
-    comparisons.push_back(&joints[i]->comparison());
+    const RecordingComparison& comparison = joints[i]->comparison();
+    frictions.push_back({ joints[i]->frictionRatio(load, sentence(misfits[i])), comparison.temperature(),
+                          comparison.reach().temperature_rows > 0,
+                          [&comparison](double temperature) { return comparison.twinFrictionAt(temperature); } });
   }
   const Parameters& parameters = recording.parameters(0);
-  const ArmFriction arm = commonFriction(comparisons, ratios, parameters.comparison.repeat_tolerance);
+  const ArmFriction arm = commonFriction(frictions, parameters.comparison.repeat_tolerance);
   std::vector<ArmLine> lines;
   HealthLevel level = HealthLevel::OK;
   bool judged = false;
@@ -366,7 +368,7 @@ int compareArm(const CompareOptions& options)
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
     temperatures += comparison.temperature();
-    lines.push_back({ name, std::move(record.verdict), misfits[i], ratios[i], comparison.temperature(),
+    lines.push_back({ name, std::move(record.verdict), misfits[i], frictions[i].ratio, comparison.temperature(),
                       temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;

@@ -244,6 +244,7 @@ public:
     }
   }
 
+  Tracker& tracker() { return tracker_; }
   TrackerCounters counters() const { return tracker_.counters(); }
   const Rms& current() const { return current_; }
   const Rms& residual() const { return residual_; }
@@ -352,6 +353,12 @@ int followArm(const FollowOptions& options)
                                                       out, bag.get(), i));
     lines.push_back({ name, followers.back().get(), has_load_error });
   }
+  std::vector<Tracker*> trackers;
+  for (const std::unique_ptr<ArmFollower>& follower : followers)
+  {
+    trackers.push_back(&follower->tracker());
+  }
+  ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
   const MotionFindings found = recording.read(
       [&](const std::vector<ArmJointRow>& rows)
       {
@@ -359,6 +366,7 @@ int followArm(const FollowOptions& options)
         {
           followers[i]->add(rows[i], recording.hasRecordedLoad());
         }
+        friction.look(rows.front().row.time);
       });
   for (const std::unique_ptr<ArmFollower>& follower : followers)
   {

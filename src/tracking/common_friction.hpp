@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace hjt
+{
+class Tracker;
+
+/// Friction of one joint of an arm.
+struct MeasuredFriction
+{
+  std::optional<double> ratio;       ///< measured over expected; none: not known
+  double temperature{};              ///< that it is expected at [degC]
+  bool temperature_received{};       ///< that one was
+  std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
+};
+
+/// What the friction of an arm's joints has in common.
+struct ArmFriction
+{
+  std::vector<double> factors;        ///< of each joint
+  double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
+  std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
+};
+
+/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
+/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
+/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
+/// are the median joint's, so that one faulty joint changes neither.
+ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
+
+/// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or
+/// gain. Where it means a temperature and none is received, the joints are predicted at that one.
+class ArmFrictionWatch
+{
+public:
+  /// `tolerance`: as of commonFriction. The joints must outlive this.
+  ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance);
+
+  void reset();
+
+  /// After the rows of a time [s]; works every PERIOD. True: what the joints have in common has changed.
+  bool look(double time);
+
+  const ArmFriction& found() const { return found_; }
+
+private:
+  static constexpr double PERIOD = 1.0;   // [s]
+  static constexpr double CHANGE = 0.05;  // of the median that is followed
+  static constexpr int LOOKS = 10;        // in a row that show a change
+
+  std::vector<Tracker*> joints_;
+  double tolerance_;
+  double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
+  int steady_{};                                                  // looks in a row that differ from what was found
+  ArmFriction found_;
+};
+}  // namespace hjt
