@@ -22,7 +22,8 @@ struct Contact
 };
 
 /// Something that touches the arm: a torque that the joint's motion does not usually take, while it moves, for a short
-/// time. What stays becomes the usual: friction, gain and payload are no contact.
+/// time. What stays becomes the usual, and what comes more often than a fifth of the time is no contact: friction, gain
+/// and payload.
 ///
 /// The mean residual over MEAN must differ from the usual one of that direction by more than half of the friction, 5 %
 /// of the load and 2 % of the largest load together, for LASTING. Fixed memory; nothing allocates or throws.
@@ -43,6 +44,7 @@ public:
     constexpr double MEAN = 0.1;     // [s]
     constexpr double SETTLED = 0.3;  // of motion one way: presliding and the controller's start are over [s]
     constexpr double LASTING = 0.1;  // [s]
+    constexpr double KNOWN = 2.0;    // of motion one way, before which nothing is usual [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
@@ -55,36 +57,49 @@ public:
       moved_ = beyond_ = mean_ = 0.0;
       return;
     }
-    double& usual = usual_[way > 0 ? 1 : 0];
+    Usual& usual = usual_[way > 0 ? 1 : 0];
     const double bound =
         OF_FRICTION * std::abs(friction_torque) + OF_LOAD * std::abs(sample.load) + OF_LARGEST * largest_load_;
-    const double difference = residual_torque - usual;
+    const double difference = residual_torque - usual.torque;
     moved_ += step;
     mean_ += (moved_ > step ? 1.0 - std::exp(-step / MEAN) : 1.0) * (difference - mean_);
-    usual += std::min(1.0, step / MEMORY) * std::clamp(difference, -bound, bound);
-    beyond_ = std::abs(mean_) > bound && moved_ > SETTLED ? beyond_ + step : 0.0;
+    usual.time += step;
+    const bool is_known = usual.time > KNOWN;
+    usual.torque += std::min(1.0, step / std::min(MEMORY, usual.time)) *
+                    (is_known ? std::clamp(difference, -bound, bound) : difference);
+    beyond_ = std::abs(mean_) > bound && moved_ > SETTLED && is_known ? beyond_ + step : 0.0;
     if (beyond_ > LASTING)
     {
-      contact_.since = hasSeen() ? contact_.since : sample.time;
+      contact_.since = contact_.lasted > 0.0 ? contact_.since : sample.time;
       contact_.lasted += step;
       contact_.largest = std::max(contact_.largest, std::abs(mean_));
       last_ = sample.time;
     }
   }
 
-  bool hasSeen() const noexcept { return contact_.lasted > 0.0; }
+  bool hasSeen() const noexcept
+  {
+    constexpr double OFTEN = 0.2;  // share of the motion
+    return contact_.lasted > 0.0 && contact_.lasted < OFTEN * (usual_[0].time + usual_[1].time);
+  }
   /// Now, or less than HOLD ago.
   bool isRecent() const noexcept { return hasSeen() && time_ - last_ < HOLD; }
   const Contact& contact() const noexcept { return contact_; }  ///< all since the start
 
 private:
+  struct Usual
+  {
+    double torque{};  // residual [N.m]
+    double time{};    // of motion [s]
+  };
+
   double largest_load_;
   double time_{};
   int way_{};                                                // +1, -1; 0: at rest
   double moved_{};                                           // that way [s]
   double mean_{};                                            // of the difference [N.m]
   double beyond_{};                                          // how long [s]
-  std::array<double, 2> usual_{};                            // residual by direction [N.m]
+  std::array<Usual, 2> usual_{};                             // by direction
   double last_{ -std::numeric_limits<double>::infinity() };  // when something touched it [s]
   Contact contact_;
 };

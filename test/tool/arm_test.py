@@ -196,6 +196,21 @@ class Arm(tool.ToolTest):
         self.assertIn("temperature or gain", every["reason"])
         self.assertAlmostEqual(every["friction_ratio"], 1.3, delta=0.05)
 
+    def test_a_joint_that_is_pushed_is_not_judged(self):
+        path = self.robot_with_friction([])
+        with open(self.path(path)) as file:
+            rows = list(csv.reader(file))
+        column = rows[0].index("actual_current_1")
+        for row in rows[1:]:
+            if 10.0 <= float(row[0]) < 10.6:
+                row[column] = f"{float(row[column]) + 3.0}"  # some 32 N.m
+        self.write("pushed.csv", "\n".join(",".join(row) for row in rows) + "\n")
+        pushed = self.compare("pushed.csv", "pushed")
+        self.assertEqual({joint["joint"]: joint["level"] for joint in pushed["joints"]},
+                         {name: "NOT JUDGED" if name == "shoulder" else "OK" for name in SHORT_NAMES}, pushed)
+        self.assertIn("something touched the arm, or its payload changed: at 10.", pushed["reason"])
+        self.assertIsNone(pushed["joints"][1]["friction_ratio"])
+
     def levels(self, arm):
         return {joint["joint"]: joint["level"] for joint in arm["joints"]}
 
@@ -204,7 +219,6 @@ class Arm(tool.ToolTest):
         self.assertEqual({(joint["temperature"], joint["temperature_source"]) for joint in warm["joints"]},
                          {(40.0, "received")})
         cold = self.compare(self.robot_with_friction([], degrees=15.0, is_recorded=True), "cold", "--reference", "warm")
-        print({joint["joint"]: joint["friction_ratio"] for joint in cold["joints"]})
         self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
         self.assertEqual(cold["friction_ratio"], 1.0)
         self.assertIsNone(cold["temperature_estimate"])

@@ -150,6 +150,10 @@ std::string whyItDoesNotFit(const RecordingComparison& comparison, const Paramet
     return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
            " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(context.load);
   }
+  if (context.load != LoadOrigin::CONFIGURED && comparison.contact().hasSeen())
+  {
+    return sentence(contactText(comparison.contact().contact()));
+  }
   return {};
 }
 
@@ -423,6 +427,16 @@ std::string reasonOf(const Verdict& verdict)
                              (open.empty() ? "" : " This recording does not show: " + joined(open) + ".");
 }
 }  // namespace
+
+std::string sentence(std::string clause)
+{
+  if (!clause.empty())
+  {
+    clause[0] = static_cast<char>(std::toupper(clause[0]));
+    clause += ".";
+  }
+  return clause;
+}
 
 std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
                                     const JointContext& context)

@@ -48,6 +48,9 @@ struct Finding
   std::vector<Cause> causes;  ///< that would show like this; none at level OK
 };
 
+/// A clause as a sentence.
+std::string sentence(std::string clause);
+
 constexpr const char* NOT_JUDGED = "NOT JUDGED";
 
 /// Findings of a recording.

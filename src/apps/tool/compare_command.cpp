@@ -135,16 +135,6 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
                        { "", "measured less predicted current, rms", comparison.residualRms(), "A" } });
 }
 
-std::string sentence(std::string clause)
-{
-  if (!clause.empty())
-  {
-    clause[0] = static_cast<char>(std::toupper(clause[0]));
-    clause += ".";
-  }
-  return clause;
-}
-
 /// A joint that is compared, its source, and the directory of its report.
 class ComparedJoint
 {
@@ -172,12 +162,6 @@ public:
   std::optional<double> frictionRatio(LoadOrigin load, const std::string& misfit) const
   {
     return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load, 0.0, 1.0, misfit });
-  }
-
-  /// As a clause; empty: nothing touched the arm.
-  std::string contactText() const
-  {
-    return comparison_.contact().hasSeen() ? hjt::contactText(comparison_.contact().contact()) : std::string();
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
@@ -220,9 +204,8 @@ int compareJoint(const CompareOptions& options)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const std::string misfit = found.has_load ? sentence(joint.contactText()) : "";
   const ComparisonRecord record = joint.write(found, found.has_load ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
-                                              1.0, misfit, options.joint_namespace + "/" + topics::JOINT_STATES);
+                                              1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
@@ -339,15 +322,11 @@ int compareArm(const CompareOptions& options)
   }
   warnOfStamps(found);
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
-  std::vector<std::string> misfits = fit.whyNotJudged();
+  const std::vector<std::string> misfits = fit.whyNotJudged();
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
-    if (misfits[i].empty())
-    {
-      misfits[i] = joints[i]->contactText();
-    }
     const RecordingComparison& comparison = joints[i]->comparison();
     frictions.push_back({ joints[i]->frictionRatio(load, sentence(misfits[i])), comparison.temperature(),
                           comparison.reach().temperature_rows > 0,
@@ -368,7 +347,10 @@ int compareArm(const CompareOptions& options)
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
     temperatures += comparison.temperature();
-    lines.push_back({ name, std::move(record.verdict), misfits[i], frictions[i].ratio, comparison.temperature(),
+    const std::string why_not = misfits[i].empty() && !record.verdict.judged && comparison.contact().hasSeen() ?
+                                    contactText(comparison.contact().contact()) :
+                                    misfits[i];
+    lines.push_back({ name, std::move(record.verdict), why_not, frictions[i].ratio, comparison.temperature(),
                       temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
