@@ -81,7 +81,7 @@ public:
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
   const ContactWatch& contact() const { return contact_; }  ///< means something where the load is that of the arm
-  double temperature() const;  ///< that the rows were judged at, mean [degC]
+  double temperature() const;                               ///< that the rows were judged at, mean [degC]
   /// More than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * reach_.temperature_rows > reach_.rows; }
   /// The twin's friction by the speeds of `friction`, under the typical load, at a temperature [degC], mean [N.m].
