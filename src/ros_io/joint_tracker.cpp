@@ -372,10 +372,10 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Temperature [degC]", counters.compared > 0 ? comparison_.temperature : parameters_.input.temperature);
+  const bool is_configured = counters.compared == 0 || comparison_.temperature == parameters_.input.temperature;
   status.add("Temperature is", comparison_.temperature_received ? "received" :
-                               counters.compared > 0 && comparison_.temperature != parameters_.input.temperature ?
-                                                                  "estimated from the friction of all joints" :
-                                                                  "configured");
+                               is_configured                    ? "configured" :
+                                                                  "estimated from the friction of all joints");
   status.add("Friction that all joints have in common [-]", arm_friction_);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);

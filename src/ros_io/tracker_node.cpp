@@ -172,6 +172,10 @@ void TrackerNode::resetFit()
     fit_->reset();
     next_fit_ = -HUGE_VAL;
     friction_->reset();
+    for (const auto& joint : joints_)
+    {
+      joint->setArmFriction(1.0);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "tracking/tracker.hpp"
 
@@ -113,6 +114,10 @@ ArmFrictionWatch::ArmFrictionWatch(std::vector<Tracker*> joints, double toleranc
 
 void ArmFrictionWatch::reset()
 {
+  for (Tracker* joint : joints_)
+  {
+    joint->setTemperature(std::nullopt);
+  }
   *this = ArmFrictionWatch(std::move(joints_), tolerance_);
 }
 

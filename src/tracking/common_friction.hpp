@@ -41,6 +41,7 @@ public:
   /// `tolerance`: as of commonFriction. The joints must outlive this.
   ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance);
 
+  /// Forgets what was found; the joints go back to the configured temperature.
   void reset();
 
   /// After the rows of a time [s]; works every PERIOD. True: what the joints have in common has changed.

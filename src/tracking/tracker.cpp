@@ -148,7 +148,6 @@ void Tracker::reset() noexcept
   temperatures_.clear();
   contact_.reset();
   friction_.reset();
-  estimated_temperature_.reset();
   temperature_received_ = false;
   outside_share_ = 0.0;
   timing_.reset();
@@ -270,7 +269,7 @@ void Tracker::addFriction(double step, const MotionSample& sample, const Compari
 {
   constexpr double STEADY = 0.95;  // share of the friction that is mobilised
   const double limit = follower_->frictionAt(sample.velocity, sample.load, now.temperature);
-  if (!(std::abs(now.friction_torque) > STEADY * limit) || limit == 0.0)
+  if (limit == 0.0 || std::abs(now.friction_torque) < STEADY * limit)
   {
     return;
   }
@@ -298,7 +297,7 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
     watch_.update(sample);
   }
   const double step = now.after_gap || isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
-  if (load_is_known && fits_ && !isTouched() && !now.sticking)
+  if (load_is_known && fits_ && !now.sticking)
   {
     addFriction(step, sample, now);
   }

@@ -94,6 +94,8 @@ class Recordings(unittest.TestCase):
                              for status in self.diagnostics[joint].statuses(task)[seen[joint][task]:]
                              if "stopped" not in status.message and "Nothing" not in status.message}
                     self.assertEqual({level for level, _ in found}, {OK}, (name, joint, task, found))
+                    self.assertEqual(any("touched the arm" in message for _, message in found),
+                                     name.endswith("pushed.csv") and joint == "base", (name, joint, task, found))
             print(f"{name}: {rows} rows, {seconds:.0f} s", flush=True)
 
 
