@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 DUTIES = {"rated": "rated torque and speed", "palletising": "palletising",
-          "collisions": "rated, with 0.1 s of momentary peak every 10 000 s"}
+          "collisions": "rated, with collisions"}
 COLOURS = ["C0", "C3", "C2"]
 ENDS = ["flank wear", "interface wear", "root crack", "bearing", "tooth space fatigue", "transition fatigue",
         "flange fatigue"]
@@ -102,7 +102,7 @@ def draw_fatigue(options, ages, path):
             axis.plot(1e11, amplitude, colour + ">", label=place)
         else:
             axis.plot(row["allowed"], amplitude, colour + "o")
-        below = {"tooth space": 3, "transition": -1, "flange": 8}[row["place"]]
+        below = {"tooth space": -6, "transition": -1, "flange": 8}[row["place"]]
         axis.annotate(f"{row['torque']:g} N·m", (row["allowed"] or 1e11, amplitude), xytext=(7, -below),
                       textcoords="offset points", fontsize=7, color=colour)
     for (name, (result, _)), marker in zip(ages.items(), "xsd"):
