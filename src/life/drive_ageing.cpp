@@ -62,6 +62,34 @@ UnitVariation nominalDrive(const LifeParameters& parameters)
   return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth, 1.0 };
 }
 
+void DriveAgeing::addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+                             std::array<MinerSum, STRESS_PLACES>& fatigue) const
+{
+  constexpr double CYCLES_A_TURN = 2.0;
+  for (std::size_t place = 0; place < STRESS_PLACES && turns > 0.0; ++place)
+  {
+    fatigue[place].add(fatigue_law_, CYCLES_A_TURN * turns,
+                       fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strength);
+  }
+}
+
+std::array<double, STRESS_PLACES> DriveAgeing::fatigueRates(double strength) const
+{
+  double time = 0.0;
+  std::array<MinerSum, STRESS_PLACES> fatigue;
+  for (const DutyPhase& phase : duty_.phases)
+  {
+    time += phase.duration;
+    addFatigue(phase.turns(), load_map_.at(phase.load_torque, 0.0, 0.0), strength, fatigue);
+  }
+  std::array<double, STRESS_PLACES> rates{};
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    rates[place] = fatigue[place].sum() * 3600.0 / time;
+  }
+  return rates;
+}
+
 DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age) const
 {
   const LifeParameters& life = parameters_.life;
@@ -71,6 +99,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   const double grease_factor = greaseWearFactor(life, age.grease);
   double time = 0.0;
   DriveAge rate;
+  std::array<MinerSum, STRESS_PLACES> fatigue;
   for (const DutyPhase& phase : duty_.phases)
   {
     const RevolutionLoad revolution_load = load_map_.at(phase.load_torque, age.flank_wear, age.interface_wear);
@@ -86,6 +115,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
     rate.grease += turns * greaseAgeing(life, phase.temperature);
     rate.flaw_depth += turns * crackGrowth(parameters_, revolution_load, age.flaw_depth);
     rate.bearing_turns += turns * bearingWear(life, phase.load_torque);
+    addFatigue(turns, revolution_load, variation.strength, fatigue);
   }
   rate.grease *= rate.turns > 0.0 ? greaseLoadFactor(rate.bearing_turns / rate.turns) : 1.0;
   const double per_hour = 3600.0 / time;
@@ -95,33 +125,11 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   rate.grease *= per_hour;
   rate.flaw_depth *= per_hour;
   rate.bearing_turns *= per_hour;
-  rate.fatigue = fatigueRates(variation.strength, age);
-  return rate;
-}
-
-std::array<double, STRESS_PLACES> DriveAgeing::fatigueRates(double strength, const DriveAge& age) const
-{
-  constexpr double CYCLES_A_TURN = 2.0;
-  std::array<double, STRESS_PLACES> rates{};
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
-    const auto share = [&](const DutyPhase& phase)
-    {
-      const RevolutionLoad load = load_map_.at(phase.load_torque, age.flank_wear, age.interface_wear);
-      return fatigue_law_.enduranceShare(place, load.stress[place]) / strength;
-    };
-    const bool overloaded =
-        std::any_of(duty_.phases.begin(), duty_.phases.end(),
-                    [&](const DutyPhase& phase) { return phase.turns() > 0.0 && share(phase) >= 1.0; });
-    double time = 0.0;
-    for (const DutyPhase& phase : duty_.phases)
-    {
-      time += phase.duration;
-      rates[place] += CYCLES_A_TURN * phase.turns() * fatigue_law_.damage(share(phase), overloaded);
-    }
-    rates[place] *= 3600.0 / time;
+    rate.fatigue[place] = fatigue[place].sum() * per_hour;
   }
-  return rates;
+  return rate;
 }
 
 std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, const DriveAge& age) const

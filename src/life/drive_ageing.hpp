@@ -28,8 +28,8 @@ public:
   /// Change of the age by hour, at an age.
   DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
 
-  /// Miner's sums by hour of a flexspline whose fatigue strength is `strength` times the median's, at an age.
-  std::array<double, STRESS_PLACES> fatigueRates(double strength, const DriveAge& age) const;
+  /// Miner's sums by hour of a new drive whose fatigue strength is `strength` times the median's.
+  std::array<double, STRESS_PLACES> fatigueRates(double strength) const;
 
   /// The first limit that an age has reached.
   std::optional<EndOfLife> ended(const UnitVariation& variation, const DriveAge& age) const;
@@ -48,6 +48,9 @@ public:
             const std::function<void(double, const DriveAge&)>& visit) const;
 
 private:
+  void addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+                  std::array<MinerSum, STRESS_PLACES>& fatigue) const;
+
   Parameters parameters_;
   FatigueLaw fatigue_law_;
   DutyCycle duty_;

@@ -20,7 +20,7 @@ public:
     hourly_ = { rate.flank_wear, rate.interface_wear, rate.bearing_turns, {} };
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
-      hourly_.fatigue[i] = ageing.fatigueRates(strengthAt(life, i), {});
+      hourly_.fatigue[i] = ageing.fatigueRates(strengthAt(life, i));
     }
     grease_rate_ = rate.grease;
   }

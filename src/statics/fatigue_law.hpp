@@ -65,4 +65,21 @@ private:
   double exponent_;
   std::array<double, STRESS_PLACES> notch_factor_{};
 };
+
+/// Miner's sum over loads of one place: those below the endurance limit count if any lies above it.
+class MinerSum
+{
+public:
+  /// `share` of the endurance limit, of the strength at hand.
+  void add(const FatigueLaw& law, double cycles, double share) noexcept
+  {
+    (share < 1.0 ? below_ : above_) += cycles * law.damage(share, true);
+  }
+
+  double sum() const noexcept { return above_ > 0.0 ? above_ + below_ : 0.0; }
+
+private:
+  double below_{};
+  double above_{};
+};
 }  // namespace hjt
