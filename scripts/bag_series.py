@@ -49,7 +49,7 @@ def slots_row(message, _joint):
 
 
 ROWS = {"command": input_row, "load": input_row, "joint_states": joint_states_row, "encoders": slots_row,
-        "contact_forces": slots_row, "health": slots_row, "measured": measured_row}
+        "contact_forces": slots_row, "health": slots_row, "stress": slots_row, "measured": measured_row}
 
 TELEMETRY = "/joint_states"  # of the robot beside the twin, if the bag is a recording
 OUTPUTS = ["joint_states", "encoders", "contact_forces", "health"]

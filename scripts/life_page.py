@@ -14,17 +14,28 @@ import page_section
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
-DUTIES = {"rated": "rated torque and speed", "palletising": "palletising"}
-ENDS = ["flank wear", "interface wear", "root crack", "bearing"]
+DUTIES = {"rated": "rated torque and speed", "palletising": "palletising",
+          "collisions": "rated, with collisions"}
+COLOURS = ["C0", "C3", "C2"]
+ENDS = ["flank wear", "interface wear", "root crack", "bearing", "tooth space fatigue", "transition fatigue",
+        "flange fatigue"]
+PLACES = {"tooth space": "tooth_space", "transition": "transition", "flange": "flange"}
+LOADS = {0: "C0", 67: "C2", 150: "C1", 284: "C3"}  # [N.m]
 # The catalogue's bearing hides the wear of the flanks; flanks ten times as soft show how their wear is forecast.
-TRIALS = {"as shipped": [], "flanks wear ten times as fast": ["--set", "life.flank_wear_coefficient=3.0e-18"]}
+TRIALS = {"as shipped": ("rated",),
+          "flanks wear ten times as fast": ("rated", "--set", "life.flank_wear_coefficient=3.0e-18"),
+          "collisions": ("collisions",)}
 SHARES = [0.05, 0.1, 0.5, 0.9, 0.95]
 QUANTILES = ["q05", "q10", "q50", "q90", "q95"]
 ALPHA = 0.3
 
 
 def run(options, *arguments):
-    command = [options.tool, "life", *arguments]
+    return tool(options, "life", *arguments)
+
+
+def tool(options, *arguments):
+    command = [options.tool, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         sys.exit(f"life: {' '.join(map(str, command))} failed:\n{done.stderr}")
@@ -43,17 +54,78 @@ def age(options, name):
     return result, read(path)
 
 
-def trials(options, overlay):
+def trials(options, duty, *overlay):
     path = options.work / "trials.csv"
-    result = json.loads(run(options, "trials", options.duties / "rated.csv", "--grease-changes", "--lives",
+    result = json.loads(run(options, "trials", options.duties / f"{duty}.csv", "--grease-changes", "--lives",
                             str(options.lives), "--every", "500", "--seed", "1", "--csv", path, "--force", "--json",
                             *overlay))
     return result, read(path)
 
 
+def draw_stress(options, path):
+    """Nominal stress of every tooth at three places under four loads."""
+    rows = json.loads(tool(options, "stiffness", "--torques", ",".join(map(str, LOADS)), "--teeth", "--json"))["rows"]
+    figure, axes = plt.subplots(3, 1, figsize=(10, 8.4), sharex=True, constrained_layout=True)
+    for axis, (place, key) in zip(axes, PLACES.items()):
+        for row, colour in zip(rows, LOADS.values()):
+            stress = 1e-6 * numpy.array(row["teeth"]["stress_" + key])
+            angle = 360.0 * numpy.arange(len(stress)) / len(stress)
+            shear = row["stress"][place]["shear"]
+            label = f"{row['torque']:g} N·m" + (f", shear {1e-6 * shear:.0f} MPa" if shear > 1e3 else "")
+            axis.plot(angle, stress, colour, linewidth=1.2, label=label)
+        axis.set_title(f"{place[0].upper() + place[1:]}: nominal normal stress [MPa]", loc="left", fontsize=10)
+        axis.legend(frameon=False, ncol=4, fontsize=8)
+        axis.margins(y=0.18)
+        axis.grid(alpha=0.3)
+    axes[-1].set_xlabel("angle from the wave generator's major axis [°]")
+    axes[-1].set_xticks(range(0, 361, 45))
+    axes[-1].set_xlim(0, 360)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def draw_fatigue(options, ages, path):
+    """S-N curve with what the catalogue allows, and with the phases of the duties over their lives."""
+    life = json.loads(tool(options, "parameters", "--json"))["life"]
+    limit, knee, exponent = life["endurance_limit"], life["endurance_cycles"], life["fatigue_exponent"]
+    figure, axis = plt.subplots(figsize=(10, 4.6), constrained_layout=True)
+    amplitudes = numpy.linspace(limit, 0.9 * life["ultimate_strength"], 100)
+    for deviation, style, label in ((0.0, "k", "half of all flexsplines"), (-2.326, "k--", "weakest 1 %")):
+        strength = numpy.exp(deviation * life["fatigue_spread"])
+        cycles = numpy.append(1e12, knee * (limit / amplitudes) ** exponent)
+        axis.plot(cycles, 1e-6 * strength * numpy.append(limit, amplitudes), style, label=label)
+    for row in json.loads(run(options, "fatigue", "--json"))["rows"]:
+        colour = dict(zip(PLACES, ["C0", "C1", "C2"]))[row["place"]]
+        amplitude = 1e-6 * row["equivalent"]
+        place = row["place"] if row["torque"] == life["rated_torque"] else None
+        if row["allowed"] is None:
+            axis.plot(1e11, amplitude, colour + ">", label=place)
+        else:
+            axis.plot(row["allowed"], amplitude, colour + "o")
+        below = {"tooth space": -6, "transition": -1, "flange": 8}[row["place"]]
+        axis.annotate(f"{row['torque']:g} N·m", (row["allowed"] or 1e11, amplitude), xytext=(7, -below),
+                      textcoords="offset points", fontsize=7, color=colour)
+    for (name, (result, _)), marker in zip(ages.items(), "xsd"):
+        per_hour = result["turns"] / result["hours"]
+        turns = sum(phase["turns_per_cycle"] for phase in result["phases"])
+        for number, phase in enumerate(result["phases"]):
+            row = phase["fatigue"][0]
+            cycles = 2.0 * phase["turns_per_cycle"] / turns * per_hour * result["hours"]
+            axis.plot(max(cycles, 1.0), 1e-6 * row["equivalent"], "C3" + marker, fillstyle="none",
+                      label=f"{DUTIES[name]}: tooth space, phases" if number == 0 else None)
+    axis.set_xscale("log")
+    axis.set_xlim(1e3, 1e12)
+    axis.set_xlabel("cycles, two a turn of the motor")
+    axis.set_ylabel("amplitude at the notch, no mean [MPa]")
+    axis.grid(alpha=0.3)
+    axis.legend(frameon=False, fontsize=8, ncol=2)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
 def draw_ageing(ages, path):
     figure, axes = plt.subplots(2, 2, figsize=(10, 6.4), constrained_layout=True)
-    for (name, (_, rows)), colour in zip(ages.items(), ["C0", "C3"]):
+    for (name, (_, rows)), colour in zip(ages.items(), COLOURS):
         label = DUTIES[name]
         axes[0, 0].plot(rows["turns"], 1e6 * rows["flank_wear"], colour, label=label)
         axes[0, 1].plot(rows["turns"], 1e6 * rows["interface_wear"], colour)
@@ -91,14 +163,15 @@ def draw_forecasts(rows, title, axis):
 
 
 def draw_calibration(results, path):
-    figure, axes = plt.subplots(2, 2, figsize=(10, 7.6), constrained_layout=True)
+    figure, axes = plt.subplots(2, 3, figsize=(13, 7.6), constrained_layout=True)
     for (name, (_, rows)), axis in zip(results.items(), axes[0]):
         draw_forecasts(rows, f"Three lives, {name}", axis)
+    axes[1, 2].remove()
     axes[0, 0].plot([], [], "k--", label="truth")
     axes[0, 0].plot([], [], "k", label="median forecast")
     axes[0, 0].fill_between([], [], color="k", alpha=0.2, label="80 % interval")
     axes[0, 0].legend(frameon=False)
-    for (name, (_, rows)), colour in zip(results.items(), ["C0", "C3"]):
+    for (name, (_, rows)), colour in zip(results.items(), COLOURS):
         observed = [numpy.mean(rows["remaining"] <= rows[quantile]) for quantile in QUANTILES]
         axes[1, 0].plot(SHARES, observed, colour + "o-", label=name)
         ages = rows["hours"] / (rows["hours"] + rows["remaining"])
@@ -115,7 +188,7 @@ def draw_calibration(results, path):
     axes[1, 1].set_title(f"α–λ: median within {100 * ALPHA:.0f} % of the truth [%]", loc="left", fontsize=10)
     axes[1, 1].set_xlabel("λ: share of the life gone [-]")
     axes[1, 1].set_ylim(0, 100)
-    for axis in axes[1]:
+    for axis in axes[1, :2]:
         axis.grid(alpha=0.3)
     figure.savefig(path, dpi=110)
     plt.close(figure)
@@ -127,29 +200,45 @@ def held(rows, chosen):
 
 
 def age_table(ages):
-    lines = ["| duty | turns an hour | first limit | after [h] | flank wear [µm] | interface wear [µm] | rim stress "
-             "range [MPa] "
-             "| error of the map [-] |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| duty | turns an hour | first limit | after [h] | flank wear [µm] | interface wear [µm] | tooth "
+             "space: amplitude, mean [MPa] | without mean, at the notch | error of the map [-] |",
+             "|---|---|---|---|---|---|---|---|---|"]
     for name, (result, _) in ages.items():
-        stress = max(phase["rim_stress_range"] for phase in result["phases"])
+        worst = max((phase["fatigue"][0] for phase in result["phases"]), key=lambda row: row["equivalent"])
         lines.append(f"| {DUTIES[name]} | {result['turns'] / result['hours']:.3g} | {result['end']} | "
                      f"{result['hours']:.3g} "
-                     f"| {1e6 * result['flank_wear']:.1f} | {1e6 * result['interface_wear']:.1f} | {1e-6 * stress:.0f} "
-                     f"| {result['map_error']:.1g} |")
+                     f"| {1e6 * result['flank_wear']:.1f} | {1e6 * result['interface_wear']:.1f} "
+                     f"| {1e-6 * worst['amplitude']:.0f}, {1e-6 * worst['mean']:.0f} "
+                     f"| {1e-6 * worst['equivalent']:.0f} | {result['map_error']:.1g} |")
+    return lines
+
+
+def fatigue_table(options):
+    def shown(value):
+        return "no end" if value is None else f"{value:.2g}"
+
+    rows = json.loads(run(options, "fatigue", "--json"))["rows"]
+    lines = ["| load [N.m] | place | amplitude, mean, shear [MPa] | without mean, at the notch | cycles of half of all "
+             "| of the weakest 1 % | catalogue allows |", "|---|---|---|---|---|---|---|"]
+    for row in rows:
+        lines.append(f"| {row['torque']:g} | {row['place']} | {1e-6 * row['amplitude']:.0f}, {1e-6 * row['mean']:.0f}, "
+                     f"{1e-6 * row['shear']:.0f} | {1e-6 * row['equivalent']:.0f} | {shown(row['cycles'])} | "
+                     f"{shown(row['cycles_weak'])} | {shown(row['allowed'])} |")
     return lines
 
 
 def trial_table(results):
     lines = ["| drives | lives | ended by " + ", ".join(ENDS)
              + " | forecasts | 80 % interval held the truth | from half of each "
-             "life on | of those, lives ended by flank wear | by the bearing |", "|---|---|---|---|---|---|---|---|"]
+             "life on | of those, lives ended by flank wear | by the bearing | by fatigue |",
+             "|---|---|---|---|---|---|---|---|---|"]
     for name, (result, rows) in results.items():
         ends = ", ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
         later = rows["hours"] >= rows["remaining"]
         lines.append(f"| {name} | {result['lives']} | {ends} | {result['forecasts']} | "
                      f"{100 * result['coverage_80']:.0f} % "
                      f"| {100 * result['coverage_80_from_half_life']:.0f} % | {held(rows, later & (rows['end'] == 0))} "
-                     f"| {held(rows, later & (rows['end'] == 3))} |")
+                     f"| {held(rows, later & (rows['end'] == 3))} | {held(rows, later & (rows['end'] >= 4))} |")
     return lines
 
 
@@ -168,13 +257,19 @@ def main():
         print(f"life: ageing, {DUTIES[name]}", file=sys.stderr)
         ages[name] = age(options, name)
     results = {}
-    for name, overlay in TRIALS.items():
+    for name, arguments in TRIALS.items():
         print(f"life: {options.lives} lives, {name}", file=sys.stderr)
-        results[name] = trials(options, overlay)
+        results[name] = trials(options, *arguments)
+    draw_stress(options, options.docs / "images" / "life_stress.png")
+    draw_fatigue(options, ages, options.docs / "images" / "life_fatigue.png")
     draw_ageing(ages, options.docs / "images" / "life_ageing.png")
     draw_calibration(results, options.docs / "images" / "life_forecast.png")
     page_section.write(options.docs / "life.md", "life", [
         *age_table(ages), "",
+        "`joint_twin life fatigue`, the new drive at the catalogue's torques:", "",
+        *fatigue_table(options), "",
+        "![S-N curve, the catalogue's torques (dots and arrows at what it allows) and the phases of the duties over "
+        "their lives](images/life_fatigue.png)", "",
         "![Wear, grease and bearing over the turns of the motor, two duties](images/life_ageing.png)", "",
         *trial_table(results), "",
         "![Forecasts of three lives each, calibration, and accuracy against the share of life "

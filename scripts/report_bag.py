@@ -63,11 +63,23 @@ def force_rows(forces):
     ]
 
 
+def stress_rows(stress):
+    if len(stress) == 0:
+        return []
+    worst = stress["largest"].argmax()
+    return [
+        (f"stress of the flexspline at the notch, most ({stress['place'][worst]})",
+         f"{1e-6 * stress['largest'][worst]:.0f}", "MPa"),
+        ("share of its endurance limit, most", f"{stress['endurance_share'].max():.2f}", "-"),
+    ]
+
+
 def print_table(recording):
     health = recording["health"]
     counts = ", ".join(f"{name} {count}" for name, count in recording.counts.items())
     rows = [("simulated", f"{recording['joint_states'].time[-1]:.2f}", "s")]
     rows += joint_rows(recording) + health_rows(health) + force_rows(recording["contact_forces"])
+    rows += stress_rows(recording["stress"])
     print(f"{recording.joint} ({recording.namespace}); messages: {counts}")
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     for name, value, unit in rows:

@@ -17,6 +17,7 @@ SECTIONS = {
     "invariants": "Invariants",
     "catalogue": "Catalogue, size 25",
     "teeth": "Teeth",
+    "stress": "Stress and fatigue",
     "manufacture": "Errors of manufacture",
     "drives": "Real drives",
     "size14": "Size 14",

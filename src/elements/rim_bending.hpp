@@ -42,7 +42,8 @@ public:
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }         ///< N, editable per tooth [N.m/rad]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
+  const Eigen::VectorXd& naturalAngle() const noexcept { return natural_angle_; }
   Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
 
 private:

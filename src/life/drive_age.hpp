@@ -20,8 +20,9 @@ struct DriveAge
   double flank_wear{};      ///< depth worn off both flanks of a pair [m]
   double interface_wear{};  ///< depth worn off outer race and rim [m]
   double grease{};          ///< share of its life that the grease has behind it; 1: a change is due [-]
-  double flaw_depth{};      ///< of the deepest flaw at a tooth root [m]
+  double flaw_depth{};      ///< of the deepest crack at a tooth root; 0: none [m]
   double bearing_turns{};   ///< of the wave generator's bearing, in turns at rated torque
+  std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
 };
 
 /// In what one drive differs from the next: unknown from outside, constant over its life.
@@ -31,6 +32,7 @@ struct UnitVariation
   double interface_factor{ 1.0 };  ///< its interface wear over that of the nominal drive [-]
   double bearing_life{};           ///< turns at rated torque until the bearing's first spall
   double spall_growth{};           ///< share of that life from the first spall to the end [-]
+  double strength{ 1.0 };          ///< its flexspline's fatigue strength over the median's [-]
 };
 
 /// What ends a drive's use.
@@ -39,29 +41,42 @@ enum class EndOfLife
   FLANK_WEAR,
   INTERFACE_WEAR,
   ROOT_CRACK,
-  BEARING
+  BEARING,
+  TOOTH_SPACE_FATIGUE,  // the fatigue of the places follows in their order
+  TRANSITION_FATIGUE,
+  FLANGE_FATIGUE
 };
 
-constexpr std::size_t ENDS_OF_LIFE = 4;
+constexpr std::size_t ENDS_OF_LIFE = 7;
 
-/// In words: flank wear, interface wear, root crack, bearing; still in use.
+inline EndOfLife fatigueAt(std::size_t place)
+{
+  return static_cast<EndOfLife>(static_cast<std::size_t>(EndOfLife::TOOTH_SPACE_FATIGUE) + place);
+}
+
+/// In words: flank wear, interface wear, root crack, bearing, fatigue of tooth space, transition, flange; still in use.
 inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
 {
-  constexpr std::array<const char*, ENDS_OF_LIFE> NAMES{ "flank wear", "interface wear", "root crack", "bearing" };
+  constexpr std::array<const char*, ENDS_OF_LIFE> NAMES{ "flank wear",    "interface wear",      "root crack",
+                                                         "bearing",       "tooth space fatigue", "transition fatigue",
+                                                         "flange fatigue" };
   return end ? NAMES[static_cast<std::size_t>(*end)] : "still in use";
 }
 
-/// One drive out of many: factors of wear log-normal, the bearing's life after the catalogue's Weibull distribution.
+/// One drive out of many: factors of wear and strength log-normal, the bearing's life after the catalogue's Weibull
+/// distribution.
 template <class Engine>
 UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
 {
   boost::random::lognormal_distribution<double> wear(0.0, parameters.wear_spread);
   boost::random::lognormal_distribution<double> growth(std::log(parameters.spall_growth), parameters.spall_spread);
+  boost::random::lognormal_distribution<double> strength(0.0, parameters.fatigue_spread);
   UnitVariation variation;
   variation.flank_factor = wear(engine);
   variation.interface_factor = wear(engine);
   variation.bearing_life = bearing.quantile(boost::random::uniform_01<double>()(engine));
   variation.spall_growth = growth(engine);
+  variation.strength = strength(engine);
   return variation;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include <boost/numeric/odeint.hpp>
 
@@ -19,28 +20,37 @@ enum Entry
   GREASE,
   FLAW,
   BEARING,
-  ENTRIES
+  FATIGUE,  // of the first place; the others follow
+  ENTRIES = FATIGUE + STRESS_PLACES
 };
 using Entries = std::array<double, ENTRIES>;
 
 struct Scale
 {
-  explicit Scale(const LifeParameters& life, const GearParameters& gear, const UnitVariation& variation)
-    : by{ life.grease_turns,  life.flank_wear_limit, life.interface_wear_limit, 1.0,
-          gear.rim_thickness, variation.bearing_life }
+  explicit Scale(const Parameters& parameters, const UnitVariation& variation)
+    : by{ parameters.life.grease_turns,         parameters.life.flank_wear_limit,
+          parameters.life.interface_wear_limit, 1.0,
+          parameters.gear.rim_thickness,        variation.bearing_life }
   {
+    std::fill(by.begin() + FATIGUE, by.end(), 1.0);
   }
 
   Entries from(const DriveAge& age) const
   {
-    return { age.turns / by[TURNS],   age.flank_wear / by[FLANK], age.interface_wear / by[INTERFACE],
-             age.grease / by[GREASE], age.flaw_depth / by[FLAW],  age.bearing_turns / by[BEARING] };
+    Entries entries{ age.turns, age.flank_wear, age.interface_wear, age.grease, age.flaw_depth, age.bearing_turns };
+    std::copy(age.fatigue.begin(), age.fatigue.end(), entries.begin() + FATIGUE);
+    std::transform(entries.begin(), entries.end(), by.begin(), entries.begin(), std::divides<>());
+    return entries;
   }
 
-  DriveAge to(const Entries& entries) const
+  DriveAge to(Entries entries) const
   {
-    return { entries[TURNS] * by[TURNS],   entries[FLANK] * by[FLANK], entries[INTERFACE] * by[INTERFACE],
-             entries[GREASE] * by[GREASE], entries[FLAW] * by[FLAW],   entries[BEARING] * by[BEARING] };
+    std::transform(entries.begin(), entries.end(), by.begin(), entries.begin(), std::multiplies<>());
+    DriveAge age{
+      entries[TURNS], entries[FLANK], entries[INTERFACE], entries[GREASE], entries[FLAW], entries[BEARING], {}
+    };
+    std::copy(entries.begin() + FATIGUE, entries.end(), age.fatigue.begin());
+    return age;
   }
 
   Entries by;
@@ -49,17 +59,47 @@ struct Scale
 
 UnitVariation nominalDrive(const LifeParameters& parameters)
 {
-  return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth };
+  return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth, 1.0 };
+}
+
+void DriveAgeing::addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+                             std::array<MinerSum, STRESS_PLACES>& fatigue) const
+{
+  constexpr double CYCLES_A_TURN = 2.0;
+  for (std::size_t place = 0; place < STRESS_PLACES && turns > 0.0; ++place)
+  {
+    fatigue[place].add(fatigue_law_, CYCLES_A_TURN * turns,
+                       fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strength);
+  }
+}
+
+std::array<double, STRESS_PLACES> DriveAgeing::fatigueRates(double strength) const
+{
+  double time = 0.0;
+  std::array<MinerSum, STRESS_PLACES> fatigue;
+  for (const DutyPhase& phase : duty_.phases)
+  {
+    time += phase.duration;
+    addFatigue(phase.turns(), load_map_.at(phase.load_torque, 0.0, 0.0), strength, fatigue);
+  }
+  std::array<double, STRESS_PLACES> rates{};
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    rates[place] = fatigue[place].sum() * 3600.0 / time;
+  }
+  return rates;
 }
 
 DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age) const
 {
-  const double height = gear_.tooth_height_flexspline;
-  const double flank_area = life_.face_width * height;
-  const double interface_area = life_.face_width * TWO_PI * gear_.flexspline_inner_radius;
-  const double grease_factor = greaseWearFactor(life_, age.grease);
+  const LifeParameters& life = parameters_.life;
+  const GearParameters& gear = parameters_.gear;
+  const double flank_area = life.face_width * gear.tooth_height_flexspline;
+  const double interface_area = life.face_width * TWO_PI * gear.flexspline_inner_radius;
+  const double grease_factor = greaseWearFactor(life, age.grease);
   double time = 0.0;
   DriveAge rate;
+  std::array<MinerSum, STRESS_PLACES> fatigue;
   for (const DutyPhase& phase : duty_.phases)
   {
     const RevolutionLoad revolution_load = load_map_.at(phase.load_torque, age.flank_wear, age.interface_wear);
@@ -68,14 +108,16 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
     rate.turns += turns;
     // Each of the two surfaces loses its own depth: those of a pair share force and way.
     rate.flank_wear += turns * 2.0 * variation.flank_factor * grease_factor *
-                       archardDepth(life_.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
+                       archardDepth(life.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
     rate.interface_wear +=
         turns * 2.0 * variation.interface_factor * grease_factor *
-        archardDepth(life_.interface_wear_coefficient, revolution_load.interface_sliding, interface_area);
-    rate.grease += turns * greaseAgeing(life_, phase.temperature);
-    rate.flaw_depth += turns * crackGrowth(life_, revolution_load.rim_stress_range, age.flaw_depth);
-    rate.bearing_turns += turns * bearingWear(life_, phase.load_torque);
+        archardDepth(life.interface_wear_coefficient, revolution_load.interface_sliding, interface_area);
+    rate.grease += turns * greaseAgeing(life, phase.temperature);
+    rate.flaw_depth += turns * crackGrowth(parameters_, revolution_load, age.flaw_depth);
+    rate.bearing_turns += turns * bearingWear(life, phase.load_torque);
+    addFatigue(turns, revolution_load, variation.strength, fatigue);
   }
+  rate.grease *= rate.turns > 0.0 ? greaseLoadFactor(rate.bearing_turns / rate.turns) : 1.0;
   const double per_hour = 3600.0 / time;
   rate.turns *= per_hour;
   rate.flank_wear *= per_hour;
@@ -83,26 +125,37 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   rate.grease *= per_hour;
   rate.flaw_depth *= per_hour;
   rate.bearing_turns *= per_hour;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    rate.fatigue[place] = fatigue[place].sum() * per_hour;
+  }
   return rate;
 }
 
 std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, const DriveAge& age) const
 {
-  if (age.flank_wear >= life_.flank_wear_limit)
+  if (age.flank_wear >= parameters_.life.flank_wear_limit)
   {
     return EndOfLife::FLANK_WEAR;
   }
-  if (age.interface_wear >= life_.interface_wear_limit)
+  if (age.interface_wear >= parameters_.life.interface_wear_limit)
   {
     return EndOfLife::INTERFACE_WEAR;
   }
-  if (age.flaw_depth >= gear_.rim_thickness)
+  if (age.flaw_depth >= parameters_.gear.rim_thickness)
   {
     return EndOfLife::ROOT_CRACK;
   }
   if (spallSize(variation, age.bearing_turns) >= 1.0)
   {
     return EndOfLife::BEARING;
+  }
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    if (age.fatigue[place] >= 1.0)
+    {
+      return fatigueAt(place);
+    }
   }
   return std::nullopt;
 }
@@ -113,12 +166,12 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   constexpr double TOLERANCE = 1e-8;  // of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
-  const Scale scale(life_, gear_, variation);
+  const Scale scale(parameters_, variation);
   const auto rhs = [&](const Entries& entries, Entries& rate, double)
   { rate = scale.from(rates(variation, scale.to(entries))); };
 
   DriveAge age;
-  age.flaw_depth = life_.flaw_depth;
+  age.flaw_depth = parameters_.life.flaw_depth;
   auto stepper = odeint::make_dense_output(TOLERANCE, TOLERANCE, odeint::runge_kutta_dopri5<Entries>());
   stepper.initialize(scale.from(age), 0.0, std::min(1.0, hours));
   Entries entries{};

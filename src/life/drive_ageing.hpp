@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
 #include "life/revolution_load_map.hpp"
+#include "statics/fatigue_law.hpp"
 
 namespace hjt
 {
@@ -18,14 +20,16 @@ UnitVariation nominalDrive(const LifeParameters& parameters);
 class DriveAgeing
 {
 public:
-  DriveAgeing(const LifeParameters& life, const GearParameters& gear, const DutyCycle& duty,
-              const RevolutionLoadMap& load_map)
-    : life_(life), gear_(gear), duty_(duty), load_map_(load_map), turns_per_hour_(duty.turnsPerHour())
+  DriveAgeing(const Parameters& parameters, const DutyCycle& duty, const RevolutionLoadMap& load_map)
+    : parameters_(parameters), fatigue_law_(parameters), duty_(duty), load_map_(load_map)
   {
   }
 
   /// Change of the age by hour, at an age.
   DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
+
+  /// Miner's sums by hour of a new drive whose fatigue strength is `strength` times the median's.
+  std::array<double, STRESS_PLACES> fatigueRates(double strength) const;
 
   /// The first limit that an age has reached.
   std::optional<EndOfLife> ended(const UnitVariation& variation, const DriveAge& age) const;
@@ -44,10 +48,12 @@ public:
             const std::function<void(double, const DriveAge&)>& visit) const;
 
 private:
-  LifeParameters life_;
-  GearParameters gear_;
+  void addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+                  std::array<MinerSum, STRESS_PLACES>& fatigue) const;
+
+  Parameters parameters_;
+  FatigueLaw fatigue_law_;
   DutyCycle duty_;
   const RevolutionLoadMap& load_map_;
-  double turns_per_hour_;
 };
 }  // namespace hjt

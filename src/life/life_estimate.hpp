@@ -45,7 +45,7 @@ public:
     const LifeParameters& life = parameters_.life;
     const DutyCycle duty = record.duty();
     load_map_.cover(duty, {});
-    const DriveAgeing ageing(life, parameters_.gear, duty, load_map_);
+    const DriveAgeing ageing(parameters_, duty, load_map_);
     const UnitVariation nominal = nominalDrive(life);
     LifeEstimate estimate;
     estimate.hours = record.hours();
@@ -58,6 +58,10 @@ public:
     used(EndOfLife::ROOT_CRACK) =
         (age.flaw_depth - life.flaw_depth) / (parameters_.gear.rim_thickness - life.flaw_depth);
     used(EndOfLife::BEARING) = age.bearing_turns / (nominal.bearing_life * (1.0 + nominal.spall_growth));
+    for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+    {
+      used(fatigueAt(place)) = age.fatigue[place];
+    }
     estimate.grease_used = age.grease;
 
     const NominalUse use(ageing, life, GREASE_IS_CHANGED);

@@ -17,6 +17,7 @@ enum Nature
   INTERFACE,
   BEARING_LIFE,
   SPALL_GROWTH,
+  STRENGTH,
   NATURES
 };
 
@@ -55,7 +56,8 @@ RemainingLife::RemainingLife(const LifeParameters& parameters, int particles, st
   {
     const UnitVariation variation = drawVariation(parameters, bearing, random_);
     particle.variation = { std::log(variation.flank_factor), std::log(variation.interface_factor),
-                           std::log(variation.bearing_life), std::log(variation.spall_growth) };
+                           std::log(variation.bearing_life), std::log(variation.spall_growth),
+                           std::log(variation.strength) };
     particle.flank_wear = 0.0;
     particle.interface_wear = 0.0;
   }
@@ -64,12 +66,25 @@ RemainingLife::RemainingLife(const LifeParameters& parameters, int particles, st
 UnitVariation RemainingLife::variationOf(const Particle& particle) noexcept
 {
   return { std::exp(particle.variation[FLANK]), std::exp(particle.variation[INTERFACE]),
-           std::exp(particle.variation[BEARING_LIFE]), std::exp(particle.variation[SPALL_GROWTH]) };
+           std::exp(particle.variation[BEARING_LIFE]), std::exp(particle.variation[SPALL_GROWTH]),
+           std::exp(particle.variation[STRENGTH]) };
+}
+
+/// Miner's sum of a place of a flexspline by a use.
+double RemainingLife::fatigueBy(const Usage& usage, double log_strength, std::size_t place) const noexcept
+{
+  constexpr double LAST = STRENGTHS - 1;
+  const double deviation = parameters_.fatigue_spread > 0.0 ? log_strength / parameters_.fatigue_spread : 0.0;
+  const double at = std::clamp(0.5 * LAST * (1.0 + deviation / STRENGTH_REACH), 0.0, LAST);
+  const auto i = std::min(static_cast<std::size_t>(at), STRENGTHS - 2);
+  const double share = at - static_cast<double>(i);
+  return (1.0 - share) * usage.fatigue[i][place] + share * usage.fatigue[i + 1][place];
 }
 
 void RemainingLife::use(const Usage& usage) noexcept
 {
   bearing_turns_ += usage.bearing_turns;
+  fatigue_.addFatigue(usage, 1.0);
   for (Particle& particle : particles_)
   {
     particle.flank_wear += std::exp(particle.variation[FLANK]) * usage.flank_wear;
@@ -108,7 +123,12 @@ void RemainingLife::read(const WearReading& reading) noexcept
 
 bool RemainingLife::hasEnded(const Particle& particle) const noexcept
 {
-  return particle.flank_wear >= parameters_.flank_wear_limit ||
+  bool broken = false;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    broken = broken || fatigueBy(fatigue_, particle.variation[STRENGTH], place) >= 1.0;
+  }
+  return broken || particle.flank_wear >= parameters_.flank_wear_limit ||
          particle.interface_wear >= parameters_.interface_wear_limit ||
          spallSize(variationOf(particle), bearing_turns_) >= 1.0;
 }
@@ -182,13 +202,22 @@ RemainingHours RemainingLife::remaining(const FutureLoad& future_load) noexcept
   {
     const Particle& particle = particles_[i];
     const UnitVariation variation = variationOf(particle);
-    const std::array<double, 3> hours{
+    const auto until_broken = [&](std::size_t place)
+    {
+      const double strength = particle.variation[STRENGTH];
+      return hoursUntil(future_load, 1.0 - fatigueBy(fatigue_, strength, place),
+                        [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
+    };
+    const std::array<double, 3 + STRESS_PLACES> hours{
       hoursUntil(future_load, (parameters_.flank_wear_limit - particle.flank_wear) / variation.flank_factor,
                  [](const Usage& usage) { return usage.flank_wear; }),
       hoursUntil(future_load, (parameters_.interface_wear_limit - particle.interface_wear) / variation.interface_factor,
                  [](const Usage& usage) { return usage.interface_wear; }),
       hoursUntil(future_load, variation.bearing_life * (1.0 + variation.spall_growth) - bearing_turns_,
-                 [](const Usage& usage) { return usage.bearing_turns; })
+                 [](const Usage& usage) { return usage.bearing_turns; }),
+      until_broken(0),
+      until_broken(1),
+      until_broken(2)
     };
     const auto first = std::min_element(hours.begin(), hours.end());
     result.by_cause[static_cast<std::size_t>(first - hours.begin())] += weights_[i];

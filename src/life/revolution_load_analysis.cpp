@@ -6,15 +6,26 @@
 #include <limits>
 
 #include "base/number_text.hpp"
+#include "base/range.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/variants.hpp"
 
 namespace hjt
 {
+namespace
+{
+void widen(Range& range, double value)
+{
+  range = { std::min(range.min, value), std::max(range.max, value) };
+}
+}  // namespace
+
 RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int positions)
   : parameters_(parameters)
   , positions_(positions)
   , walk_(parameters, positions)
+  , flexspline_stress_(parameters)
+  , tooth_stress_(parameters.gear.teeth_flexspline)
   , interface_(withUnitFriction(parameters).contact)
   , running_(2 * parameters.gear.teeth_flexspline)
 {
@@ -24,29 +35,15 @@ RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int
   }
 }
 
-/// Stress of the rim's outer fibre, where the teeth stand, at tooth i: bending by the change of its curvature, and the
-/// tension of the segment behind it [Pa].
-double RevolutionLoadAnalysis::rimStress(int i) const
-{
-  const RingShape& shape = walk_.ring().shape();
-  const RingModel& ring = walk_.model().ring;
-  const int h = shape.previous(i);
-  const double turn = std::atan2(
-      shape.directions[2 * h] * shape.directions[2 * i + 1] - shape.directions[2 * h + 1] * shape.directions[2 * i],
-      shape.directions[2 * h] * shape.directions[2 * i] + shape.directions[2 * h + 1] * shape.directions[2 * i + 1]);
-  const double curvature = (turn - ring.rest.pitchAngle()) / ring.rest.segmentLength();
-  const double section = parameters_.life.face_width * parameters_.gear.rim_thickness;
-  return 0.5 * parameters_.gear.rim_thickness * parameters_.life.elastic_modulus * curvature +
-         ring.of<RimTension>().tension(shape, i) / section;
-}
-
 RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
   const int teeth = parameters_.gear.teeth_flexspline;
   const double step = TWO_PI / teeth / positions_;  // of the wave generator [rad]
   RevolutionLoad revolution_load;
-  double highest = std::numeric_limits<double>::lowest();
-  double lowest = std::numeric_limits<double>::max();
+  constexpr double NONE = std::numeric_limits<double>::infinity();
+  revolution_load.stress.fill({ NONE, -NONE, 0.0 });
+  Range bending{ NONE, -NONE };
+  Range tension{ NONE, -NONE };
   walk_.under(
       load_torque,
       [&](double velocity_ratio)
@@ -60,11 +57,19 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
               step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
                               model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, running_, velocity_ratio));
         }
+        flexspline_stress_.at(ring, 0, tooth_stress_);
+        for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+        {
+          StressCycle& cycle = revolution_load.stress[place];
+          const StressCycle now = tooth_stress_.cycle(place);
+          cycle = { std::min(cycle.lowest, now.lowest), std::max(cycle.highest, now.highest),
+                    std::max(cycle.shear, now.shear) };
+        }
         for (int i = 0; i < teeth; ++i)
         {
-          const double stress = rimStress(i);
-          highest = std::max(highest, stress);
-          lowest = std::min(lowest, stress);
+          const FlexsplineStress::Parts parts = flexspline_stress_.inToothSpace(ring, i);
+          widen(bending, parts.bending);
+          widen(tension, parts.tension);
         }
         revolution_load.interface_sliding +=
             step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
@@ -74,7 +79,8 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
                          " N.m: " + explanationOf(walk_.status()));
   }
-  revolution_load.rim_stress_range = highest - lowest;
+  revolution_load.bending_range = bending.max - bending.min;
+  revolution_load.tension_range = tension.max - tension.min;
   return revolution_load;
 }
 }  // namespace hjt

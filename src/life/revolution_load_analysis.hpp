@@ -5,6 +5,7 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "life/ageing_laws.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "statics/pitch_walk.hpp"
 
 namespace hjt
@@ -22,11 +23,11 @@ public:
   RevolutionLoad under(double load_torque);
 
 private:
-  double rimStress(int i) const;
-
   Parameters parameters_;
   int positions_;
   PitchWalk walk_;
+  FlexsplineStress flexspline_stress_;
+  ToothStress tooth_stress_;
   InterfaceFriction interface_;
   Eigen::VectorXd running_;  // of the teeth, by the wave generator's angle
 };

@@ -12,9 +12,7 @@ namespace
 {
 RevolutionLoad blend(const RevolutionLoad& a, const RevolutionLoad& b, double share)
 {
-  const auto mix = [share](double from, double to) { return from + share * (to - from); };
-  return { mix(a.flank_sliding, b.flank_sliding), mix(a.interface_sliding, b.interface_sliding),
-           mix(a.rim_stress_range, b.rim_stress_range) };
+  return combined(a, b, [share](double from, double to) { return from + share * (to - from); });
 }
 
 struct Cell
@@ -30,11 +28,10 @@ Cell cellOf(double value, double step, int stages)
   return { static_cast<std::size_t>(index), place - index };
 }
 
-/// Entry by entry.
+/// Entry by entry, in magnitude.
 RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 {
-  return { std::max(a.flank_sliding, b.flank_sliding), std::max(a.interface_sliding, b.interface_sliding),
-           std::max(a.rim_stress_range, b.rim_stress_range) };
+  return combined(a, b, [](double x, double y) { return std::max(std::abs(x), std::abs(y)); });
 }
 }  // namespace
 
@@ -116,13 +113,12 @@ double RevolutionLoadMap::largestError() const
         const RevolutionLoad measured = analysis.under(load);
         const RevolutionLoad mapped = at(load, age.flank_wear, age.interface_wear);
         largest = larger(largest, measured);
-        miss = larger(miss, { std::abs(mapped.flank_sliding - measured.flank_sliding),
-                              std::abs(mapped.interface_sliding - measured.interface_sliding),
-                              std::abs(mapped.rim_stress_range - measured.rim_stress_range) });
+        miss = larger(miss, combined(mapped, measured, std::minus<>()));
       }
     }
   }
+  constexpr auto TOOTH_SPACE = static_cast<std::size_t>(StressPlace::TOOTH_SPACE);
   return std::max({ miss.flank_sliding / largest.flank_sliding, miss.interface_sliding / largest.interface_sliding,
-                    miss.rim_stress_range / largest.rim_stress_range });
+                    miss.stress[TOOTH_SPACE].highest / largest.stress[TOOTH_SPACE].highest });
 }
 }  // namespace hjt

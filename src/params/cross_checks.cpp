@@ -103,6 +103,13 @@ void checkLife(const Parameters& p, Contradictions& check)
   check.require(p.life.bearing_l10 < p.life.bearing_l50, { "life.bearing_l10", "life.bearing_l50" },
                 "life.bearing_l10 = " + numberText(p.life.bearing_l10) +
                     " [h] must be less than life.bearing_l50 = " + numberText(p.life.bearing_l50) + " [h]");
+  check.require(p.life.endurance_limit < p.life.ultimate_strength, { "life.endurance_limit", "life.ultimate_strength" },
+                "life.endurance_limit = " + numberText(p.life.endurance_limit) +
+                    " [Pa] must be less than life.ultimate_strength = " + numberText(p.life.ultimate_strength) +
+                    " [Pa]");
+  check.require(p.life.face_width < p.stress.cup_length, { "life.face_width", "stress.cup_length" },
+                "life.face_width = " + numberText(p.life.face_width) +
+                    " [m] must be less than stress.cup_length = " + numberText(p.stress.cup_length) + " [m]");
   const auto check_limit = [&](const std::string& limit_key, double limit, const std::string& scale_key, double scale)
   {
     check.require(limit <= scale, { limit_key, scale_key },

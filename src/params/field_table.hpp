@@ -246,8 +246,29 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("windows in a row that must agree before the level changes"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         ofOthers("a deviation of this many times the threshold is an error, not a warning"));
+  visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
+        ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
+  visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));
+  visit("stress.cup_length", "m", p.stress.cup_length, Range{ 1e-3, 1.0 },
+        ofOthers("from the open end to the flange, teeth included; more than life.face_width"));
+  visit("stress.coning_restraint", "-", p.stress.coning_restraint, Range{ 0.0, 1.0 },
+        ofOthers("how far the bearing holds the toothed rim from coning: 0 not at all, 1 entirely"));
+  visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
+        ofOthers("how far the flange holds the cup's end from warping: 0 not at all, 1 as if built in"));
+  visit(
+      "stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
+      ofOthers("largest stress over the nominal one in the tooth space, at the transition from the toothed rim to the "
+               "cup, and at the flange"));
+  visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
+        ofOthers("of the fillets at these places"));
   visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
         ofOthers("rated output torque of the catalogue, at which the bearing's lives are given"));
+  visit("life.repeated_peak_torque", "N.m", p.life.repeated_peak_torque, Range{ 1e-3, 1e5 },
+        ofOthers("limit of the catalogue for torques of starting and stopping"));
+  visit("life.momentary_peak_torque", "N.m", p.life.momentary_peak_torque, Range{ 1e-3, 1e5 },
+        ofOthers("limit of the catalogue for a collision"));
+  visit("life.momentary_peak_cycles", "-", p.life.momentary_peak_cycles, Range{ 1.0, 1e15 },
+        ofOthers("deflections of the flexspline that the catalogue allows under momentary peaks"));
   visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
         ofOthers("rated motor speed of the catalogue, at which the bearing's lives are given"));
   visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
@@ -278,9 +299,18 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("rise of temperature that halves the life of the grease"));
   visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
         ofOthers("wear in grease due for a change over wear in fresh grease"));
-  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 }, ofOthers("deepest flaw of a new tooth root"));
-  visit("life.stress_concentration", "-", p.life.stress_concentration, Range{ 1.0, 10.0 },
-        ofOthers("stress at the tooth root over that of the smooth rim"));
+  visit("life.ultimate_strength", "Pa", p.life.ultimate_strength, Range{ 1e7, 1e10 },
+        ofOthers("tensile strength of the flexspline; more than endurance_limit"));
+  visit("life.endurance_limit", "Pa", p.life.endurance_limit, Range{ 1e6, 1e10 },
+        ofOthers("amplitude without mean stress that half of all flexsplines bear for ever"));
+  visit("life.endurance_cycles", "-", p.life.endurance_cycles, Range{ 1e3, 1e12 },
+        ofOthers("cycles at which the S-N curve reaches it"));
+  visit("life.fatigue_exponent", "-", p.life.fatigue_exponent, Range{ 1.0, 50.0 },
+        ofOthers("k of the S-N curve: cycles fall with this power of the amplitude"));
+  visit("life.fatigue_spread", "-", p.life.fatigue_spread, Range{ 0.0, 1.0 },
+        ofOthers("standard deviation of the logarithm of the fatigue strength from drive to drive"));
+  visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 },
+        ofOthers("depth of a crack at a tooth root of the new drive; 0: none"));
   visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
         ofOthers("C of Paris' law: growth by one cycle at a range of 1 MPa sqrt(m)"));
   visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, ofOthers("m of Paris' law"));
@@ -370,6 +400,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.contact_forces_rate", "Hz", p.publish.contact_forces_rate, Range{ 1e-3, 1e6 },
         ofOthers("must divide solver.rate"));
   visit("publish.health_rate", "Hz", p.publish.health_rate, Range{ 1e-3, 1e6 }, ofOthers("must divide solver.rate"));
+  visit("publish.stress_rate", "Hz", p.publish.stress_rate, Range{ 1e-3, 1e6 }, ofOthers("must divide solver.rate"));
   visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 },
         ofOthers("must divide solver.rate"));
 

@@ -45,6 +45,8 @@ inline constexpr auto CHANNELS = std::make_tuple(
                                                  LARGE_MESSAGE_SLOTS, makeContactForces, fillContactForces },
     Channel<harmonic_joint_twin::Health>{ topics::HEALTH, &PublishParameters::health_rate, SMALL_MESSAGE_SLOTS,
                                           makeMessage<harmonic_joint_twin::Health>, fillHealth },
+    Channel<harmonic_joint_twin::Stress>{ topics::STRESS, &PublishParameters::stress_rate, LARGE_MESSAGE_SLOTS,
+                                          makeStress, fillStress },
     Channel<harmonic_joint_twin::Indicators>{ topics::INDICATORS, &PublishParameters::indicators_rate,
                                               LARGE_MESSAGE_SLOTS, makeIndicators, fillIndicators, true },
     Channel<harmonic_joint_twin::Assessment>{ topics::ASSESSMENT, &PublishParameters::indicators_rate,

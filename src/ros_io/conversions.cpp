@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <optional>
 
 #include "ros_io/printable.hpp"
 #include "ros_io/time.hpp"
+#include "statics/fatigue_law.hpp"
 
 namespace hjt
 {
@@ -144,6 +146,58 @@ void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twi
   swapArrays(forces, message);
   gear.fill(forces);
   swapArrays(forces, message);
+}
+
+harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
+{
+  auto message = makeMessage<harmonic_joint_twin::Stress>(parameters);
+  message.places.assign(STRESS_PLACE_NAMES.begin(), STRESS_PLACE_NAMES.end());
+  message.place.assign(std::strlen(STRESS_PLACE_NAMES[0]), ' ');  // the longest
+  for (auto* array : { &message.amplitudes, &message.means, &message.shears, &message.endurance_shares })
+  {
+    array->resize(STRESS_PLACES);
+  }
+  for (auto* array : { &message.tooth_space, &message.transition, &message.flange })
+  {
+    array->resize(static_cast<std::size_t>(parameters.gear.teeth_flexspline));
+  }
+  return message;
+}
+
+bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& message) noexcept
+{
+  const Parameters& parameters = twin.parameters();
+  const FatigueLaw fatigue_law(parameters);
+  ToothStress stress;
+  const auto swap_arrays = [&]
+  {
+    stress.normal[0].swap(message.tooth_space);
+    stress.normal[1].swap(message.transition);
+    stress.normal[2].swap(message.flange);
+  };
+  swap_arrays();  // the twin writes into the message's own
+  const bool found = twin.toothStress(stress);
+  message.header.stamp = toRosTime(twin.stamp());
+  message.largest = 0.0;
+  message.endurance_share = 0.0;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    const StressCycle cycle = stress.cycle(place);
+    message.amplitudes[place] = cycle.amplitude();
+    message.means[place] = cycle.mean();
+    message.shears[place] = cycle.shear;
+    message.endurance_shares[place] = fatigue_law.enduranceShare(place, cycle);
+    message.endurance_share = std::max(message.endurance_share, message.endurance_shares[place]);
+    const double largest = parameters.stress.concentration[place] * cycle.largest();
+    if (largest > message.largest)
+    {
+      message.largest = largest;
+      message.place.assign(STRESS_PLACE_NAMES[place]);
+      message.tooth = static_cast<std::int32_t>(stress.worstTooth(place));
+    }
+  }
+  swap_arrays();
+  return found;
 }
 
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept

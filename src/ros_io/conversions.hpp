@@ -12,6 +12,7 @@
 #include "harmonic_joint_twin/Faults.h"
 #include "harmonic_joint_twin/Health.h"
 #include "harmonic_joint_twin/Indicators.h"
+#include "harmonic_joint_twin/Stress.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "tracking/measured_gear.hpp"
 
@@ -60,6 +61,9 @@ bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForc
 void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept;
 
 /// The solver's state is that of the steps after `since`.
+harmonic_joint_twin::Stress makeStress(const Parameters& parameters);
+bool fillStress(Twin& twin, Stamp since, harmonic_joint_twin::Stress& message) noexcept;
+
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);

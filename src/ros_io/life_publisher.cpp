@@ -162,6 +162,9 @@ void LifePublisher::publish()
     message.interface_wear_used = estimate.usedOf(EndOfLife::INTERFACE_WEAR);
     message.root_crack_used = estimate.usedOf(EndOfLife::ROOT_CRACK);
     message.bearing_used = estimate.usedOf(EndOfLife::BEARING);
+    message.tooth_space_fatigue_used = estimate.usedOf(EndOfLife::TOOTH_SPACE_FATIGUE);
+    message.transition_fatigue_used = estimate.usedOf(EndOfLife::TRANSITION_FATIGUE);
+    message.flange_fatigue_used = estimate.usedOf(EndOfLife::FLANGE_FATIGUE);
     message.grease_used = estimate.grease_used;
     publisher_.publish(message);
   }

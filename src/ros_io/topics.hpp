@@ -18,6 +18,7 @@ constexpr const char* JOINT_STATES = "joint_states";              ///< out, sens
 constexpr const char* ENCODERS = "encoders";                      ///< out, harmonic_joint_twin/Encoders
 constexpr const char* CONTACT_FORCES = "contact_forces";          ///< out, harmonic_joint_twin/ContactForces
 constexpr const char* HEALTH = "health";                          ///< out, harmonic_joint_twin/Health
+constexpr const char* STRESS = "stress";                          ///< out, harmonic_joint_twin/Stress
 constexpr const char* INDICATORS = "indicators";                  ///< out, harmonic_joint_twin/Indicators
 constexpr const char* ASSESSMENT = "assessment";                  ///< out, harmonic_joint_twin/Assessment
 constexpr const char* COMPARISON = "comparison";                  ///< out, harmonic_joint_twin/Comparison

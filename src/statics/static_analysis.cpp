@@ -9,15 +9,19 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "solver/output_balance.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "statics/static_solver.hpp"
 
 namespace hjt
 {
 namespace
 {
-ToothTable tabulateTeeth(const RingEquilibrium& ring)
+ToothTable tabulateTeeth(const RingEquilibrium& ring, const ToothStress& stress)
 {
   ToothTable table;
+  table.stress_tooth_space = stress.normal[0];
+  table.stress_transition = stress.normal[1];
+  table.stress_flange = stress.normal[2];
   const RingModel& model = ring.model();
   const RingShape& shape = ring.shape();
   for (int i = 0; i < shape.teeth(); ++i)
@@ -41,6 +45,13 @@ ToothTable tabulateTeeth(const RingEquilibrium& ring)
   return table;
 }
 
+ToothStress stressOf(const RingEquilibrium& ring, const Parameters& parameters)
+{
+  ToothStress stress(parameters.gear.teeth_flexspline);
+  FlexsplineStress(parameters).at(ring, 0, stress);
+  return stress;
+}
+
 /// Of the housing on the flexspline [N.m].
 double housingTorque(const RingEquilibrium& ring)
 {
@@ -57,7 +68,7 @@ InsertionResult analyseInsertion(const Parameters& parameters)
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   result.status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
   result.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.teeth = tabulateTeeth(ring);
+  result.teeth = tabulateTeeth(ring, stressOf(ring, parameters));
   const ToothTable& teeth = result.teeth;
   const auto force = std::minmax_element(teeth.wave_generator_force.begin(), teeth.wave_generator_force.end());
   const auto tension = std::minmax_element(teeth.rim_tension.begin(), teeth.rim_tension.end());
@@ -115,7 +126,8 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
     row.wave_generator_torque = ring.forces().wave_generator_torque;
     row.housing_torque = housingTorque(ring);
     row.cup_rotation = ring.forces().of<CupTorsion>().rotation;
-    row.teeth = tabulateTeeth(ring);
+    row.stress = stressOf(ring, parameters);
+    row.teeth = tabulateTeeth(ring, row.stress);
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
       const double mesh = std::abs(ring.forces().of<ToothMesh>().flank_force[i]);

@@ -30,6 +30,7 @@ public:
     filter_.read({ age.flank_wear + options_.flank_wear_error * normal_(random_), options_.flank_wear_error,
                    spallSize(variation, age.bearing_turns) + options_.spall_error * normal_(random_),
                    options_.spall_error });
+    filter_.survive();  // fatigue is not seen before it breaks the flexspline
     return filter_.remaining(use_.from(hours, HORIZON * (hours + options_.every), STRETCHES));
   }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "twin/tooth_forces.hpp"
 #include "twin/twin_impl.hpp"
 
@@ -152,6 +153,17 @@ bool Twin::toothForces(ToothForces& out) noexcept
     return false;
   }
   fillToothForces(*ring, 0, out);
+  return true;
+}
+
+bool Twin::toothStress(ToothStress& stress) noexcept
+{
+  const RingEquilibrium* ring = impl_->observed_ring.at(impl_->stepper.dynamics());
+  if (ring == nullptr)
+  {
+    return false;
+  }
+  FlexsplineStress(impl_->parameters).at(*ring, 0, stress);
   return true;
 }
 }  // namespace hjt

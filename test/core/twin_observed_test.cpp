@@ -56,6 +56,7 @@ TEST_P(ObservedTwin, RunsAsOneThatNobodyLooksAt)
   Twin observed = makeTwin();
   observed.watchSignals(true);
   ToothForces forces = observed.makeToothForces();
+  ToothStress stress(observed.parameters().gear.teeth_flexspline);
   std::uint64_t on_surface = 0;
   while (alone.step(DURATION))
   {
@@ -66,6 +67,7 @@ TEST_P(ObservedTwin, RunsAsOneThatNobodyLooksAt)
     if (observed.stamp() % LOOK_PERIOD == 0)
     {
       EXPECT_TRUE(observed.toothForces(forces));
+      EXPECT_TRUE(observed.toothStress(stress));
       EXPECT_EQ(observed.health().solver_state, SolverState::OK);
       observed.signalIndicators();
     }
@@ -82,6 +84,7 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
   Twin twin = makeTwin();
   twin.watchSignals(true);
   ToothForces forces = twin.makeToothForces();
+  ToothStress stress(twin.parameters().gear.teeth_flexspline);
   const std::size_t before = allocationCount();
   for (const Stamp duration : { DURATION, DURATION / 10 })
   {
@@ -90,6 +93,7 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
       if (twin.stamp() % LOOK_PERIOD == 0)
       {
         EXPECT_TRUE(twin.toothForces(forces));
+        EXPECT_TRUE(twin.toothStress(stress));
         twin.health();
       }
     }

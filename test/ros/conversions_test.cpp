@@ -96,6 +96,29 @@ TEST_F(Messages, HoldTheForcesOfEveryTooth)
   EXPECT_EQ(message.mesh_force.data(), place) << "its own array, not another";
 }
 
+TEST_F(Messages, HoldTheStressOfTheFlexspline)
+{
+  auto message = makeStress(parameters_);
+  const double* const place = message.tooth_space.data();
+  EXPECT_TRUE(fillStress(twin_, 0, message));
+  ToothStress stress(parameters_.gear.teeth_flexspline);
+  ASSERT_TRUE(twin_.toothStress(stress));
+  EXPECT_EQ(message.header.stamp, ros::Time(0, 100'000'000));
+  EXPECT_EQ(message.tooth_space, stress.normal[0]);
+  EXPECT_EQ(message.transition, stress.normal[1]);
+  EXPECT_EQ(message.flange, stress.normal[2]);
+  EXPECT_EQ(message.tooth_space.data(), place) << "its own array, not another";
+  EXPECT_EQ(message.places, (std::vector<std::string>{ "tooth space", "transition", "flange" }));
+  EXPECT_EQ(message.place, "tooth space");
+  EXPECT_DOUBLE_EQ(message.largest, parameters_.stress.concentration[0] *
+                                        std::abs(message.tooth_space[static_cast<std::size_t>(message.tooth)]));
+  EXPECT_DOUBLE_EQ(message.amplitudes[0], stress.cycle(0).amplitude());
+  EXPECT_DOUBLE_EQ(message.means[0], stress.cycle(0).mean());
+  EXPECT_GT(message.endurance_share, 0.5);
+  EXPECT_LT(message.endurance_share, 1.0) << "no load";
+  EXPECT_EQ(message.endurance_share, message.endurance_shares[0]);
+}
+
 SignalIndicators someIndicators()
 {
   SignalIndicators indicators;

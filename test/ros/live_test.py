@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Timing
+from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Stress, Timing
 from ros_support import OK, PACKAGE, PATIENCE, WARN, Diagnostics, Listener, listen_to_all, numbers_in, wait_until
 
 NODE = "/joint_twin"
@@ -25,6 +25,7 @@ PERIODS = {               # of the published topics [ns]
     "encoders": (Encoders, 1_000_000),
     "contact_forces": (ContactForces, 10_000_000),
     "health": (Health, 100_000_000),
+    "stress": (Stress, 100_000_000),
 }
 
 

@@ -35,6 +35,24 @@ class Life(tool.ToolTest):
         document = self.succeed_json("life", "age", self.duty(), "--set", "life.flaw_depth=1.0e-4")
         self.assertEqual(document["end"], "root crack")
 
+    def test_overloads_end_a_life_by_fatigue(self):
+        document = self.succeed_json("life", "age", self.duty("10,209.4,284,40\n"))
+        self.assertEqual(document["end"], "tooth space fatigue")
+        self.assertGreater(2.0 * document["turns"], 1e4)  # deflections that the catalogue allows
+        self.assertAlmostEqual(document["fatigue"], 1.0, places=6)
+
+    def test_fatigue_at_the_torques_of_the_catalogue(self):
+        rows = self.succeed_json("life", "fatigue")["rows"]
+        self.assertEqual([row["torque"] for row in rows[::3]], [67.0, 157.0, 284.0])
+        self.assertEqual([row["place"] for row in rows[:3]], ["tooth space", "transition", "flange"])
+        for row in rows:
+            self.assertGreater(row["equivalent"], row["amplitude"])
+            lasts = row["place"] != "tooth space" or row["torque"] < 200.0
+            self.assertEqual(row["cycles"] is None, lasts, row)
+            self.assertEqual(row["allowed"], 1e4 if row["torque"] > 200.0 else None)
+        self.assertGreater(rows[6]["cycles"], rows[6]["allowed"])
+        self.assertEqual(self.succeed_json("life", "fatigue", "--torques", 67)["rows"], rows[:3])
+
     def test_trials_are_the_same_every_time(self):
         trials = ("life", "trials", self.duty(), "--lives", 5, "--every", 5000, "--particles", 200)
         first = self.succeed_json(*trials, "--seed", 3)

@@ -20,7 +20,8 @@ class Simulate(tool.ToolTest):
         with rosbag.Bag(self.path("a.bag")) as bag:
             counts = {topic: info.message_count for topic, info in bag.get_type_and_topic_info().topics.items()}
         self.assertEqual(counts, {"/joint_twin/joint_states": 200, "/joint_twin/encoders": 200,
-                                  "/joint_twin/contact_forces": 20, "/joint_twin/health": 2})
+                                  "/joint_twin/contact_forces": 20, "/joint_twin/health": 2,
+                                  "/joint_twin/stress": 2})
         for _, message in tool.series(self.path("a.bag"), "/joint_twin/joint_states"):
             self.assertEqual(message.name, ["joint_motor", "joint"])
 

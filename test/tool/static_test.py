@@ -134,7 +134,7 @@ class Stiffness(tool.ToolTest):
             self.assertAlmostEqual(row["output_angle"] / angle, 1.0, delta=1e-4)
         self.assertEqual(set(rows[0]), {"torque", "output_angle", "wave_generator_torque", "housing_torque",
                                         "cup_rotation", "teeth_loaded", "mesh_force_max", "wave_generator_force_sum",
-                                        "residual"})
+                                        "residual", "stress", "stress_max"})
 
     def test_the_torques_on_the_gear_add_up_to_none(self):
         for row in self.succeed_json("stiffness", "--torques", "5,-48")["rows"]:
@@ -183,13 +183,18 @@ class Stiffness(tool.ToolTest):
         row = self.succeed_json("stiffness", "--torques", "48", "--teeth")["rows"][0]
         teeth = row["teeth"]
         self.assertEqual(set(teeth), {"tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
-                                      "rim_tension", "bending_force", "mesh_force", "across", "depth", "tilt", "gap"})
+                                      "rim_tension", "bending_force", "mesh_force", "across", "depth", "tilt", "gap",
+                                      "stress_tooth_space", "stress_transition", "stress_flange"})
         for name, values in teeth.items():
             self.assertEqual(len(values), 200, name)
         self.assertEqual(sum(force != 0.0 for force in teeth["mesh_force"]), row["teeth_loaded"])
         self.assertEqual(max(map(abs, teeth["mesh_force"])), row["mesh_force_max"])
         for force, gap, depth in zip(teeth["mesh_force"], teeth["gap"], teeth["depth"]):
             self.assertEqual(force != 0.0, gap < 0.0 < depth)
+        for place, cycle in row["stress"].items():
+            stresses = teeth["stress_" + place.replace(" ", "_")]
+            self.assertEqual((min(stresses), max(stresses)), (cycle["lowest"], cycle["highest"]), place)
+        self.assertEqual(row["stress_max"], max(cycle["notch"] for cycle in row["stress"].values()))
         # The flanks carry the load: their forces across, at the mean radius of the teeth, which changes by 1 %.
         across = sum(teeth["mesh_force"]) * math.cos(math.radians(17.0))
         self.assertAlmostEqual(across * 32.05e-3 / 48.0, 1.0, delta=0.01)

@@ -20,7 +20,7 @@ CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__fil
 JOINT_NAMES = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
                "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 SIMULATED_TOPICS = {"/joint_twin/joint_states", "/joint_twin/encoders", "/joint_twin/contact_forces",
-                    "/joint_twin/health", "/joint_twin/indicators", "/joint_twin/assessment"}
+                    "/joint_twin/health", "/joint_twin/stress", "/joint_twin/indicators", "/joint_twin/assessment"}
 START = 1000000000  # [s] ROS time at which the recordings made here begin
 SLOWER = float(os.environ.get("HJT_PATIENCE", "1"))  # factor on every time limit; above 1 under a sanitizer
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -221,10 +222,34 @@ struct HealthParameters
   double averaging_time{};
 };
 
-/// How fast the drive ages, and when it is worn out (health/ageing_laws.hpp).
+/// Where the flexspline is stressed most, in the order of all arrays by place.
+enum class StressPlace
+{
+  TOOTH_SPACE,  ///< rim between two teeth
+  TRANSITION,   ///< wall of the cup where the toothed rim ends
+  FLANGE        ///< wall of the cup where it is held
+};
+constexpr std::size_t STRESS_PLACES = 3;
+
+/// What turns the shape of the flexspline into stress (statics/flexspline_stress.hpp).
+struct StressParameters
+{
+  double tooth_base{};
+  double wall_thickness{};
+  double cup_length{};
+  double coning_restraint{};
+  double warping_restraint{};
+  std::array<double, STRESS_PLACES> concentration{};
+  std::array<double, STRESS_PLACES> notch_radius{};
+};
+
+/// How fast the drive ages, and when it is worn out (life/ageing_laws.hpp).
 struct LifeParameters
 {
   double rated_torque{};
+  double repeated_peak_torque{};
+  double momentary_peak_torque{};
+  double momentary_peak_cycles{};
   double rated_speed{};
   double bearing_l10{};
   double bearing_l50{};
@@ -241,8 +266,12 @@ struct LifeParameters
   double grease_temperature{};
   double grease_halving{};
   double grease_wear_factor{};
+  double ultimate_strength{};
+  double endurance_limit{};
+  double endurance_cycles{};
+  double fatigue_exponent{};
+  double fatigue_spread{};
   double flaw_depth{};
-  double stress_concentration{};
   double crack_coefficient{};
   double crack_exponent{};
   double crack_threshold{};
@@ -333,6 +362,7 @@ struct PublishParameters
   double encoders_rate{};
   double contact_forces_rate{};
   double health_rate{};
+  double stress_rate{};
   double indicators_rate{};
 };
 
@@ -398,6 +428,7 @@ struct Parameters
   SensorParameters sensors;
   HealthParameters health;
   IndicatorParameters indicators;
+  StressParameters stress;
   LifeParameters life;
   InputParameters input;
   TelemetryParameters telemetry;

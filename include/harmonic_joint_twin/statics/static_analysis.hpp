@@ -6,6 +6,7 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/solve_status.hpp"
+#include "harmonic_joint_twin/statics/tooth_stress.hpp"
 
 namespace hjt
 {
@@ -20,6 +21,10 @@ struct ToothTable
   std::vector<double> rim_tension;           ///< to the next tooth [N]
   std::vector<double> bending_force;         ///< of the segment to the next tooth [N]
   std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
+  // Nominal normal stress by place, see ToothStress.
+  std::vector<double> stress_tooth_space;  ///< [Pa]
+  std::vector<double> stress_transition;   ///< [Pa]
+  std::vector<double> stress_flange;       ///< [Pa]
   // Where it stands in its space of the circular spline, see ToothPlace.
   std::vector<double> across;  ///< [m]
   std::vector<double> depth;   ///< [m]
@@ -70,6 +75,7 @@ struct StiffnessRow
   int teeth_loaded{};
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_sum{};  ///< [N]
+  ToothStress stress;
   ToothTable teeth;
 };
 /// One row a torque; each is approached from no load, so that no row depends on another.

@@ -13,6 +13,7 @@
 #include "harmonic_joint_twin/model/lobe_loads.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/sensors/encoder_readings.hpp"
+#include "harmonic_joint_twin/statics/tooth_stress.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "harmonic_joint_twin/twin/fault_schedule.hpp"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
@@ -140,6 +141,8 @@ public:
   /// Fills the arrays at the current instant; on the response surface this solves a full ring of its own. False: that
   /// found no equilibrium and the arrays stay as they were.
   bool toothForces(ToothForces& forces) noexcept;
+  /// The same for the stress of the flexspline; `stress`: sized for its teeth.
+  bool toothStress(ToothStress& stress) noexcept;
   /// At the current instant. The solver's state is that of the steps after `since` [ns]; of all since the reset if
   /// `since` is not before the current instant.
   HealthReport health(Stamp since = std::numeric_limits<Stamp>::min()) const noexcept;

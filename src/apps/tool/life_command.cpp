@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "apps/common/report.hpp"
 
 #include "life/drive_ageing.hpp"
+#include "life/revolution_load_analysis.hpp"
+#include "statics/fatigue_law.hpp"
 #include "studies/life_trials.hpp"
 
 namespace hjt
@@ -45,7 +49,7 @@ struct LifeBench
     : parameters(loadParameters(options))
     , duty(DutyCycle::fromFile(options.duty))
     , load_map(measure(parameters, duty, options.positions))
-    , ageing(parameters.life, parameters.gear, duty, load_map)
+    , ageing(parameters, duty, load_map)
   {
   }
 
@@ -74,6 +78,10 @@ Column<AgeRow> ofAge(const char* key, double DriveAge::*value)
 {
   return { key, [value](const AgeRow& row) { return row.age.*value; } };
 }
+Column<AgeRow> fatigueColumn(const char* key, StressPlace place)
+{
+  return { key, [place](const AgeRow& row) { return row.age.fatigue[static_cast<std::size_t>(place)]; } };
+}
 const std::vector<Column<AgeRow>> AGE_COLUMNS{ { "hours", &AgeRow::hours },
                                                ofAge("turns", &DriveAge::turns),
                                                ofAge("flank_wear", &DriveAge::flank_wear),
@@ -82,21 +90,104 @@ const std::vector<Column<AgeRow>> AGE_COLUMNS{ { "hours", &AgeRow::hours },
                                                ofAge("flaw_depth", &DriveAge::flaw_depth),
                                                ofAge("bearing_turns", &DriveAge::bearing_turns),
                                                { "bearings_failed", &AgeRow::bearings_failed },
-                                               { "spall", &AgeRow::spall } };
+                                               { "spall", &AgeRow::spall },
+                                               fatigueColumn("fatigue_tooth_space", StressPlace::TOOTH_SPACE),
+                                               fatigueColumn("fatigue_transition", StressPlace::TRANSITION),
+                                               fatigueColumn("fatigue_flange", StressPlace::FLANGE) };
+
+/// One place under one load: what the new flexspline bears in a turn, and for how long.
+struct FatigueRow
+{
+  double torque{};
+  std::size_t place{};
+  StressCycle cycle;
+  double equivalent{};   ///< amplitude without mean stress, at the notch [Pa]
+  double cycles{};       ///< of half of all flexsplines; infinite below the endurance limit
+  double cycles_weak{};  ///< of the weakest hundredth
+  double allowed{};      ///< by the catalogue; infinite up to the repeated peak torque
+};
+const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
+  { "torque", &FatigueRow::torque, "torque [N.m]" },
+  { "place", [](const FatigueRow& row) { return STRESS_PLACE_NAMES[row.place]; }, "place" },
+  { "amplitude", [](const FatigueRow& row) { return row.cycle.amplitude(); }, "amplitude [Pa]" },
+  { "mean", [](const FatigueRow& row) { return row.cycle.mean(); }, "mean [Pa]" },
+  { "shear", [](const FatigueRow& row) { return row.cycle.shear; }, "shear [Pa]" },
+  { "equivalent", &FatigueRow::equivalent, "at the notch, no mean [Pa]" },
+  { "cycles", &FatigueRow::cycles, "cycles of half [-]" },
+  { "cycles_weak", &FatigueRow::cycles_weak, "of the weakest 1 % [-]" },
+  { "allowed", &FatigueRow::allowed, "catalogue allows [-]" }
+};
+
+std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque, const RevolutionLoad& revolution_load)
+{
+  constexpr double WEAKEST_HUNDREDTH = -2.326;  // standard deviations
+  const FatigueLaw fatigue_law(parameters);
+  const double weak = std::exp(WEAKEST_HUNDREDTH * parameters.life.fatigue_spread);
+  const auto lasts = [&](double share) { return 1.0 / fatigue_law.damage(share, false); };
+  std::vector<FatigueRow> rows;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    const StressCycle& cycle = revolution_load.stress[place];
+    const double share = fatigue_law.enduranceShare(place, cycle);
+    const bool lasting = std::abs(torque) <= parameters.life.repeated_peak_torque;
+    rows.push_back({ torque, place, cycle, fatigue_law.equivalentAmplitude(place, cycle), lasts(share),
+                     lasts(share / weak), lasting ? HUGE_VAL : parameters.life.momentary_peak_cycles });
+  }
+  return rows;
+}
 
 /// A phase of the duty cycle and what the fresh drive bears in it.
 struct FreshPhase
 {
   DutyPhase phase;
   RevolutionLoad revolution_load;
+  std::vector<FatigueRow> fatigue;
 };
 const std::vector<Column<FreshPhase>> PHASE_COLUMNS{
   { "load_torque", [](const FreshPhase& fresh) { return fresh.phase.load_torque; } },
   { "turns_per_cycle", [](const FreshPhase& fresh) { return fresh.phase.turns(); } },
   { "flank_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.flank_sliding; } },
   { "interface_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.interface_sliding; } },
-  { "rim_stress_range", [](const FreshPhase& fresh) { return fresh.revolution_load.rim_stress_range; } }
+  { "fatigue", [](const FreshPhase& fresh) { return Table(FATIGUE_COLUMNS, fresh.fatigue).rows(); } }
 };
+
+struct FatigueOptions : CommonOptions
+{
+  std::vector<double> torques;
+  int positions{ 16 };
+};
+
+int fatigue(const FatigueOptions& options)
+{
+  const Parameters parameters = loadParameters(options);
+  const LifeParameters& life = parameters.life;
+  RevolutionLoadAnalysis analysis(parameters, options.positions);
+  std::vector<FatigueRow> rows;
+  for (const double torque :
+       options.torques.empty() ?
+           std::vector<double>{ life.rated_torque, life.repeated_peak_torque, life.momentary_peak_torque } :
+           options.torques)
+  {
+    for (const FatigueRow& row : fatigueRows(parameters, torque, analysis.under(torque)))
+    {
+      rows.push_back(row);
+    }
+  }
+  printReport(options.json, {}, { { "rows", { FATIGUE_COLUMNS, rows } } });
+  return EXIT_DONE;
+}
+
+void declareFatigue(Command& command, FatigueOptions& options)
+{
+  command.add("--torques", options.torques,
+              "loads at the output [N.m]; default: rated, repeated and momentary peak torque of the catalogue");
+  command.add("--positions", options.positions, "wave generator angles per tooth pitch").range(1, 100000);
+  addCommonOptions(command, options);
+}
+
+const Subcommand FATIGUE{ Subject::STUDY, "life fatigue",
+                          "stress of the flexspline over a turn, and the cycles that it lasts", declareFatigue,
+                          fatigue };
 
 int age(const AgeOptions& options)
 {
@@ -114,7 +205,8 @@ int age(const AgeOptions& options)
   std::vector<FreshPhase> phases;
   for (const DutyPhase& phase : bench.duty.phases)
   {
-    phases.push_back({ phase, bench.load_map.at(phase.load_torque, 0.0, 0.0) });
+    const RevolutionLoad fresh = bench.load_map.at(phase.load_torque, 0.0, 0.0);
+    phases.push_back({ phase, fresh, fatigueRows(bench.parameters, phase.load_torque, fresh) });
   }
   std::vector<ReportLine> lines{
     { "hours", "hours of use", life.hours, "h" },
@@ -122,7 +214,9 @@ int age(const AgeOptions& options)
     { "turns", "turns of the motor", life.age.turns },
     { "flank_wear", "flank wear", life.age.flank_wear, "m" },
     { "interface_wear", "interface wear", life.age.interface_wear, "m" },
-    { "flaw_depth", "flaw at the tooth root", life.age.flaw_depth, "m" },
+    { "flaw_depth", "crack at the tooth root", life.age.flaw_depth, "m" },
+    { "fatigue", "fatigue of the flexspline (1: broken)",
+      *std::max_element(life.age.fatigue.begin(), life.age.fatigue.end()) },
     { "", "bearings failed by then", bearing.failedBy(life.age.bearing_turns) },
     { "phases", "", Table(PHASE_COLUMNS, phases).rows() },
   };
@@ -138,7 +232,7 @@ int age(const AgeOptions& options)
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
   CsvWriter csv(path, { "life", "hours", "remaining", "q05", "q10", "q50", "q90", "q95", "flank", "interface",
-                        "bearing", "end" });
+                        "bearing", "tooth_space", "transition", "flange", "end" });
   for (std::size_t i = 0; i < lives.size(); ++i)
   {
     for (const LifeForecast& forecast : lives[i].forecasts)
@@ -161,7 +255,7 @@ int trials(const TrialsOptions& options)
   trial_options.grease_changes = options.grease_changes;
   const std::vector<LifeTrial> lives =
       runLifeTrials(bench.parameters, bench.ageing, trial_options, options.hours, showProgress("living"));
-  std::array<int, 4> ends{};
+  std::array<int, ENDS_OF_LIFE> ends{};
   int unended = 0;
   for (const LifeTrial& trial : lives)
   {
@@ -178,6 +272,9 @@ int trials(const TrialsOptions& options)
                               { "interface_wear", "ended by interface wear", ends[1] },
                               { "root_crack", "ended by a root crack", ends[2] },
                               { "bearing", "ended by the bearing", ends[3] },
+                              { "tooth_space_fatigue", "ended by fatigue of the tooth space", ends[4] },
+                              { "transition_fatigue", "ended by fatigue of the transition", ends[5] },
+                              { "flange_fatigue", "ended by fatigue of the flange", ends[6] },
                               { "unended", "still in use at the end", unended },
                               { "forecasts", "forecasts", all.forecasts },
                               { "coverage_80", "", all.share() },

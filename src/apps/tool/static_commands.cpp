@@ -10,6 +10,7 @@
 #include "apps/common/text_table.hpp"
 
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "statics/fatigue_law.hpp"
 
 namespace hjt
 {
@@ -28,7 +29,10 @@ const std::vector<ToothColumn> RING_COLUMNS{ { "tooth_x", &ToothTable::tooth_x }
                                              { "wave_generator_force", &ToothTable::wave_generator_force },
                                              { "rim_tension", &ToothTable::rim_tension },
                                              { "bending_force", &ToothTable::bending_force },
-                                             { "mesh_force", &ToothTable::mesh_force } };
+                                             { "mesh_force", &ToothTable::mesh_force },
+                                             { "stress_tooth_space", &ToothTable::stress_tooth_space },
+                                             { "stress_transition", &ToothTable::stress_transition },
+                                             { "stress_flange", &ToothTable::stress_flange } };
 /// Only where there is a circular spline.
 const std::vector<ToothColumn> SPACE_COLUMNS{ { "across", &ToothTable::across },
                                               { "depth", &ToothTable::depth },
@@ -170,6 +174,35 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
   csv.close();
 }
 
+/// The three places of a row, each with its nominal stresses and those at the notch.
+Json stressJson(const Parameters& parameters, const StiffnessRow& row)
+{
+  const FatigueLaw fatigue_law(parameters);
+  Json json;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    const StressCycle cycle = row.stress.cycle(place);
+    Json& at = json[STRESS_PLACE_NAMES[place]];
+    at["lowest"] = cycle.lowest;
+    at["highest"] = cycle.highest;
+    at["shear"] = cycle.shear;
+    at["notch"] = parameters.stress.concentration[place] * cycle.largest();
+    at["endurance_share"] = fatigue_law.enduranceShare(place, cycle);
+  }
+  return json;
+}
+
+/// The largest stress at a notch [Pa].
+double largestStress(const Parameters& parameters, const StiffnessRow& row)
+{
+  double largest = 0.0;
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    largest = std::max(largest, parameters.stress.concentration[place] * row.stress.cycle(place).largest());
+  }
+  return largest;
+}
+
 int stiffness(const StiffnessOptions& options)
 {
   const Parameters parameters = loadParameters(options);
@@ -188,6 +221,8 @@ int stiffness(const StiffnessOptions& options)
     writeTeeth(options.csv, rows);
   }
   std::vector<Column<StiffnessRow>> columns = STIFFNESS_COLUMNS;
+  columns.push_back({ "stress_max", [&](const StiffnessRow& row) { return largestStress(parameters, row); }, "" });
+  columns.push_back({ "stress", [&](const StiffnessRow& row) { return stressJson(parameters, row); }, "" });
   if (options.teeth)
   {
     columns.push_back({ "teeth", teethJson, "" });
@@ -208,7 +243,9 @@ void declareStiffness(Command& command, StiffnessOptions& options)
   addCommonOptions(command, options);
   command
       .flag("--teeth", options.teeth,
-            "every tooth's forces [N], place in its space [m], tilt [rad] and gap to the nearer flank [m]; with --json")
+            "every tooth's forces [N], nominal stresses [Pa], place in its space [m], tilt [rad] and gap to the nearer "
+            "flank "
+            "[m]; with --json")
       .needs("--json");
 }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/statics/tooth_stress.hpp"
+
+namespace hjt
+{
+/// S-N curve of the flexspline: Basquin's line down to the endurance limit, Goodman's mean stress, Peterson's notch
+/// sensitivity. Sources: docs/life.md.
+class FatigueLaw
+{
+public:
+  explicit FatigueLaw(const Parameters& parameters)
+    : ultimate_(parameters.life.ultimate_strength)
+    , limit_(parameters.life.endurance_limit)
+    , cycles_(parameters.life.endurance_cycles)
+    , exponent_(parameters.life.fatigue_exponent)
+  {
+    const double length = 0.0254e-3 * std::pow(2070e6 / ultimate_, 1.8);  // Peterson, steels [m]
+    for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+    {
+      const double sensitivity = 1.0 / (1.0 + length / parameters.stress.notch_radius[place]);
+      notch_factor_[place] = 1.0 + sensitivity * (parameters.stress.concentration[place] - 1.0);
+    }
+  }
+
+  /// Fatigue notch factor of a place [-].
+  double notchFactor(std::size_t place) const noexcept { return notch_factor_[place]; }
+
+  /// Amplitude without mean stress that does as much damage at the notch of a place [Pa]. Compression is no help.
+  double equivalentAmplitude(std::size_t place, const StressCycle& cycle) const noexcept
+  {
+    constexpr double LEAST_MARGIN = 1e-3;  // what breaks at once counts as a large amplitude
+    const double mean =
+        notch_factor_[place] * StressCycle::equivalent(std::max(cycle.mean(), 0.0), cycle.shear) / ultimate_;
+    return notch_factor_[place] * cycle.amplitude() / std::max(1.0 - mean, LEAST_MARGIN);
+  }
+
+  /// Share of the endurance limit [-].
+  double enduranceShare(std::size_t place, const StressCycle& cycle) const noexcept
+  {
+    return equivalentAmplitude(place, cycle) / limit_;
+  }
+
+  /// Damage by one cycle of a share of the endurance limit: 1 over the cycles to failure [-].
+  /// `overloaded`: the drive also bears cycles above the limit, which take those below it along (Haibach: exponent
+  /// 2 k - 1); without, these do no damage.
+  double damage(double share, bool overloaded) const noexcept
+  {
+    if (share < 1.0 && !overloaded)
+    {
+      return 0.0;
+    }
+    return std::pow(share, share < 1.0 ? 2.0 * exponent_ - 1.0 : exponent_) / cycles_;
+  }
+
+private:
+  double ultimate_;
+  double limit_;
+  double cycles_;
+  double exponent_;
+  std::array<double, STRESS_PLACES> notch_factor_{};
+};
+
+/// Miner's sum over loads of one place: those below the endurance limit count if any lies above it.
+class MinerSum
+{
+public:
+  /// `share` of the endurance limit, of the strength at hand.
+  void add(const FatigueLaw& law, double cycles, double share) noexcept
+  {
+    (share < 1.0 ? below_ : above_) += cycles * law.damage(share, true);
+  }
+
+  double sum() const noexcept { return above_ > 0.0 ? above_ + below_ : 0.0; }
+
+private:
+  double below_{};
+  double above_{};
+};
+}  // namespace hjt
