@@ -76,6 +76,8 @@ void MeasuredGearPublisher::fillHealth(Stamp stamp, const Comparison& comparison
   message.lobe_asymmetry = lobes.asymmetry;
   message.wave_generator_load = lobes.wave_generator_force;
   message.friction_torque = std::abs(comparison.friction_torque) / ratio_;
+  message.grease_temperature = comparison.temperature;
+  message.housing_temperature = comparison.temperature;
   message.motor_torque = torque_per_current_ * (comparison.current.measured - current_offset_);
   message.joint_torque = comparison.joint_torque;
   message.solver_residual = gear_.residual();

@@ -125,7 +125,7 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
-  , temperature_(parameters.input.temperature)
+  , grease_(parameters)
   , follower_(makeFollower(parameters, mode, surface_source))
   , watch_(parameters)
 {
@@ -203,6 +203,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   {
     sample->temperature = temperatures_.at(sample->time);
   }
+  const bool is_temperature_received = std::isfinite(sample->temperature);
+  sample->temperature = grease_.at(*sample);
 
   const std::optional<double> received = loadAt(sample->time);
   const bool is_all = received && holdsAll(load_source_);
@@ -219,10 +221,12 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.current = { sample->current, sample->current, 0.0 };
   now.load_torque = sample->load;
   now.load_provided = received.has_value();
-  now.temperature = sample->temperatureOr(temperature_);
-  now.temperature_received = std::isfinite(sample->temperature);
+  now.temperature = sample->temperature;
+  now.temperature_received = is_temperature_received;
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
+  grease_.book(sample->velocity, now.friction_torque,
+               telemetry_.torque_per_current * (sample->current - telemetry_.current_offset) / ratio_);
   if (!is_known)
   {
     now.current.band = 0.0;  // what the load makes of the current cannot be judged

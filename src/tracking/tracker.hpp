@@ -10,6 +10,7 @@
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
 #include "tracking/delay_estimate.hpp"
+#include "tracking/grease_temperature.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/signal_watch.hpp"
@@ -40,8 +41,8 @@ struct Comparison
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
                              ///< expects one, no band
-  double temperature{};      ///< that the prediction was made at [degC]
-  bool temperature_received{};  ///< it was received; else as configured
+  double temperature{};      ///< of the grease, that the prediction was made at [degC]
+  bool temperature_received{};  ///< it comes from a received one; else as configured
   bool sticking{};              ///< friction holds the joint: any current within the band fits
   bool after_gap{};             ///< first after a gap in the telemetry
 
@@ -129,7 +130,7 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;  // of rows without one [degC]
+  GreaseTemperature grease_;
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};
