@@ -36,10 +36,19 @@ class Row:
     value: float
     unit: str
     reason: str
+    known: bool = False  # that it does not hold; the page says why
 
     @property
     def holds(self):
         return self.bound.holds(self.value)
+
+    @property
+    def fails(self):
+        return not self.holds and not self.known
+
+    @property
+    def verdict(self):
+        return "holds" if self.holds else "*does not hold*" if self.known else "**fails**"
 
 
 @dataclass
@@ -108,11 +117,12 @@ class Page:
         self._flush()
         self.lines += markdown_table(header, rows) + [""]
 
-    def check(self, name, quantity, source, bound, value, unit, reason):
-        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is."""
+    def check(self, name, quantity, source, bound, value, unit, reason, known=False):
+        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: that it
+        does not hold, which the text of the section explains."""
         if any(row.name == name for row in self.rows):
             raise ValueError(f"two rows are called {name}")
-        row = Row(name, quantity, source, bound, float(value), unit, reason)
+        row = Row(name, quantity, source, bound, float(value), unit, reason, known)
         self.rows.append(row)
         self.pending.append(row)
 
@@ -137,7 +147,7 @@ class Page:
             header = ["row", "quantity", "source", "expected", "twin", "tolerance", "verdict"]
             cells = [[f"`{row.name}`", row.quantity, row.source, with_unit(row.bound.expected(), row.unit),
                       with_unit(number(row.value), row.unit), f"{row.bound.tolerance(row.unit)}: {row.reason}",
-                      "holds" if row.holds else "**fails**"] for row in self.pending]
+                      row.verdict] for row in self.pending]
             self.lines += markdown_table(header, cells) + [""]
             self.pending = []
 

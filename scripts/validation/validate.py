@@ -20,6 +20,7 @@ SECTIONS = {
     "stress": "Stress and fatigue",
     "manufacture": "Errors of manufacture",
     "drives": "Real drives",
+    "heat": "Heat",
     "size14": "Size 14",
     "dynamics": "The quasi-static claim",
 }
@@ -31,7 +32,8 @@ of real drives. Every number and figure below comes from runs of `joint_twin`; o
 
     scripts/validate
 
-It exits 0 only if every verdict below is *holds*; otherwise it names the rows that fail and exits 1. `scripts/validate
+It exits 0 only if no verdict below is **fails**; otherwise it names the rows that fail and exits 1. A row that is known
+not to hold says *does not hold*, and its section says why. `scripts/validate
 --set contact.stiffness=1.1e+8` shows the effect of a wrong parameter (the page is then written to the folder of
 `--out`, never over this one).
 """
@@ -50,10 +52,14 @@ def build_section(name, settings):
 
 def write_page(path, pages):
     rows = [row for page in pages for row in page.rows]
-    failing = [row for row in rows if not row.holds]
+    failing = [row for row in rows if row.fails]
+    open_rows = sum(row.known and not row.holds for row in rows)
     summary = [[f"[{SECTIONS[page.section]}](#{anchor(SECTIONS[page.section])})", len(page.rows),
                 sum(row.holds for row in page.rows)] for page in pages]
-    lines = [HEAD, f"**{len(rows)} rows; " + (f"{len(failing)} fail.**" if failing else "all hold.**"), ""]
+    verdict = f"{len(failing)} fail" if failing else "all hold"
+    if open_rows:
+        verdict = f"{open_rows} known not to hold, " + (verdict if failing else "all others hold")
+    lines = [HEAD, f"**{len(rows)} rows; {verdict}.**", ""]
     lines += markdown_table(["section", "rows", "hold"], summary) + [""]
     for page in pages:
         lines += [f"## {SECTIONS[page.section]}", ""] + page.lines
@@ -70,12 +76,14 @@ def anchor(title):
 def report(pages):
     for page in pages:
         for row in page.rows:
-            if not row.holds:
+            if row.fails:
                 print(f"FAILS {row.name}: {row.quantity}: {row.bound.expected()} expected "
                       f"({row.bound.tolerance(row.unit)}), {row.value:.6g} {row.unit} came out")
     rows = [row for page in pages for row in page.rows]
-    failing = sum(not row.holds for row in rows)
-    print(f"{len(rows)} rows, {len(rows) - failing} hold, {failing} fail")
+    failing = sum(row.fails for row in rows)
+    holding = sum(row.holds for row in rows)
+    known = len(rows) - holding - failing
+    print(f"{len(rows)} rows, {holding} hold, {failing} fail" + (f", {known} known not to hold" if known else ""))
     return failing
 
 

@@ -13,8 +13,9 @@ namespace hjt
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
 ///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
-/// where nu  viscosity of the base oil after Ubbelohde and Walther (DIN 51563) [mm^2/s],
-///           lg lg(nu + 0.7) = lg lg(nu_0 + 0.7) - m lg(T / T_0), T in kelvin
+/// where nu  viscosity that the grease acts with: that of its base oil times a factor known at T_0 [mm^2/s];
+///           the oil's after Walther (ASTM D341), T in kelvin:
+///           lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
 ///       n   in rpm, d_m in mm
 ///       F   sum of the contact forces between wave generator and flexspline [N]
 ///       F_race  ball forces of the bearing's own outer race, bent to the ellipse [N]
@@ -53,14 +54,15 @@ public:
     return 1e-3 * (speed_part + load_part);
   }
 
-  /// Kinematic viscosity of the base oil [m^2/s] at a temperature [degC].
+  /// Kinematic viscosity that the grease acts with [m^2/s] at a temperature [degC].
   double viscosity(double temperature) const noexcept
   {
     constexpr double ZERO_CELSIUS = 273.15;  // K
-    constexpr double OFFSET = 0.7;           // mm^2/s
-    const double known = std::log10(1e6 * parameters_.viscosity + OFFSET);
+    constexpr double OFFSET = 0.7;           // mm^2/s; DIN 51563 has 0.8
+    const double known = std::log10(1e6 * parameters_.oil_viscosity + OFFSET);
     const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
-    return viscosity_factor_ * 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
+    const double oil = 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
+    return viscosity_factor_ * parameters_.viscosity / parameters_.oil_viscosity * oil;
   }
 
 private:

@@ -18,7 +18,7 @@ struct ToothEngagement
   double xi;           ///< across, from where the space would be in the perfect gear [m]
   double zeta;         ///< along the axis [m]
   double tooth_ahead;  ///< by errors of manufacture: the tooth's less the space's, across [m]
-  double space_out;    ///< by errors of manufacture: the space's, along its axis [m]
+  double space_out;    ///< by errors of manufacture: the space's less the tooth's, along its axis [m]
 };
 
 /// Derivatives of a tooth's energy by xi and zeta.

@@ -47,13 +47,14 @@ ToothMesh::ToothMesh(const MeshParameters& parameters, const GearParameters& gea
   : spaces_(gear.teeth_circular_spline)
   , mid_height_(gear.toothMidHeight())
   , tip_offset_(0.5 * gear.tooth_height_flexspline - gear.tip_radius_circular_spline)
-  , reach_(-tip_offset_ - mid_height_ + errors.space_along.minCoeff())
+  , reach_(-tip_offset_ - mid_height_ + errors.space_along.minCoeff() - errors.tooth_along.maxCoeff())
   , depth_(parameters.engagement_depth)
   , smoothing_(parameters.smoothing)
   , cos_flank_(std::cos(parameters.flank_angle))
   , half_space_(std::tan(PI / gear.teeth_circular_spline))
   , profile_(parameters, gear)
   , tooth_across_(errors.tooth_across)
+  , tooth_along_(errors.tooth_along)
   , stiffness_(Eigen::VectorXd::Constant(gear.teeth_flexspline, parameters.stiffness))
   , clearance_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
   , tip_loss_(Eigen::VectorXd::Zero(gear.teeth_flexspline))
@@ -83,8 +84,13 @@ ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, dou
   const Chord chord = shape.chord(i);
   const double px = shape.points[2 * i] + mid_height_ * chord.normal.x();
   const double py = shape.points[2 * i + 1] + mid_height_ * chord.normal.y();
-  return { { rx, ry }, { -ry, rx }, chord, py * rx - px * ry, px * rx + py * ry, tooth_across_[i] - space.across,
-           space.along };
+  return { { rx, ry },
+           { -ry, rx },
+           chord,
+           py * rx - px * ry,
+           px * rx + py * ry,
+           tooth_across_[i] - space.across,
+           space.along - tooth_along_[i] };
 }
 
 /// Of a tooth that touches.
@@ -145,6 +151,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
   const int* __restrict__ space = shape.space.data();
   const Space* __restrict__ spaces = space_.data();
   const double* __restrict__ ahead = tooth_across_.data();
+  const double* __restrict__ out = tooth_along_.data();
   const double* __restrict__ clearance = clearance_.data();
   const double* __restrict__ lost = tip_loss_.data();
   const double mid_height = mid_height_;
@@ -156,7 +163,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
     const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
-    const double zeta = stand.zeta - own.along;
+    const double zeta = stand.zeta + out[i] - own.along;
     const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
     depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
   };

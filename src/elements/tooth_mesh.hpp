@@ -32,7 +32,7 @@ struct ToothPlace
 /// where    P_i     tooth at mid-height, X_i + z_t n_i, n_i outward normal of the chord X_{i+1} - X_{i-1}   [m]
 ///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0,
 ///                  plus the error of the tooth, minus that of the space                                    [m]
-///          zeta_i  P_i along that axis, minus the error of the space                                       [m]
+///          zeta_i  P_i along that axis, plus the error of the tooth, minus that of the space               [m]
 ///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
 ///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
 ///          d_i     depth of the tip below the circular spline's tip circle,
@@ -115,6 +115,7 @@ private:
   ToothProfile profile_;
   std::vector<Space> space_;
   Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
+  Eigen::VectorXd tooth_along_;
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd clearance_;
   Eigen::VectorXd tip_loss_;

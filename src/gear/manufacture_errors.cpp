@@ -87,9 +87,17 @@ Eigen::VectorXd circularSplinePitch(const ManufactureParameters& manufacture, co
 
 ManufactureErrors::ManufactureErrors(const ManufactureParameters& manufacture, const GearParameters& gear)
   : tooth_across(flexsplinePitch(manufacture, gear))
+  , tooth_along(gear.teeth_flexspline)
   , space_across(circularSplinePitch(manufacture, gear))
   , space_along(gear.teeth_circular_spline)
 {
+  const auto& [out_x, out_y] = manufacture.flexspline_eccentricity;
+  for (int i = 0; i < gear.teeth_flexspline; ++i)
+  {
+    const double a = TWO_PI * i / gear.teeth_flexspline;
+    tooth_across[i] += out_y * std::cos(a) - out_x * std::sin(a);
+    tooth_along[i] = out_x * std::cos(a) + out_y * std::sin(a);
+  }
   const auto& [x, y] = manufacture.circular_spline_eccentricity;
   const auto& [cosine, sine] = manufacture.circular_spline_ellipticity;
   for (int k = 0; k < gear.teeth_circular_spline; ++k)

@@ -26,6 +26,9 @@ Eigen::VectorXd circularSplinePitch(const ManufactureParameters& manufacture, co
 /// Where the teeth of the flexspline and the spaces of the circular spline stand off their places, each at its own
 /// place in the axes of the perfect gear.
 ///
+/// Flexspline, a the angle of a tooth at rest: its pitch deviations, and
+/// eccentricity (x, y):  along x cos a + y sin a,    across y cos a - x sin a            (run-out of the teeth)
+///
 /// Circular spline, a the angle from space 0: its pitch deviations, and
 /// eccentricity (x, y):  along x cos a + y sin a,    across y cos a - x sin a            (moved as a whole)
 /// ellipticity (c, s):   along c cos 2a + s sin 2a,  across (s cos 2a - c sin 2a) / 2    (bent without stretch)
@@ -35,6 +38,7 @@ struct ManufactureErrors
   ManufactureErrors(const ManufactureParameters& manufacture, const GearParameters& gear);
 
   Eigen::VectorXd tooth_across;  ///< per flexspline tooth, counter-clockwise > 0 [m]
+  Eigen::VectorXd tooth_along;   ///< per flexspline tooth, outwards > 0 [m]
   Eigen::VectorXd space_across;  ///< per space of the circular spline, counter-clockwise > 0 [m]
   Eigen::VectorXd space_along;   ///< per space, outwards > 0 [m]
 };

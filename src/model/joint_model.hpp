@@ -20,7 +20,7 @@ struct JointInputs
   double motor_torque{};  ///< at the shaft, after the drive's limits [N.m]
   double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
-  double temperature{};  ///< of the drive [degC]
+  double temperature{};  ///< of the grease [degC]
 };
 
 /// The whole joint: ring, motor, bearing, load, frictions. Solvers hold it const; JointFaults keeps one that changes.

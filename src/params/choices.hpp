@@ -30,6 +30,11 @@ constexpr ChoiceNames<ProfileKind, 4> choiceNames(ProfileKind)
              { "double_arc", ProfileKind::DOUBLE_ARC } } };
 }
 
+constexpr ChoiceNames<ThermalModel, 2> choiceNames(ThermalModel)
+{
+  return { { { "none", ThermalModel::NONE }, { "two_nodes", ThermalModel::TWO_NODES } } };
+}
+
 constexpr ChoiceNames<SceneKind, 2> choiceNames(SceneKind)
 {
   return { { { "full_ring", SceneKind::FULL_RING }, { "auto", SceneKind::AUTO } } };

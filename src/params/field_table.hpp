@@ -79,6 +79,8 @@ void visitFields(P& p, Visitor&& visit)
         "which of the gears with that deviation");
   visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
         "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+  visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, shift,
+        "run-out: centre of the flexspline's teeth from the axis of its bore, at rest with the housing: x, y");
   visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, shift,
         "centre of the spaces from the output's axis, turning with the output: x, y at output angle 0");
   visit(
@@ -145,11 +147,13 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
         "diameter of a ball, below pitch_diameter");
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
-        ofOthers("kinematic viscosity of the grease's base oil at viscosity_temperature"));
+        ofOthers("kinematic viscosity that the grease acts with at viscosity_temperature"));
+  visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },
+        ofOthers("kinematic viscosity of the grease's base oil there: with the slope, how the grease thins"));
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
-        ofOthers("temperature the viscosity is given at"));
+        ofOthers("temperature both viscosities are given at"));
   visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
-        ofOthers("slope m of the base oil in the viscosity-temperature chart (Ubbelohde-Walther, DIN 51563)"));
+        ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
 
   visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, ofOthers("motor's rotor"));
   visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 },
@@ -158,6 +162,8 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("Coulomb friction at the motor shaft beyond bearing, outer race and flanks"));
   visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
         ofOthers("viscous friction, motor side"));
+  visit("motor.copper_loss", "W/(N.m)^2", p.motor.copper_loss, Range{ 0.0, 1e4 },
+        ofOthers("heat of the motor's winding over the square of its torque"));
   visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{ 0.0, 1e4 },
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
@@ -172,12 +178,32 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("m g l of the load; 0 = none"));
   visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
         ofOthers("joint angle at which the load hangs straight down"));
+  visit("output.torque_limit", "N.m", p.output.torque_limit, Range{ 0.0, 1e6 },
+        ofOthers("larger torques at the joint are counted, with a warning"));
   visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{ 0.0, 1e6 },
         "larger external torques are clamped and counted");
 
   visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{ 0.0, 1e4 },
         ofOthers("motor side; above it the brake slips"));
   visit("brake.engaged_at_start", p.brake.engaged_at_start, ofOthers("state of the brake after start and reset"));
+
+  visit("thermal.model", p.thermal.model,
+        ofOthers("none: the drive has input.temperature; two_nodes: grease and housing warm up by the losses, and "
+                 "input.temperature is that of the surroundings"));
+  visit("thermal.grease_capacity", "J/K", p.thermal.grease_capacity, Range{ 1e-2, 1e6 },
+        ofOthers("heat capacity of grease, wave generator, flexspline and rotor"));
+  visit("thermal.housing_capacity", "J/K", p.thermal.housing_capacity, Range{ 1e-2, 1e6 },
+        ofOthers("heat capacity of the housing with what is fixed to it"));
+  visit("thermal.internal_conductance", "W/K", p.thermal.internal_conductance, Range{ 1e-4, 1e4 },
+        ofOthers("heat flow from grease to housing per difference of temperature"));
+  visit("thermal.ambient_conductance", "W/K", p.thermal.ambient_conductance, Range{ 0.0, 1e4 },
+        ofOthers("heat flow from housing to surroundings per difference of temperature; 0 = insulated"));
+  visit("thermal.standby_power", "W", p.thermal.standby_power, Range{ 0.0, 1e4 },
+        ofOthers("heat of electronics and released brake, into the housing"));
+  visit("thermal.grease_rise", "K", p.thermal.grease_rise, Range{ -100.0, 150.0 },
+        ofOthers("temperature of the grease above that of the surroundings at start and reset"));
+  visit("thermal.housing_rise", "K", p.thermal.housing_rise, Range{ -100.0, 150.0 },
+        ofOthers("temperature of the housing above that of the surroundings at start and reset"));
 
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
@@ -331,7 +357,7 @@ void visitFields(P& p, Visitor&& visit)
       "input.wait_for_first_input", p.input.wait_for_first_input,
       ofOthers("true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant"));
   visit("input.temperature", "degC", p.input.temperature, Range{ MIN_TEMPERATURE, MAX_TEMPERATURE },
-        ofOthers("temperature of the drive"));
+        ofOthers("temperature of the drive, or of its surroundings where thermal.model is not none"));
 
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
         ofOthers("torque at the joint per measured motor current"));

@@ -13,6 +13,13 @@ inline Parameters withoutWeight(Parameters parameters)
   return parameters;
 }
 
+/// The drive has the temperature it is given.
+inline Parameters withoutHeat(Parameters parameters)
+{
+  parameters.thermal.model = ThermalModel::NONE;
+  return parameters;
+}
+
 /// Coefficients of friction 1 at flanks and outer race: friction is then the force by which it is to be multiplied.
 inline Parameters withUnitFriction(Parameters parameters)
 {
@@ -31,6 +38,7 @@ inline Parameters withEqualTeeth(Parameters parameters)
     pitch->deviation = 0.0;
     pitch->table = NO_FILE;
   }
+  errors.flexspline_eccentricity = {};
   errors.circular_spline_eccentricity = {};
   errors.circular_spline_ellipticity = {};
   return parameters;
@@ -43,8 +51,8 @@ inline bool teethAreAlike(const Parameters& parameters)
   const auto is_even = [](const PitchParameters& pitch) { return pitch.deviation == 0.0 && pitch.table == NO_FILE; };
   const auto is_zero = [](const auto& vector) { return vector[0] == 0.0 && vector[1] == 0.0; };
   return is_even(errors.flexspline_pitch) && is_even(errors.circular_spline_pitch) &&
-         is_zero(errors.circular_spline_eccentricity) && is_zero(errors.circular_spline_ellipticity) &&
-         parameters.faults.empty();
+         is_zero(errors.flexspline_eccentricity) && is_zero(errors.circular_spline_eccentricity) &&
+         is_zero(errors.circular_spline_ellipticity) && parameters.faults.empty();
 }
 
 /// The gear as drawn.

@@ -216,6 +216,8 @@ bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) n
   message.lobe_asymmetry = report.lobes.asymmetry;
   message.wave_generator_load = report.lobes.wave_generator_force;
   message.friction_torque = outputs.friction_torque;
+  message.grease_temperature = outputs.temperature;
+  message.housing_temperature = outputs.housing_temperature;
   message.efficiency_valid = report.motion.efficiency.valid;
   message.efficiency = report.motion.efficiency.value;
   message.kinematic_error_valid = report.motion.kinematic_error.valid;

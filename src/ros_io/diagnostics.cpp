@@ -93,6 +93,7 @@ void Diagnostics::readSnapshot()
   jumps_.update(twin.jumps, now);
   coarse_steps_.update(twin.coarse_steps, now);
   speed_limits_.update(twin.speed_limited, now);
+  overloads_.update(twin.overloads, now);
   clamps_.update(twin.torque_clamped + twin.load_clamped, now);
   late_inputs_.update(twin.input.late + twin.faults.late, now);
   timeouts_.update(twin.command_timeouts, now);
@@ -133,6 +134,7 @@ DiagnosticVerdict Diagnostics::judgeDrive() const
         { step_cuts_.areRecent(), { D::WARN, "Steps had to be cut to converge" } },
         { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
         { coarse_steps_.areRecent(), { D::WARN, "Steps too long for how fast the joint swings: raise solver.rate" } },
+        { overloads_.areRecent(), { D::WARN, "Torque at the joint beyond output.torque_limit" } },
         { speed_limits_.areRecent(), { D::WARN, "Motor at its speed limit" } } },
       { D::OK, stateText(snapshot_.loop.state) });
 }
@@ -205,6 +207,7 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
   status.add("Steps too long", counters.coarse_steps);
   status.add("Steps failed", counters.solver_failures);
   status.add("Steps at the speed limit", counters.speed_limited);
+  status.add("Steps beyond the joint's torque limit", counters.overloads);
   const std::string faults = publishers_.activeFaults();
   status.add("Faults of the gear", faults.empty() ? "none" : faults);
 }

@@ -69,6 +69,7 @@ private:
   RecentEvents jumps_;
   RecentEvents coarse_steps_;
   RecentEvents speed_limits_;
+  RecentEvents overloads_;
   RecentEvents refusals_;
   RecentEvents clamps_;
   RecentEvents late_inputs_;

@@ -48,6 +48,7 @@ public:
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
+  double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
   /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;

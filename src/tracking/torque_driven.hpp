@@ -20,7 +20,7 @@ class TorqueDriven
 public:
   /// @throws ParameterError as the twin.
   explicit TorqueDriven(const Parameters& parameters, const SurfaceSource& surface_source = {})
-    : twin_(withoutWeight(parameters), surface_source)
+    : twin_(withoutHeat(withoutWeight(parameters)), surface_source)
     , load_(parameters.output)
     , telemetry_(parameters.telemetry)
     , ratio_(nominalRatio(parameters.gear))

@@ -129,6 +129,7 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
+  , grease_(parameters)
   , temperature_(parameters.input.temperature)
   , follower_(makeFollower(parameters, mode, surface_source))
   , contact_(parameters.output.load_torque_limit)
@@ -212,13 +213,10 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   {
     sample->temperature = temperatures_.at(sample->time);
   }
-
-  const bool has_temperature = std::isfinite(sample->temperature);
-  temperature_received_ = temperature_received_ || has_temperature;
-  if (!has_temperature)
-  {
-    sample->temperature = estimated_temperature_.value_or(temperature_);
-  }
+  const bool is_temperature_received = std::isfinite(sample->temperature);
+  temperature_received_ = temperature_received_ || is_temperature_received;
+  temperature_ = grease_.at(*sample);
+  sample->temperature = is_temperature_received ? temperature_ : estimated_temperature_.value_or(temperature_);
 
   const std::optional<double> received = loadAt(sample->time);
   const bool is_all = received && holdsAll(load_source_);
@@ -236,9 +234,11 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.load_torque = sample->load;
   now.load_provided = received.has_value();
   now.temperature = sample->temperature;
-  now.temperature_received = has_temperature;
+  now.temperature_received = is_temperature_received;
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
+  grease_.book(sample->velocity, now.friction_torque,
+               telemetry_.torque_per_current * (sample->current - telemetry_.current_offset) / ratio_);
   if (!is_known)
   {
     now.current.band = 0.0;  // what the load makes of the current cannot be judged
@@ -274,9 +274,9 @@ void Tracker::addFriction(double step, const MotionSample& sample, const Compari
     return;
   }
   const double expected =
-      now.temperature_received ?
-          now.friction_torque :
-          now.friction_torque * follower_->frictionAt(sample.velocity, sample.load, temperature_) / limit;
+      now.friction_torque * (now.temperature == temperature_ ?
+                                 1.0 :
+                                 follower_->frictionAt(sample.velocity, sample.load, temperature_) / limit);
   friction_.add(step, expected, now.friction_torque + now.residual_torque, sample.velocity, sample.load);
 }
 

@@ -13,6 +13,7 @@
 #include "tracking/contact_watch.hpp"
 #include "tracking/delay_estimate.hpp"
 #include "tracking/friction_scale.hpp"
+#include "tracking/grease_temperature.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/signal_watch.hpp"
@@ -43,8 +44,8 @@ struct Comparison
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
                              ///< expects one, no band
-  double temperature{};      ///< that the prediction was made at [degC]
-  bool temperature_received{};  ///< it was received; else estimated or as configured
+  double temperature{};      ///< of the grease, that the prediction was made at [degC]
+  bool temperature_received{};  ///< it comes from a received one; else estimated or as configured
   bool sticking{};              ///< friction holds the joint: any current within the band fits
   bool after_gap{};             ///< first after a gap in the telemetry
 
@@ -114,7 +115,7 @@ public:
   bool isTouched() const noexcept { return contact_.isRecent(); }
   const Contact& contact() const noexcept { return contact_.contact(); }  ///< all since the last reset
 
-  /// Of the last minutes of motion, over the twin's at the received or configured temperature. Mode MOTION only.
+  /// Of the last minutes of motion, over the twin's without an estimated temperature. Mode MOTION only.
   MeasuredFriction friction() const;
 
   /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
@@ -150,8 +151,9 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;                           // of rows without one [degC]
-  std::optional<double> estimated_temperature_;  // in its place [degC]
+  GreaseTemperature grease_;
+  double temperature_;                           // of it, at the last row [degC]
+  std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};

@@ -34,9 +34,14 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , signals(given)
   , assessor(given)
   , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
+  , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
 {
+  if (given.thermal.model == ThermalModel::TWO_NODES)
+  {
+    heat.emplace(given.thermal);
+  }
   if (given.solver.scene == SceneKind::AUTO)
   {
     scheduleConfigured(0);
@@ -91,6 +96,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   load_torque = 0.0;
   load_clamped = false;
   temperature = parameters.input.temperature;
+  resetHeat();
   brake_engaged = parameters.brake.engaged_at_start;
   sensors.reset();
   monitor.reset();
@@ -226,7 +232,8 @@ void Twin::Impl::step() noexcept
   takeInputs();
   takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, temperature }) && followed;
+  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  takeHeat(drive.torque);
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
@@ -235,6 +242,7 @@ void Twin::Impl::step() noexcept
   const bool jumped = stepper.status().jumps > 0;
   fillOutputs(drive.torque, converged);
   const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE || overshoots(drive);
+  counters.overloads += std::abs(outputs.joint_torque) > parameters.output.torque_limit ? 1 : 0;
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += cut ? 1 : 0;
   counters.jumps += jumped ? 1 : 0;
@@ -242,6 +250,40 @@ void Twin::Impl::step() noexcept
   last_failed = converged ? last_failed : now;
   last_doubtful = cut || jumped || coarse ? now : last_doubtful;
   observe();
+}
+
+double Twin::Impl::greaseTemperature() const noexcept
+{
+  return heat ? std::clamp(heat->grease(), MIN_TEMPERATURE, MAX_TEMPERATURE) : temperature;
+}
+
+void Twin::Impl::resetHeat() noexcept
+{
+  heat_stamp = now;
+  heat_booked = 0.0;
+  copper_heat = 0.0;
+  if (heat)
+  {
+    heat->reset(temperature);
+  }
+}
+
+/// Books the losses of a step; they warm the drive at the end of each period of the heat, counted from the epoch.
+void Twin::Impl::takeHeat(double motor_torque) noexcept
+{
+  if (!heat)
+  {
+    return;
+  }
+  copper_heat += parameters.motor.copper_loss * motor_torque * motor_torque / parameters.solver.rate;
+  if (now / step_length % steps_per_heat == 0)
+  {
+    const double dissipated = stepper.dissipatedEnergy();
+    heat->advance(toSeconds(now - heat_stamp), { dissipated - heat_booked, copper_heat }, temperature);
+    heat_stamp = now;
+    heat_booked = dissipated;
+    copper_heat = 0.0;
+  }
 }
 
 void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
@@ -255,12 +297,14 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = motor_torque;
   outputs.load_torque = load_torque;
-  outputs.temperature = temperature;
+  outputs.temperature = greaseTemperature();
+  outputs.housing_temperature = heat ? heat->housing() : temperature;
   outputs.wave_generator_torque = -ring.wave_generator_torque;
   outputs.joint_torque = ring.output_torque;
   outputs.friction_torque = std::abs(friction[0] + ring.velocity_ratio * friction[1]);
   outputs.torsional_stiffness = ring.output_stiffness;
   outputs.energy_residual = stepper.energyResidual();
+  outputs.dissipated_energy = stepper.dissipatedEnergy();
   outputs.released_energy = stepper.releasedEnergy();
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
@@ -281,7 +325,7 @@ void Twin::Impl::observe() noexcept
   }
 }
 
-/// Signals known to a drive: readings, received load, temperature.
+/// Signals known to a drive: readings, received load, temperature beside the motor.
 void Twin::Impl::takeReadings() noexcept
 {
   const EncoderReadings readings = sensors.encoders();
@@ -292,7 +336,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
   sample.load_torque = load_torque;
-  sample.temperature = temperature;
+  sample.temperature = outputs.housing_temperature;
   if (signals.update(sample))
   {
     assessor.update(signals.indicators());

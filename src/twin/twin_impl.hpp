@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
+#include "elements/drive_heat.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/health_monitor.hpp"
 #include "health/signal_monitor.hpp"
@@ -50,7 +52,11 @@ struct Twin::Impl
   bool commanded{};      // a command is in force, not timed out
   double load_torque{};  // last load torque, clamped [N.m]
   bool load_clamped{};
-  double temperature{};  // [degC]
+  double temperature{};  // received or configured: of the drive, or of its surroundings [degC]
+  std::optional<DriveHeat> heat;
+  Stamp heat_stamp{};    // up to where the losses are in it
+  double heat_booked{};  // of the dissipated energy [J]
+  double copper_heat{};  // not yet in it [J]
   bool brake_engaged{};
   JointOutputs outputs;
   JointSensors sensors;
@@ -58,6 +64,7 @@ struct Twin::Impl
   SignalMonitor signals;
   Assessor assessor;
   Stamp steps_per_sample;
+  Stamp steps_per_heat;
   bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   Stamp last_failed{};           // instant of the last step that did not converge; before any: the earliest
@@ -72,6 +79,9 @@ private:
   void takeSurface() noexcept;
   double commandInForce() noexcept;
   bool overshoots(const Motor::Drive& drive) const noexcept;
+  double greaseTemperature() const noexcept;
+  void resetHeat() noexcept;
+  void takeHeat(double motor_torque) noexcept;
   void fillOutputs(double motor_torque, bool converged) noexcept;
   void observe() noexcept;
   void takeReadings() noexcept;

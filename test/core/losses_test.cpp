@@ -26,6 +26,7 @@ TEST(BearingFriction, IsPalmgrensByHand)
   parameters.race_preload = 400.0;
   parameters.pitch_diameter = 50e-3;
   parameters.viscosity = 80e-6;
+  parameters.oil_viscosity = 80e-6;
   parameters.viscosity_temperature = 25.0;
   parameters.viscosity_slope = 3.7;
   const BearingFriction bearing(parameters);
@@ -41,6 +42,7 @@ TEST(BearingFriction, OilThinsAsInTheChart)
   BearingParameters parameters;
   // An oil of 46 mm^2/s at 40 degC and 6.8 mm^2/s at 100 degC (ISO VG 46, viscosity index 100): slope from these two.
   parameters.viscosity = 46e-6;
+  parameters.oil_viscosity = 46e-6;
   parameters.viscosity_temperature = 40.0;
   parameters.viscosity_slope =
       std::log10(std::log10(46.7) / std::log10(7.5)) / std::log10((100.0 + 273.15) / (40.0 + 273.15));
@@ -48,6 +50,25 @@ TEST(BearingFriction, OilThinsAsInTheChart)
   EXPECT_NEAR(bearing.viscosity(40.0), 46e-6, 1e-12);
   EXPECT_NEAR(bearing.viscosity(100.0), 6.8e-6, 1e-11);
   EXPECT_GT(bearing.viscosity(0.0), 8.0 * bearing.viscosity(40.0));
+
+  // A grease that acts with three times that viscosity thins as its oil does.
+  parameters.viscosity = 138e-6;
+  const BearingFriction grease(parameters);
+  for (const double temperature : { 0.0, 40.0, 100.0 })
+  {
+    EXPECT_NEAR(grease.viscosity(temperature), 3.0 * bearing.viscosity(temperature), 1e-15);
+  }
+}
+
+TEST(BearingFriction, ShippedOilIsThatOfItsGrease)
+{
+  BearingParameters parameters = shippedParameters().bearing;
+  parameters.viscosity = parameters.oil_viscosity;
+  const BearingFriction oil(parameters);
+  // SK-1A: 80 mm^2/s at 25 degC (thesis), 37 and 5.9 quoted at 40 and 100 degC.
+  EXPECT_NEAR(oil.viscosity(25.0), 80e-6, 1e-12);
+  EXPECT_NEAR(oil.viscosity(40.0), 37e-6, 0.03 * 37e-6);
+  EXPECT_NEAR(oil.viscosity(100.0), 5.9e-6, 0.03 * 5.9e-6);
 }
 
 class RunningJoint : public testing::TestWithParam<double>

@@ -64,6 +64,7 @@ TEST(PitchErrors, PerfectGearHasNone)
   const Parameters parameters = shippedParameters();
   const ManufactureErrors errors(parameters.manufacture, parameters.gear);
   EXPECT_EQ(errors.tooth_across, Eigen::VectorXd::Zero(200));
+  EXPECT_EQ(errors.tooth_along, Eigen::VectorXd::Zero(200));
   EXPECT_EQ(errors.space_across, Eigen::VectorXd::Zero(202));
   EXPECT_EQ(errors.space_along, Eigen::VectorXd::Zero(202));
 }
@@ -131,6 +132,19 @@ TEST(CircularSpline, EccentricityMovesAllSpacesByOneVector)
   }
 }
 
+TEST(Flexspline, EccentricityMovesAllTeethByOneVector)
+{
+  const Parameters parameters = shippedParameters({ "manufacture.flexspline_eccentricity=[3.0e-6, -2.0e-6]" });
+  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+  for (int i = 0; i < 200; ++i)
+  {
+    const double a = TWO_PI * i / 200;
+    const Eigen::Vector2d moved = errors.tooth_along[i] * Eigen::Vector2d(std::cos(a), std::sin(a)) +
+                                  errors.tooth_across[i] * Eigen::Vector2d(-std::sin(a), std::cos(a));
+    EXPECT_NEAR((moved - Eigen::Vector2d(3e-6, -2e-6)).norm(), 0.0, 1e-20);
+  }
+}
+
 TEST(CircularSpline, EllipticityBendsWithoutStretch)
 {
   const Parameters parameters = shippedParameters({ "manufacture.circular_spline_ellipticity=[3.0e-6, -2.0e-6]" });
@@ -151,6 +165,7 @@ TEST(CircularSpline, EllipticityBendsWithoutStretch)
 std::vector<std::string> allErrors()
 {
   return { "manufacture.flexspline_pitch_deviation=20.0e-6", "manufacture.circular_spline_pitch_deviation=30.0e-6",
+           "manufacture.flexspline_eccentricity=[-8.0e-6, 6.0e-6]",
            "manufacture.circular_spline_eccentricity=[10.0e-6, 5.0e-6]",
            "manufacture.circular_spline_ellipticity=[-4.0e-6, 6.0e-6]",
            "manufacture.wave_generator_eccentricity=[20.0e-6, -10.0e-6]",

@@ -193,6 +193,18 @@ TEST(TwinInputs, NotFiniteOnesAreRefusedAndCounted)
   EXPECT_TRUE(numbers(twin.outputs()) == numbers(untouched.outputs()));
 }
 
+TEST(TwinInputs, TorquesAtTheJointBeyondItsLimitAreCounted)
+{
+  for (const double load : { 60.0, 200.0 })
+  {
+    Twin twin(shippedParameters({ "brake.engaged_at_start=true" }));
+    twin.commandLoadTorque(0, load);
+    advance(twin, SECOND / 10);
+    EXPECT_EQ(twin.counters().load_clamped, 0U);
+    EXPECT_EQ(twin.counters().overloads > 0, load > twin.parameters().output.torque_limit) << load;
+  }
+}
+
 TEST(TwinInputs, TorquesBeyondTheLimitsAreClampedAndCounted)
 {
   Twin twin(shippedParameters());

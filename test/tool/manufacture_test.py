@@ -15,8 +15,8 @@ class Tables(tool.ToolTest):
 
     def test_perfect_gear_has_no_errors(self):
         text = self.succeed_json("manufacture")
-        self.assertEqual(text["flexspline"]["pitch_deviation"], [0.0] * 200)
         for quantity in ("pitch_deviation", "across", "along"):
+            self.assertEqual(text["flexspline"][quantity], [0.0] * 200)
             self.assertEqual(text["circular_spline"][quantity], [0.0] * 202)
 
     def test_tables_written_from_seeds_are_read_back_to_the_bit(self):
@@ -53,11 +53,11 @@ class Tables(tool.ToolTest):
 class Lines(tool.ToolTest):
     """Kinematic error over one whole turn of the joint, so that lines are whole numbers and do not leak."""
 
-    def lines(self, numbers, *options):
+    def lines(self, numbers, *options, load=5):
         """Amplitudes at so many lines a joint turn [rad]."""
         # 30 samples a motor turn: the tooth pass, 200, folds to multiples of 10 orders.
         steps = 30 * JOINT_TURN
-        rows = self.succeed_json("turn", "--load", 5, "--angle-range", repr(2.0 * math.pi * JOINT_TURN), "--steps",
+        rows = self.succeed_json("turn", "--load", load, "--angle-range", repr(2.0 * math.pi * JOINT_TURN), "--steps",
                                  steps,
                                  *options)["rows"]
         error = [row["kinematic_error"] for row in rows[:-1]]
@@ -72,6 +72,16 @@ class Lines(tool.ToolTest):
                 at = self.lines([own, other], "--set", f"manufacture.{member}_pitch_deviation=8.0e-6")
                 self.assertGreater(at[0], 5.0 * arcsec)
                 self.assertLess(at[1], 1e-3 * arcsec)
+
+    def test_run_out_and_an_eccentric_wave_generator_make_a_line_a_motor_turn_that_load_takes_away(self):
+        generator = ("--set", "manufacture.wave_generator_eccentricity=[5.0e-6, 0.0]")
+        run_out = ("--set", "manufacture.flexspline_eccentricity=[5.0e-6, 0.0]")
+        for alone in (generator, run_out):
+            self.assertLess(self.lines([101], *alone)[0], 0.1e-6)
+        light = self.lines([101], *generator, *run_out)[0]
+        heavy = self.lines([101], *generator, *run_out, load=67)[0]
+        self.assertGreater(light, 20e-6)
+        self.assertLess(heavy, 0.4 * light)
 
     def test_gear_as_built_starts_the_simulation(self):
         done = self.succeed_json("simulate", "--torque", 1.0, "--duration", 0.1, "--config", "as_built.yaml", "--out",

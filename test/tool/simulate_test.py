@@ -40,6 +40,24 @@ class Simulate(tool.ToolTest):
         self.assertGreater(rows[-1]["motor_angle"], 1.0)
         self.assertEqual(rows[-1]["motor_angle"], summary["motor_angle"])
 
+    def test_losses_warm_the_drive_in_csv_and_bag_alike(self):
+        run = ("simulate", "--duration", 0.4, "--torque", 0.5, "--set", "publish.health_rate=100.0")
+        for model, warmer in (("none", False), ("two_nodes", True)):
+            for kind in ("csv", "bag"):
+                self.succeed(*run, "--set", f"thermal.model={model}", "--out", f"{model}.{kind}")
+            rows = {round(row["time"], 6): row for row in self.rows(f"{model}.csv")}
+            self.assertEqual(max(rows[0.4]["temperature"], rows[0.4]["housing_temperature"]) > 25.0, warmer)
+            self.assertEqual(rows[0.05]["temperature"], 25.0)  # until the end of the first period
+            messages = [message for _, message in tool.series(self.path(f"{model}.bag"), "/joint_twin/health")]
+            self.assertEqual(messages[-1].grease_temperature, rows[0.4]["temperature"])
+            self.assertEqual(messages[-1].housing_temperature, rows[0.4]["housing_temperature"])
+
+    def test_a_torque_at_the_joint_beyond_its_limit_is_counted(self):
+        done = self.run_tool("simulate", "--duration", 0.05, "--torque", 0, "--load", 200, "--set",
+                             "brake.engaged_at_start=true", "--out", "a.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("beyond output.torque_limit", done.stderr)
+
     def test_profile_is_held_between_its_rows(self):
         self.write("p.csv", "motor_torque,time,load_torque,brake\n0.4,0,2.5,0\n-0.2,0.1,-1.5,0\n0.3,0.2,0,1\n")
         self.succeed("simulate", "--profile", "p.csv", "--duration", 0.25, "--out", "a.csv")

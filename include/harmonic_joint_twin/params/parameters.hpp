@@ -107,6 +107,7 @@ struct ManufactureParameters
 {
   PitchParameters flexspline_pitch;
   PitchParameters circular_spline_pitch;
+  std::array<double, 2> flexspline_eccentricity{};
   std::array<double, 2> circular_spline_eccentricity{};
   std::array<double, 2> circular_spline_ellipticity{};
   std::array<double, 2> wave_generator_eccentricity{};
@@ -129,6 +130,7 @@ struct BearingParameters
   int balls{};
   double ball_diameter{};
   double viscosity{};
+  double oil_viscosity{};
   double viscosity_temperature{};
   double viscosity_slope{};
 };
@@ -139,6 +141,7 @@ struct MotorParameters
   double wave_generator_inertia{};
   double coulomb_torque{};
   double viscous_friction{};
+  double copper_loss{};
   double torque_limit{};
   double speed_limit{};
 };
@@ -150,6 +153,7 @@ struct OutputParameters
   double viscous_friction{};
   double gravity_torque{};
   double gravity_angle{};
+  double torque_limit{};
   double load_torque_limit{};
 };
 
@@ -157,6 +161,25 @@ struct BrakeParameters
 {
   double holding_torque{};
   bool engaged_at_start{};
+};
+
+/// Whether the drive warms up by its own losses.
+enum class ThermalModel
+{
+  NONE,      ///< it has the configured or received temperature
+  TWO_NODES  ///< grease and housing, fed by the losses
+};
+
+struct ThermalParameters
+{
+  ThermalModel model{};
+  double grease_capacity{};
+  double housing_capacity{};
+  double internal_conductance{};
+  double ambient_conductance{};
+  double standby_power{};
+  double grease_rise{};
+  double housing_rise{};
 };
 
 /// How the joint is marched: one ring solve a step, staggered; or the classical Runge-Kutta of Boost.odeint, four.
@@ -424,6 +447,7 @@ struct Parameters
   MotorParameters motor;
   OutputParameters output;
   BrakeParameters brake;
+  ThermalParameters thermal;
   SolverParameters solver;
   SensorParameters sensors;
   HealthParameters health;

@@ -30,12 +30,14 @@ struct JointOutputs
   double output_velocity{};
   double motor_torque{};           ///< applied, after command timeout and limits
   double load_torque{};            ///< external torque at the output, > 0 resists positive motion
-  double temperature{};            ///< of the drive [degC]
+  double temperature{};            ///< of the grease, that its friction has [degC]
+  double housing_temperature{};    ///< [degC]
   double wave_generator_torque{};  ///< of the wave generator on the flexspline: the motor's, less friction and inertia
   double joint_torque{};           ///< of the mesh on the circular spline
   double friction_torque{};        ///< all friction reduced to the motor shaft by power, >= 0
   double torsional_stiffness{};    ///< local, wave generator locked [N.m/rad]
   double energy_residual{};        ///< energy in - stored - dissipated - released since reset [J]
+  double dissipated_energy{};      ///< by all friction since reset [J]
   double released_energy{};        ///< stored energy that faults set free when they set in, since reset [J]
   bool brake_engaged{};
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
@@ -82,6 +84,7 @@ struct TwinCounters
   FaultCounters faults;
   std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit
   std::uint64_t load_clamped{};      ///< steps on which the load exceeded output.load_torque_limit
+  std::uint64_t overloads{};         ///< steps on which the joint's torque exceeded output.torque_limit
   std::uint64_t speed_limited{};     ///< steps on which the drive held torque back at motor.speed_limit
   std::uint64_t command_timeouts{};  ///< times the command ran into input.command_timeout
 };
@@ -112,7 +115,8 @@ public:
 
   /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
   /// its stamp; one that comes too late is counted and acts at once, unless a newer one of its kind is in force.
-  /// Torques [N.m], of the load > 0 resists positive motion; the drive's temperature is kept within its range [degC].
+  /// Torques [N.m], of the load > 0 resists positive motion; the temperature, of the drive or with thermal.model =
+  /// two_nodes of its surroundings, is kept within its range [degC].
   void commandMotorTorque(Stamp stamp, double torque) noexcept { push({ stamp, InputKind::MOTOR_TORQUE, torque }); }
   void commandLoadTorque(Stamp stamp, double torque) noexcept { push({ stamp, InputKind::LOAD_TORQUE, torque }); }
   void commandBrake(Stamp stamp, bool engaged) noexcept { push({ stamp, InputKind::BRAKE, engaged ? 1.0 : 0.0 }); }

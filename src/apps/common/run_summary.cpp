@@ -27,6 +27,7 @@ void warnOf(const TwinCounters& counters)
   warn(counters.input.overflow, "inputs were dropped: more than the queue holds");
   warn(counters.torque_clamped, "steps had a motor torque command beyond motor.torque_limit; it was clamped");
   warn(counters.load_clamped, "steps had a load torque beyond output.load_torque_limit; it was clamped");
+  warn(counters.overloads, "steps had a torque at the joint beyond output.torque_limit");
   warn(counters.speed_limited, "steps at motor.speed_limit; the drive held torque back");
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");
   warn(counters.step_cuts, "steps needed a shorter path to converge");
@@ -56,6 +57,7 @@ int RunSummary::report(const Twin& twin, bool json) const
                       { "inputs_not_finite", "", counters.input.not_finite },
                       { "torque_clamped", "", counters.torque_clamped },
                       { "load_clamped", "", counters.load_clamped },
+                      { "overloads", "", counters.overloads },
                       { "speed_limited", "", counters.speed_limited },
                       { "command_timeouts", "", counters.command_timeouts },
                       { "step_cuts", "", counters.step_cuts },

@@ -73,6 +73,8 @@ int manufacture(const ManufactureOptions& options)
       { { "flexspline.total_pitch_deviation", "flexspline, total pitch deviation", totalDeviation(flexspline), "m" },
         { "flexspline.single_pitch_deviation", "flexspline, largest of one pitch", singleDeviation(flexspline), "m" },
         { "flexspline.pitch_deviation", "", list(flexspline) },
+        { "flexspline.across", "", list(errors.tooth_across) },
+        { "flexspline.along", "", list(errors.tooth_along) },
         { "circular_spline.total_pitch_deviation", "circular spline, total pitch deviation",
           totalDeviation(circular_spline), "m" },
         { "circular_spline.single_pitch_deviation", "circular spline, largest of one pitch",

@@ -51,10 +51,26 @@ public:
   CsvRecorder(const Twin& twin, const std::string& path, Stamp begin)
     : period_(publishPeriod(twin.parameters().publish.joint_states_rate, twin.parameters().solver.rate))
     , begin_(begin)
-    , csv_(path, { "time", "motor_angle", "motor_velocity", "output_angle", "output_velocity", "motor_angle_encoder",
-                   "motor_velocity_encoder", "output_angle_encoder", "output_velocity_encoder", "motor_torque",
-                   "load_torque", "wave_generator_torque", "joint_torque", "friction_torque", "torsional_stiffness",
-                   "energy_residual", "brake", "converged" })
+    , csv_(path, { "time",
+                   "motor_angle",
+                   "motor_velocity",
+                   "output_angle",
+                   "output_velocity",
+                   "motor_angle_encoder",
+                   "motor_velocity_encoder",
+                   "output_angle_encoder",
+                   "output_velocity_encoder",
+                   "motor_torque",
+                   "load_torque",
+                   "wave_generator_torque",
+                   "joint_torque",
+                   "friction_torque",
+                   "torsional_stiffness",
+                   "energy_residual",
+                   "temperature",
+                   "housing_temperature",
+                   "brake",
+                   "converged" })
   {
   }
 
@@ -67,10 +83,26 @@ public:
     }
     ++rows_;
     const EncoderReadings e = twin.encoders();
-    csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle, o.motor_velocity, o.output_angle, o.output_velocity,
-                    e.motor_angle, e.motor_velocity, e.output_angle, e.output_velocity, o.motor_torque, o.load_torque,
-                    o.wave_generator_torque, o.joint_torque, o.friction_torque, o.torsional_stiffness,
-                    o.energy_residual, o.brake_engaged ? 1.0 : 0.0, o.converged ? 1.0 : 0.0 });
+    csv_.writeRow({ toSeconds(o.stamp - begin_),
+                    o.motor_angle,
+                    o.motor_velocity,
+                    o.output_angle,
+                    o.output_velocity,
+                    e.motor_angle,
+                    e.motor_velocity,
+                    e.output_angle,
+                    e.output_velocity,
+                    o.motor_torque,
+                    o.load_torque,
+                    o.wave_generator_torque,
+                    o.joint_torque,
+                    o.friction_torque,
+                    o.torsional_stiffness,
+                    o.energy_residual,
+                    o.temperature,
+                    o.housing_temperature,
+                    o.brake_engaged ? 1.0 : 0.0,
+                    o.converged ? 1.0 : 0.0 });
   }
 
   void close() { csv_.close(); }
