@@ -164,9 +164,13 @@ harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
   return message;
 }
 
-bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& message) noexcept
+namespace
 {
-  const Parameters& parameters = twin.parameters();
+/// `source(stress)`: fills the arrays. False: they could not be filled.
+template <class Source>
+bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::Stress& message,
+                const Source& source) noexcept
+{
   const FatigueLaw fatigue_law(parameters);
   ToothStress stress;
   const auto swap_arrays = [&]
@@ -175,9 +179,9 @@ bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& messag
     stress.normal[1].swap(message.transition);
     stress.normal[2].swap(message.flange);
   };
-  swap_arrays();  // the twin writes into the message's own
-  const bool found = twin.toothStress(stress);
-  message.header.stamp = toRosTime(twin.stamp());
+  swap_arrays();  // the source writes into the message's own
+  const bool found = source(stress);
+  message.header.stamp = toRosTime(stamp);
   message.largest = 0.0;
   message.endurance_share = 0.0;
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
@@ -198,6 +202,24 @@ bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& messag
   }
   swap_arrays();
   return found;
+}
+}  // namespace
+
+bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& message) noexcept
+{
+  return fillStress(twin.stamp(), twin.parameters(), message,
+                    [&](ToothStress& stress) { return twin.toothStress(stress); });
+}
+
+void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
+                harmonic_joint_twin::Stress& message) noexcept
+{
+  fillStress(stamp, parameters, message,
+             [&](ToothStress& stress)
+             {
+               gear.fill(stress);
+               return true;
+             });
 }
 
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept

@@ -63,6 +63,8 @@ void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twi
 /// The solver's state is that of the steps after `since`.
 harmonic_joint_twin::Stress makeStress(const Parameters& parameters);
 bool fillStress(Twin& twin, Stamp since, harmonic_joint_twin::Stress& message) noexcept;
+void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
+                harmonic_joint_twin::Stress& message) noexcept;
 
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 

@@ -10,7 +10,8 @@
 namespace hjt
 {
 MeasuredDrive::MeasuredDrive(const Parameters& parameters)
-  : torque_per_current_(parameters.telemetry.torque_per_current / nominalRatio(parameters.gear))
+  : parameters_(parameters)
+  , torque_per_current_(parameters.telemetry.torque_per_current / nominalRatio(parameters.gear))
   , current_offset_(parameters.telemetry.current_offset)
   , ratio_(nominalRatio(parameters.gear))
   , gear_(parameters)
@@ -30,6 +31,11 @@ bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
 void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept
 {
   fillContactForces(stamp, gear_, message);
+}
+
+void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept
+{
+  fillStress(stamp, gear_, parameters_, message);
 }
 
 void MeasuredDrive::fill(Stamp stamp, std::int64_t sample, harmonic_joint_twin::Encoders& message) noexcept

@@ -23,12 +23,14 @@ public:
   std::uint64_t failures() const noexcept { return failures_; }
 
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
+  void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
   /// The noise of the sensors is that of the sample with this number.
   void fill(Stamp stamp, std::int64_t sample, harmonic_joint_twin::Encoders& message) noexcept;
   /// What follows from one instant; what takes a turn of the drive is not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:
+  const Parameters parameters_;
   const double torque_per_current_;  // at the motor [N.m/A]
   const double current_offset_;      // [A]
   const double ratio_;

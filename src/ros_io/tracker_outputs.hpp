@@ -28,12 +28,14 @@ public:
     , contact_forces_periods_(parameters.publish.contact_forces_rate)
     , encoders_periods_(parameters.publish.encoders_rate)
     , health_periods_(parameters.publish.health_rate)
+    , stress_periods_(parameters.publish.stress_rate)
     , comparison_(context, topics::COMPARISON, makeMessage<harmonic_joint_twin::Comparison>(parameters))
     , indicators_(context, topics::INDICATORS, makeIndicators(parameters))
     , assessment_(context, topics::ASSESSMENT, makeAssessment(parameters))
     , contact_forces_(context, topics::CONTACT_FORCES, makeContactForces(parameters))
     , encoders_(context, topics::ENCODERS, makeMessage<harmonic_joint_twin::Encoders>(parameters))
     , health_(context, topics::HEALTH, makeMessage<harmonic_joint_twin::Health>(parameters))
+    , stress_(context, topics::STRESS, makeStress(parameters))
   {
   }
 
@@ -52,7 +54,8 @@ public:
     const bool forces_due = contact_forces_periods_.begins(stamp) && contact_forces_.isWanted();
     const bool encoders_due = encoders_periods_.begins(stamp) && encoders_.isWanted();
     const bool health_due = health_periods_.begins(stamp) && health_.isWanted();
-    if ((!forces_due && !encoders_due && !health_due) || !drive_.moveTo(comparison))
+    const bool stress_due = stress_periods_.begins(stamp) && stress_.isWanted();
+    if ((!forces_due && !encoders_due && !health_due && !stress_due) || !drive_.moveTo(comparison))
     {
       return;
     }
@@ -71,6 +74,11 @@ public:
       drive_.fill(stamp, health_.message());
       health_.send();
     }
+    if (stress_due)
+    {
+      drive_.fill(stamp, stress_.message());
+      stress_.send();
+    }
   }
 
   std::uint64_t failures() const { return drive_.failures(); }  ///< instants without an equilibrium
@@ -81,11 +89,13 @@ private:
   StampPeriods contact_forces_periods_;
   StampPeriods encoders_periods_;
   StampPeriods health_periods_;
+  StampPeriods stress_periods_;
   Sink<harmonic_joint_twin::Comparison> comparison_;
   Sink<harmonic_joint_twin::Indicators> indicators_;
   Sink<harmonic_joint_twin::Assessment> assessment_;
   Sink<harmonic_joint_twin::ContactForces> contact_forces_;
   Sink<harmonic_joint_twin::Encoders> encoders_;
   Sink<harmonic_joint_twin::Health> health_;
+  Sink<harmonic_joint_twin::Stress> stress_;
 };
 }  // namespace hjt

@@ -23,6 +23,7 @@ constexpr double LONG_WAY = 0.5;
 MeasuredGear::MeasuredGear(const Parameters& parameters)
   : model_(startingJoint(parameters))
   , ring_(model_.ring, staticSolver(parameters.solver))
+  , stress_(parameters)
   , teeth_are_alike_(teethAreAlike(parameters))
   , pitch_(model_.ring.rest.pitchAngle())
   , ratio_(nominalRatio(parameters.gear))
@@ -98,9 +99,20 @@ LobeLoads MeasuredGear::lobes() const noexcept
                      ring_.position().wave_generator_angle });
 }
 
-void MeasuredGear::fill(ToothForces& forces) const noexcept
+/// Of the drive, that the ring's first one stands for.
+int MeasuredGear::firstTooth() const noexcept
 {
   const std::int64_t teeth = tooth_angles_.size();
-  fillToothForces(ring_, static_cast<int>(((shift_ % teeth) + teeth) % teeth), forces);
+  return static_cast<int>(((shift_ % teeth) + teeth) % teeth);
+}
+
+void MeasuredGear::fill(ToothForces& forces) const noexcept
+{
+  fillToothForces(ring_, firstTooth(), forces);
+}
+
+void MeasuredGear::fill(ToothStress& stress) const noexcept
+{
+  stress_.at(ring_, firstTooth(), stress);
 }
 }  // namespace hjt

@@ -10,6 +10,7 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "model/joint_model.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "statics/flexspline_stress.hpp"
 
 namespace hjt
 {
@@ -42,12 +43,16 @@ public:
 
   /// `forces` as Twin::makeToothForces makes them.
   void fill(ToothForces& forces) const noexcept;
+  /// `stress`: sized for the gear's teeth.
+  void fill(ToothStress& stress) const noexcept;
 
 private:
+  int firstTooth() const noexcept;
   bool solve(double motor_angle, double joint_torque) noexcept;
 
   const JointModel model_;
   RingEquilibrium ring_;
+  const FlexsplineStress stress_;
   const bool teeth_are_alike_;
   const double pitch_;  // [rad]
   const double ratio_;

@@ -284,7 +284,7 @@ class UR5(unittest.TestCase):
 
     def test_every_number_on_every_topic_is_finite(self):
         for twin in TWINS:
-            for name in ("comparison", "indicators", "assessment", "contact_forces", "encoders", "health"):
+            for name in ("comparison", "indicators", "assessment", "contact_forces", "encoders", "health", "stress"):
                 self.everything[twin, name].wait_for(1)
         for which, listener in self.everything.items():
             with self.subTest(topic=which):

@@ -109,7 +109,7 @@ class Arm(tool.ToolTest):
                 np.testing.assert_allclose([abs(sum(m.mesh_force)) for m in forces],
                                            [(32.6 if name in SHORT_NAMES[:3] else 58.3) * abs(torques[m.header.stamp])
                                             for m in forces], rtol=0.01, atol=5.0)
-                for topic in ("encoders", "health"):
+                for topic in ("encoders", "health", "stress"):
                     self.assertEqual(bag.get_message_count(f"/{name}/joint_twin/{topic}"), 50)
         self.succeed("follow", "arm.bag", "--joint", "elbow", "--bag", "elbow.bag")
         with rosbag.Bag(self.path("elbow.bag")) as bag:
