@@ -121,6 +121,10 @@ def cycles(page):
     page.check("stress.cycles_momentary", f"momentary peak torque, {MOMENTARY:g} N·m: cycles of the median flexspline",
                "catalogue allows 1e4", AtLeast(1e4), min(row[0] for row in weakest[MOMENTARY]), "",
                "textbook S-N curve of steel, nothing fitted")
+    small = page.tool("life", "fatigue", "--torques", "54", "--config", "size_14.yaml")["rows"]
+    page.check("stress.cycles_momentary_size_14", "size 14, momentary peak torque, 54 N·m: cycles of the median",
+               "catalogue allows 1e4", AtLeast(1e4), min(row["cycles"] or math.inf for row in small), "",
+               "lengths of size 25 times 14/25, the same steel")
     table = []
     for torque, rows_at in weakest.items():
         shown = [f"{min(row[i] for row in rows_at):.3g}".replace("inf", "no end") for i in (0, 1)]

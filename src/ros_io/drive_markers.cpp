@@ -47,12 +47,12 @@ const std_msgs::ColorRGBA ORANGE = color(0.95F, 0.55F, 0.10F);
 const std_msgs::ColorRGBA BLUE = color(0.20F, 0.45F, 0.90F);
 const std_msgs::ColorRGBA BLACK = color(0.05F, 0.05F, 0.05F);
 
-/// From steel at no force to red at the full one and beyond.
-std_msgs::ColorRGBA loadColor(double force, double full_force)
+/// From steel at nothing to `full` at a share of 1 and beyond.
+std_msgs::ColorRGBA shareColor(double of, const std_msgs::ColorRGBA& full)
 {
-  const auto share = static_cast<float>(std::min(1.0, force / full_force));
-  return color(STEEL.r + share * (FULL_LOAD.r - STEEL.r), STEEL.g + share * (FULL_LOAD.g - STEEL.g),
-               STEEL.b + share * (FULL_LOAD.b - STEEL.b));
+  const auto share = static_cast<float>(std::min(1.0, of));
+  return color(STEEL.r + share * (full.r - STEEL.r), STEEL.g + share * (full.g - STEEL.g),
+               STEEL.b + share * (full.b - STEEL.b));
 }
 
 Marker makeMarker(const std_msgs::Header& header, const char* name, int type, const std_msgs::ColorRGBA& made)
@@ -128,11 +128,14 @@ struct Stretch
 };
 }  // namespace
 
-DriveMarkers::DriveMarkers(const GearParameters& gear, double flank_angle, const MarkerStyle& style)
-  : gear_(gear)
-  , flank_angle_(flank_angle)
+DriveMarkers::DriveMarkers(const Parameters& parameters, const MarkerStyle& style)
+  : gear_(parameters.gear)
+  , flank_angle_(parameters.mesh.flank_angle)
+  , stress_(parameters)
+  , full_stress_(parameters.life.endurance_limit /
+                 parameters.stress.concentration[static_cast<std::size_t>(StressPlace::TOOTH_SPACE)])
   , style_(style)
-  , fixed_radius_(gear.flexspline_inner_radius + gear.wave_amplitude + gear.toothMidHeight())
+  , fixed_radius_(gear_.flexspline_inner_radius + gear_.wave_amplitude + gear_.toothMidHeight())
 {
 }
 
@@ -140,7 +143,7 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
 {
   const auto teeth = static_cast<std::size_t>(gear_.teeth_flexspline);
   if (forces.tooth_x.size() != teeth || forces.tooth_y.size() != teeth || forces.mesh_force.size() != teeth ||
-      forces.wave_generator_force.size() != teeth)
+      forces.wave_generator_force.size() != teeth || forces.rim_tension.size() != teeth)
   {
     throw std::invalid_argument("contact forces of " + std::to_string(forces.tooth_x.size()) +
                                 " teeth, but gear.teeth_flexspline is " + std::to_string(teeth));
@@ -186,14 +189,21 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
     const Point tangent = (point(i + 1) - point(i + teeth - 1)).normalized();
     const Point outward(tangent.y(), -tangent.x());
     const double force = std::abs(forces.mesh_force[i]);
-    const std_msgs::ColorRGBA load = loadColor(force, style_.full_force);
+    const std_msgs::ColorRGBA load = shareColor(force / style_.full_force, FULL_LOAD);
+    const Point before = here - point(i + teeth - 1);
+    const Point behind = point(i + 1) - here;
+    const double turn = smallAngle(before.x() * behind.y() - before.y() * behind.x(), before.dot(behind));
+    const double stress =
+        stress_.inToothSpace(turn - TWO_PI / gear_.teeth_flexspline,
+                             0.5 * (forces.rim_tension[i] + forces.rim_tension[(i + teeth - 1) % teeth]));
+    const std_msgs::ColorRGBA stressed = shareColor(std::abs(stress) / full_stress_, stress > 0.0 ? FULL_LOAD : BLUE);
     const Point root = here + gear_.rim_thickness * outward;
     const Point tip = root + gear_.tooth_height_flexspline * outward;
     const Point half_root = ROOT_SHARE * flexspline_pitch * tangent;
     const Point half_tip = TIP_SHARE * flexspline_pitch * tangent;
     const Point half_rim = 0.5 * flexspline_pitch * tangent;
     addQuad(flexspline, drawn(here - half_rim), drawn(here + half_rim), drawn(root + half_rim), drawn(root - half_rim),
-            load);
+            stressed);
     addQuad(flexspline, drawn(root - half_root), drawn(root + half_root), drawn(tip + half_tip), drawn(tip - half_tip),
             load);
 

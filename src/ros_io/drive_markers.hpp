@@ -7,6 +7,7 @@
 
 #include "harmonic_joint_twin/ContactForces.h"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "statics/flexspline_stress.hpp"
 
 namespace hjt
 {
@@ -27,7 +28,7 @@ struct MarkerStyle
 /// | namespace of the marker | shows |
 /// |---|---|
 /// | `wave_generator` | its ellipse and major axis |
-/// | `flexspline` | rim and teeth, coloured by the force on the flank |
+/// | `flexspline` | teeth, coloured by the force on the flank; rim, by the stress between its teeth |
 /// | `circular_spline` | ring and teeth |
 /// | `wave_generator_force` | arrow onto every tooth that it presses, along the rim's normal |
 /// | `leading_flank_force`, `trailing_flank_force` | arrow onto every loaded flank, along its normal |
@@ -35,7 +36,7 @@ struct MarkerStyle
 class DriveMarkers
 {
 public:
-  DriveMarkers(const GearParameters& gear, double flank_angle, const MarkerStyle& style);
+  DriveMarkers(const Parameters& parameters, const MarkerStyle& style);
 
   /// @throws std::invalid_argument unless every array has as many entries as the flexspline has teeth.
   visualization_msgs::MarkerArray draw(const harmonic_joint_twin::ContactForces& forces) const;
@@ -43,6 +44,8 @@ public:
 private:
   GearParameters gear_;
   double flank_angle_;
+  FlexsplineStress stress_;
+  double full_stress_;  // nominal, the endurance limit at the notch [Pa]
   MarkerStyle style_;
   double fixed_radius_;  // drawn where it is [m]
 };

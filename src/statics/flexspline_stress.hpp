@@ -48,6 +48,12 @@ public:
   };
   Parts inToothSpace(const RingEquilibrium& ring, int i) const noexcept { return parts(ring, i, turn(ring, i)); }
 
+  /// The same of a sound rim by its turn at the tooth [rad] and its mean tension there [N].
+  double inToothSpace(double turn, double tension) const noexcept
+  {
+    return by_turn_[static_cast<std::size_t>(StressPlace::TOOTH_SPACE)] * turn + tension / section_;
+  }
+
 private:
   static double turn(const RingEquilibrium& ring, int i) noexcept;
   Parts parts(const RingEquilibrium& ring, int i, double turn) const noexcept;

@@ -417,9 +417,10 @@ TEST(UsageHistory, AgesTheDriveAsItsMotionDoes)
   EXPECT_NEAR(estimate.grease_used, age.grease, 1e-9);
 }
 
+/// Drives whose wear is known: of what is left the bearing decides.
 TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = shippedParameters({ "life.wear_spread=0.4" });
   LifeEstimator estimator(parameters);
   UsageHistory record(parameters.life);
   DutyPhase rated = ratedDuty(parameters.life.grease_temperature).phases[0];
@@ -435,6 +436,22 @@ TEST(LifeEstimator, TellsTheCataloguesLifeOfANewDriveAtTheRatedPoint)
   EXPECT_EQ(worn.remaining.ended, 0.0);
   EXPECT_GT(worn.remaining.quantile[2], fresh.remaining.quantile[2] - parameters.life.bearing_l50);
   EXPECT_LT(worn.remaining.quantile[2], fresh.remaining.quantile[2]);
+}
+
+TEST(LifeEstimator, OfADriveWhoseWearNobodyHasMeasuredIsWide)
+{
+  const auto fresh = [](const Parameters& parameters)
+  {
+    LifeEstimator estimator(parameters);
+    UsageHistory record(parameters.life);
+    record.add(ratedDuty(parameters.life.grease_temperature).phases[0]);
+    return estimator.estimate(record).remaining;
+  };
+  const RemainingHours known = fresh(shippedParameters({ "life.wear_spread=0.4" }));
+  const RemainingHours shipped = fresh(shippedParameters());
+  EXPECT_LT(shipped.quantile[1], 0.7 * known.quantile[1]);
+  EXPECT_GT(shipped.by_cause[0], 0.1) << "flanks";
+  EXPECT_GT(shipped.by_cause[1], 0.05) << "interface";
 }
 
 TEST(UsageHistory, IsTheSameAfterItsFile)

@@ -15,6 +15,12 @@ namespace hjt
 {
 namespace
 {
+const Parameters& parameters()
+{
+  static const Parameters SHIPPED = shippedParameters({ "mesh.flank_angle=1.0" });
+  return SHIPPED;
+}
+
 const MarkerStyle STYLE{ "drive", 4.0, 1.0e-4, 100.0 };
 
 /// A round flexspline with no force on any tooth.
@@ -29,6 +35,7 @@ harmonic_joint_twin::ContactForces unloaded(const GearParameters& gear)
   }
   forces.mesh_force.assign(ring.teeth(), 0.0);
   forces.wave_generator_force.assign(ring.teeth(), 0.0);
+  forces.rim_tension.assign(ring.teeth(), 0.0);
   return forces;
 }
 
@@ -46,11 +53,11 @@ const visualization_msgs::Marker& find(const visualization_msgs::MarkerArray& ar
 
 TEST(DriveMarkers, StretchRadiiFromTheEngagedTeeth)
 {
-  const GearParameters gear = shippedParameters().gear;
+  const GearParameters gear = parameters().gear;
   const double fixed = gear.flexspline_inner_radius + gear.wave_amplitude + gear.toothMidHeight();
   for (const double exaggeration : { 1.0, 4.0 })
   {
-    const DriveMarkers markers(gear, 1.0, { "drive", exaggeration, 1.0e-4, 100.0 });
+    const DriveMarkers markers(parameters(), { "drive", exaggeration, 1.0e-4, 100.0 });
     const visualization_msgs::MarkerArray array = markers.draw(unloaded(gear));
     const geometry_msgs::Point& first = find(array, "wave_generator").points.front();
     const double major = gear.flexspline_inner_radius + gear.wave_amplitude;
@@ -61,8 +68,8 @@ TEST(DriveMarkers, StretchRadiiFromTheEngagedTeeth)
 
 TEST(DriveMarkers, DrawNoArrowWithoutForce)
 {
-  const GearParameters gear = shippedParameters().gear;
-  const visualization_msgs::MarkerArray array = DriveMarkers(gear, 1.0, STYLE).draw(unloaded(gear));
+  const GearParameters gear = parameters().gear;
+  const visualization_msgs::MarkerArray array = DriveMarkers(parameters(), STYLE).draw(unloaded(gear));
   for (const char* name : { "wave_generator_force", "leading_flank_force", "trailing_flank_force" })
   {
     EXPECT_EQ(find(array, name).action, visualization_msgs::Marker::DELETE) << name;
@@ -71,10 +78,11 @@ TEST(DriveMarkers, DrawNoArrowWithoutForce)
 
 TEST(DriveMarkers, AnArrowEndsAtTheLoadedToothAndIsAsLongAsTheForce)
 {
-  const GearParameters gear = shippedParameters().gear;
+  const GearParameters gear = parameters().gear;
   harmonic_joint_twin::ContactForces forces = unloaded(gear);
   forces.mesh_force[50] = -80.0;
-  const visualization_msgs::MarkerArray array = DriveMarkers(gear, 1.0, { "drive", 1.0, 1.0e-4, 100.0 }).draw(forces);
+  const visualization_msgs::MarkerArray array =
+      DriveMarkers(parameters(), { "drive", 1.0, 1.0e-4, 100.0 }).draw(forces);
   EXPECT_EQ(find(array, "leading_flank_force").action, visualization_msgs::Marker::DELETE);
   const auto& points = find(array, "trailing_flank_force").points;
   ASSERT_FALSE(points.empty());
@@ -92,15 +100,35 @@ TEST(DriveMarkers, AnArrowEndsAtTheLoadedToothAndIsAsLongAsTheForce)
   EXPECT_NEAR(farthest, 80.0 * 1.0e-4, 1e-5);
   const auto& colors = find(array, "flexspline").colors;
   const std::size_t per_tooth = colors.size() / gear.teeth_flexspline;
-  EXPECT_GT(colors[50 * per_tooth].r, colors[51 * per_tooth].r);
+  const std::size_t tooth = per_tooth / 2;  // the rim comes first
+  EXPECT_GT(colors[50 * per_tooth + tooth].r, colors[51 * per_tooth + tooth].r);
+}
+
+TEST(DriveMarkers, ShowTheStressOfTheRim)
+{
+  const GearParameters gear = parameters().gear;
+  harmonic_joint_twin::ContactForces forces = unloaded(gear);
+  const double section = parameters().life.face_width * gear.rim_thickness;
+  const double full = parameters().life.endurance_limit / parameters().stress.concentration[0];
+  for (const std::size_t segment : { 19U, 20U })
+  {
+    forces.rim_tension[segment] = full * section;
+    forces.rim_tension[segment + 100] = -full * section;
+  }
+  const visualization_msgs::MarkerArray array = DriveMarkers(parameters(), STYLE).draw(forces);
+  const auto& colors = find(array, "flexspline").colors;
+  const std::size_t per_tooth = colors.size() / gear.teeth_flexspline;
+  EXPECT_FLOAT_EQ(colors[20 * per_tooth].r, 0.9F) << "tension: red";
+  EXPECT_FLOAT_EQ(colors[120 * per_tooth].b, 0.9F) << "compression: blue";
+  EXPECT_FLOAT_EQ(colors[60 * per_tooth].r, 0.62F) << "none: steel";
 }
 
 TEST(DriveMarkers, RefuseAnotherNumberOfTeeth)
 {
-  const GearParameters gear = shippedParameters().gear;
+  const GearParameters gear = parameters().gear;
   harmonic_joint_twin::ContactForces forces = unloaded(gear);
   forces.mesh_force.pop_back();
-  EXPECT_THROW(DriveMarkers(gear, 1.0, STYLE).draw(forces), std::invalid_argument);
+  EXPECT_THROW(DriveMarkers(parameters(), STYLE).draw(forces), std::invalid_argument);
 }
 }  // namespace
 }  // namespace hjt
