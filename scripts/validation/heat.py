@@ -94,7 +94,7 @@ conductance and mean power, starts the second part at the temperature found ther
     capacity = capacities["grease_capacity"] + capacities["housing_capacity"]
     before = np.arange(len(time)) < split
     runs = {}
-    for k, joint in enumerate(JOINTS):
+    for k, joint in enumerate(JOINTS[:1] if page.fast else JOINTS):
         known = np.isfinite(temperatures[:, k])
         found, _ = curve_fit(exponential, time[known & before], temperatures[known & before, k], (40.0, 10.0, 2000.0))
         end, rise, constant = found
@@ -118,6 +118,8 @@ In base, shoulder and elbow what 49 minutes show determines where the joint sett
 higher: beyond their own time constant there is a slower one, that of the arm around them, which a joint between
 surroundings of one temperature does not have.
 """)
+    if page.fast:
+        return
     friction_of_wrist(page, time, currents[:, 3], temperatures[:, 3], speeds[:, 3])
 
     def draw(figure):

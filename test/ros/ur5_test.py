@@ -130,10 +130,12 @@ class UR5(unittest.TestCase):
                 # Live ahead of their rows, as two topics keep no order between them.
                 for ahead in range(row, row + 50) if row == 0 else range(row + 25, row + 75) if row % 50 == 25 else []:
                     cls.load_publisher.publish(load_at(ahead, begin))
+                for ahead in [0] if row == 0 else [row + 25] if row % 50 == 25 and row + 25 < len(robot) else []:
+                    for temperature in temperatures_at(ahead, begin):
+                        cls.temperature_publisher.publish(temperature)
                 time.sleep(max(0.0, (stamp - rospy.Time.now()).to_sec()))
                 bag.write("/joint_twin/load", load_at(row, begin), rospy.Time.now())
                 for temperature in temperatures_at(row, begin) if row % 50 == 0 else []:
-                    cls.temperature_publisher.publish(temperature)
                     bag.write("/joint_temperatures", temperature, rospy.Time.now())
                 if row % 40 == 25 or 300 <= row < 330:
                     continue

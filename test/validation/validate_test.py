@@ -50,6 +50,13 @@ class Validate(unittest.TestCase):
                    ["catalogue.no_load", "catalogue.efficiency", "drives.ur5e.base.1.5", "size14.no_load"],
                    ["catalogue", "drives", "size14"])
 
+    def test_another_oil_fails_its_viscosity(self):
+        self.fails(["bearing.viscosity_slope=3.5"], ["catalogue.oil.40", "catalogue.oil.100"], ["catalogue"])
+
+    def test_a_housing_cooled_twice_as_well_fails_the_warm_up(self):
+        self.fails(["thermal.ambient_conductance=2.2"], ["heat.time_constant.size_25", "heat.time_constant.size_14"],
+                   ["heat"])
+
     def test_cup_as_stiff_as_the_whole_gear_fails_the_torsion(self):
         self.fails(["cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]"],
                    ["catalogue.torsion.14", "catalogue.torsion.150"], ["catalogue"])
