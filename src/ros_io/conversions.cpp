@@ -183,6 +183,8 @@ bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::
   const bool found = source(stress);
   message.header.stamp = toRosTime(stamp);
   message.largest = 0.0;
+  message.place.assign(STRESS_PLACE_NAMES[0]);
+  message.tooth = 0;
   message.endurance_share = 0.0;
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {

@@ -60,12 +60,12 @@ harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameter
 bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForces& message) noexcept;
 void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept;
 
-/// The solver's state is that of the steps after `since`.
 harmonic_joint_twin::Stress makeStress(const Parameters& parameters);
 bool fillStress(Twin& twin, Stamp since, harmonic_joint_twin::Stress& message) noexcept;
 void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
                 harmonic_joint_twin::Stress& message) noexcept;
 
+/// The solver's state is that of the steps after `since`.
 bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);

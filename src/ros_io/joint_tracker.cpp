@@ -7,7 +7,6 @@
 #include <ros/console.h>
 
 #include "gear/ratio.hpp"
-#include "ros_io/input_topics.hpp"
 #include "ros_io/node_surface_source.hpp"
 #include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
@@ -264,6 +263,13 @@ bool JointTracker::loadIsUnknown() const
          !comparison_.load_provided;
 }
 
+bool JointTracker::departsAsTheArm() const
+{
+  const std::optional<double> ratio = tracker_.friction().ratio;
+  return arm_friction_ != 1.0 && ratio &&
+         std::abs(*ratio / arm_friction_ - 1.0) <= parameters_.comparison.repeat_tolerance;
+}
+
 /// Empty: it is judged.
 std::string JointTracker::whyNotJudged() const
 {
@@ -308,7 +314,7 @@ DiagnosticVerdict JointTracker::judgeComparison() const
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
         { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
         { departs_ && !fit_settled_, { D::OK, "Not judged yet: whether angles and efforts fit is not known" } },
-        { departs_ && arm_friction_ != 1.0,
+        { departs_ && departsAsTheArm(),
           { D::OK, "The current departs from a healthy joint's, as that of the whole arm does: temperature or gain" } },
         { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
       { D::OK, "Within the band of a healthy joint" });
@@ -372,10 +378,11 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Temperature [degC]", counters.compared > 0 ? comparison_.temperature : parameters_.input.temperature);
-  const bool is_configured = counters.compared == 0 || comparison_.temperature == parameters_.input.temperature;
   status.add("Temperature is", comparison_.temperature_received ? "received" :
-                               is_configured                    ? "configured" :
-                                                                  "estimated from the friction of all joints");
+                               tracker_.hasEstimate()           ? "estimated from the friction of all joints" :
+                               parameters_.thermal.model == ThermalModel::TWO_NODES ?
+                                                        "estimated from the losses of the motion" :
+                                                        "configured");
   status.add("Friction that all joints have in common [-]", arm_friction_);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);

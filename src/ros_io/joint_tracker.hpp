@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <ros/message_event.h>
@@ -19,6 +20,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "ros_io/diagnostics.hpp"
+#include "ros_io/input_topics.hpp"
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/recent_events.hpp"
 #include "ros_io/telemetry_messages.hpp"
@@ -44,7 +46,9 @@ public:
   void send() { publisher_.publish(message_); }
 
 private:
-  static constexpr std::uint32_t QUEUE_SIZE = 4096;  // comparisons come in bursts
+  // Comparisons come in bursts.
+  static constexpr std::uint32_t QUEUE_SIZE =
+      std::is_same_v<Message, harmonic_joint_twin::Comparison> ? InputTopics::QUEUE_SIZE : 100;
 
   Message message_;
   ros::Publisher publisher_;
@@ -76,7 +80,8 @@ public:
 
   Tracker& tracker() { return tracker_; }
 
-  /// What the friction of the arm's joints has in common, a multiple of the expected [-]; 1: nothing.
+  /// What the friction of the arm's joints has in common, a multiple of the expected of this one [-]; 1: nothing, or the
+  /// twin predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   /// A message on the load's topic.
@@ -121,6 +126,7 @@ private:
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   bool loadIsUnknown() const;
+  bool departsAsTheArm() const;
   std::string whyNotJudged() const;
   bool hasStopped() const;
   DiagnosticVerdict judgeTelemetry() const;

@@ -56,7 +56,7 @@ void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Health& message) noex
   message.wave_generator_load = lobes.wave_generator_force;
   message.friction_torque = std::abs(now_.friction_torque) / ratio_;
   message.grease_temperature = now_.temperature;
-  message.housing_temperature = now_.temperature;
+  message.housing_temperature = now_.housing_temperature;
   message.motor_torque = motor_torque_;
   message.joint_torque = now_.joint_torque;
   message.solver_residual = gear_.residual();

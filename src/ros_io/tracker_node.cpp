@@ -193,9 +193,9 @@ void TrackerNode::lookAtFriction(double time)
     text << ": it is predicted at " << roundedText(*found.temperature, 2) << " degC now";
   }
   ROS_INFO_STREAM(text.str());
-  for (const auto& joint : joints_)
+  for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joint->setArmFriction(found.median);
+    joints_[i]->setArmFriction(found.temperature ? 1.0 : found.factors[i]);
   }
 }
 

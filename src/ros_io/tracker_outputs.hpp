@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "ros_io/measured_drive.hpp"
 #include "ros_io/stamp_periods.hpp"
@@ -11,6 +12,18 @@
 
 namespace hjt
 {
+/// Names of the topics of TrackerOutputs below `joint_namespace`.
+inline std::vector<std::string> trackerTopics(const std::string& joint_namespace)
+{
+  std::vector<std::string> names;
+  for (const char* name : { topics::COMPARISON, topics::INDICATORS, topics::ASSESSMENT, topics::CONTACT_FORCES,
+                            topics::ENCODERS, topics::HEALTH, topics::STRESS })
+  {
+    names.push_back(joint_namespace + "/" + name);
+  }
+  return names;
+}
+
 /// The topics of one joint beside a robot, each with a `Sink<Message>` that its messages go to. The ring is solved only
 /// for messages that are due and wanted.
 ///

@@ -12,6 +12,8 @@ namespace hjt
 {
 namespace
 {
+constexpr std::size_t MIN_JOINTS = 3;  // that witness for each other
+
 /// Of at least one value.
 double medianOf(std::vector<double> values)
 {
@@ -23,7 +25,6 @@ double medianOf(std::vector<double> values)
 
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr std::size_t MIN_JOINTS = 3;
   constexpr double COLDEST = 0.0;  // [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
@@ -123,19 +124,26 @@ void ArmFrictionWatch::reset()
 
 bool ArmFrictionWatch::look(double time)
 {
+  if (time < next_look_ - 2.0 * PERIOD)  // a new recording
+  {
+    reset();
+  }
   if (time < next_look_)
   {
     return false;
   }
   next_look_ = time + PERIOD;
   std::vector<MeasuredFriction> joints;
+  std::size_t known = 0;
   for (const Tracker* joint : joints_)
   {
     joints.push_back(joint->friction());
+    known += joints.back().ratio ? 1 : 0;
   }
   const ArmFriction found = commonFriction(joints, tolerance_);
-  const bool differs = std::abs(found.median - found_.median) > CHANGE;
-  steady_ = differs ? steady_ + 1 : 0;
+  const bool differs = std::abs(found.median - found_.median) > CHANGE ||
+                       found.temperature.has_value() != found_.temperature.has_value();
+  steady_ = differs && known >= MIN_JOINTS ? steady_ + 1 : 0;
   if (steady_ < LOOKS)
   {
     return false;

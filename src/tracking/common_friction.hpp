@@ -34,7 +34,7 @@ struct ArmFriction
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or
-/// gain. Where it means a temperature and none is received, the joints are predicted at that one.
+/// gain. Where it means a temperature and none is received, the joints are predicted at that one. `look` allocates.
 class ArmFrictionWatch
 {
 public:

@@ -17,7 +17,7 @@ namespace hjt
 struct Contact
 {
   double since{};    ///< when it was first seen [s]
-  double lasted{};   ///< in all, without pauses [s]
+  double lasted{};   ///< without pauses shorter than ContactWatch::HOLD [s]
   double largest{};  ///< torque at the joint beyond the usual, magnitude [N.m]
 };
 
@@ -51,7 +51,7 @@ public:
     const double step = sample.after_gap ? 0.0 : std::max(0.0, sample.time - time_);
     time_ = sample.time;
     const int way = std::abs(sample.velocity) > MOVING && !is_held ? (sample.velocity > 0.0 ? 1 : -1) : 0;
-    if (way == 0 || way != way_ || step <= 0.0)
+    if (way == 0 || way != way_ || step <= 0.0 || step > SETTLED)
     {
       way_ = way;
       moved_ = beyond_ = mean_ = 0.0;
@@ -70,9 +70,14 @@ public:
     beyond_ = std::abs(mean_) > bound && moved_ > SETTLED && is_known ? beyond_ + step : 0.0;
     if (beyond_ > LASTING)
     {
-      contact_.since = contact_.lasted > 0.0 ? contact_.since : sample.time;
+      if (!isRecent())
+      {
+        contact_ = { sample.time - beyond_, 0.0, 0.0 };
+      }
       contact_.lasted += step;
       contact_.largest = std::max(contact_.largest, std::abs(mean_));
+      largest_ = contact_.largest >= largest_.largest ? contact_ : largest_;
+      touched_ += step;
       last_ = sample.time;
     }
   }
@@ -80,11 +85,12 @@ public:
   bool hasSeen() const noexcept
   {
     constexpr double OFTEN = 0.2;  // share of the motion
-    return contact_.lasted > 0.0 && contact_.lasted < OFTEN * (usual_[0].time + usual_[1].time);
+    return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
   /// Now, or less than HOLD ago.
   bool isRecent() const noexcept { return hasSeen() && time_ - last_ < HOLD; }
-  const Contact& contact() const noexcept { return contact_; }  ///< all since the start
+  const Contact& last() const noexcept { return contact_; }     ///< the last one
+  const Contact& largest() const noexcept { return largest_; }  ///< that with the largest torque
 
 private:
   struct Usual
@@ -101,7 +107,9 @@ private:
   double beyond_{};                                          // how long [s]
   std::array<Usual, 2> usual_{};                             // by direction
   double last_{ -std::numeric_limits<double>::infinity() };  // when something touched it [s]
+  double touched_{};                                         // in all [s]
   Contact contact_;
+  Contact largest_;
 };
 
 /// A clause for people.

@@ -35,13 +35,17 @@ public:
   std::optional<double> ratio() const noexcept
   {
     constexpr double MIN_TIME = 10.0;         // [s]
-    constexpr double CORRELATED = 0.5;        // rows nearer to each other tell the same [s]
+    constexpr double CORRELATED = 0.5;        // rows nearer to each other say the same [s]
     constexpr double MAX_UNCERTAINTY = 0.05;  // a third of what joints may differ by
     if (time_ < MIN_TIME)
     {
       return std::nullopt;
     }
     const double xx = xx_ - x_ * x_ / time_;
+    if (!(xx > 1e-9 * xx_))  // one way only, at one speed
+    {
+      return std::nullopt;
+    }
     const double xy = xy_ - x_ * y_ / time_;
     const double yy = yy_ - y_ * y_ / time_;
     const double rest = std::max(0.0, yy - xy * xy / xx);

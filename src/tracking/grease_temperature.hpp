@@ -72,7 +72,8 @@ public:
     copper_power_ = copper_loss_ * motor_torque * motor_torque;
   }
 
-  double housing() const noexcept { return heat_.housing(); }  ///< with two nodes [degC]
+  /// With two nodes; else that of the grease [degC].
+  double housing(double grease) const noexcept { return on_ ? heat_.housing() : grease; }
 
 private:
   DriveHeat heat_;

@@ -213,7 +213,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   {
     sample->temperature = temperatures_.at(sample->time);
   }
-  const bool is_temperature_received = std::isfinite(sample->temperature);
+  const double received_temperature = sample->temperature;
+  const bool is_temperature_received = std::isfinite(received_temperature);
   temperature_received_ = temperature_received_ || is_temperature_received;
   temperature_ = grease_.at(*sample);
   sample->temperature = is_temperature_received ? temperature_ : estimated_temperature_.value_or(temperature_);
@@ -235,6 +236,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   now.load_provided = received.has_value();
   now.temperature = sample->temperature;
   now.temperature_received = is_temperature_received;
+  now.housing_temperature = grease_.housing(sample->temperature);
   now.after_gap = sample->after_gap;
   follower_->follow(*sample, external, now);
   grease_.book(sample->velocity, now.friction_torque,
@@ -245,6 +247,8 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
+  // Health is compared by the temperature beside the motor, as in `compare`.
+  sample->temperature = received_temperature;
   watch(*sample, now, is_known);
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {

@@ -45,9 +45,10 @@ struct Comparison
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
                              ///< expects one, no band
   double temperature{};      ///< of the grease, that the prediction was made at [degC]
-  bool temperature_received{};  ///< it comes from a received one; else estimated or as configured
-  bool sticking{};              ///< friction holds the joint: any current within the band fits
-  bool after_gap{};             ///< first after a gap in the telemetry
+  bool temperature_received{};   ///< it comes from a received one; else estimated or as configured
+  double housing_temperature{};  ///< thermal.model = two_nodes: beside the motor; else that of the grease [degC]
+  bool sticking{};               ///< friction holds the joint: any current within the band fits
+  bool after_gap{};              ///< first after a gap in the telemetry
 
   /// Measured less predicted current as a torque at the joint [N.m].
   double residual_torque{};
@@ -97,6 +98,8 @@ public:
   /// An estimate for rows without a received temperature [degC]; none: the configured one.
   void setTemperature(std::optional<double> temperature) noexcept { estimated_temperature_ = temperature; }
 
+  bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
+
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
   void push(const MotionRow& row) noexcept;
 
@@ -113,7 +116,7 @@ public:
   /// Something touches the arm, or did less than ContactWatch::HOLD ago; health is not judged and starts again
   /// afterwards, and the rows do not count as outside. Where the load is the configured one alone, never.
   bool isTouched() const noexcept { return contact_.isRecent(); }
-  const Contact& contact() const noexcept { return contact_.contact(); }  ///< all since the last reset
+  const Contact& contact() const noexcept { return contact_.last(); }  ///< the last one
 
   /// Of the last minutes of motion, over the twin's without an estimated temperature. Mode MOTION only.
   MeasuredFriction friction() const;

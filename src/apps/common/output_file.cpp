@@ -19,7 +19,7 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
   }
   if (!input.empty() && fs::equivalent(path, input, error))
   {
-    throw InputError(path + " is the input itself; give another name to --out");
+    throw InputError(path + " is the input itself; give another name");
   }
   if (fs::is_directory(path, error))
   {

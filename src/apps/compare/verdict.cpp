@@ -152,7 +152,7 @@ std::string whyItDoesNotFit(const RecordingComparison& comparison, const Paramet
   }
   if (context.load != LoadOrigin::CONFIGURED && comparison.contact().hasSeen())
   {
-    return sentence(contactText(comparison.contact().contact()));
+    return sentence(contactText(comparison.contact().largest()));
   }
   return {};
 }

@@ -347,9 +347,9 @@ int compareArm(const CompareOptions& options)
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
     temperatures += comparison.temperature();
-    const std::string why_not = misfits[i].empty() && !record.verdict.judged && comparison.contact().hasSeen() ?
-                                    contactText(comparison.contact().contact()) :
-                                    misfits[i];
+    const std::string contact = contactText(comparison.contact().largest());
+    const std::string why_not =
+        misfits[i].empty() && record.verdict.findings.front().text == sentence(contact) ? contact : misfits[i];
     lines.push_back({ name, std::move(record.verdict), why_not, frictions[i].ratio, comparison.temperature(),
                       temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
   }

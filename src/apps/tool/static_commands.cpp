@@ -244,8 +244,7 @@ void declareStiffness(Command& command, StiffnessOptions& options)
   command
       .flag("--teeth", options.teeth,
             "every tooth's forces [N], nominal stresses [Pa], place in its space [m], tilt [rad] and gap to the nearer "
-            "flank "
-            "[m]; with --json")
+            "flank [m]; with --json")
       .needs("--json");
 }
 

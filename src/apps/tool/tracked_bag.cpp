@@ -7,7 +7,6 @@
 #include "apps/common/run_summary.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
-#include "ros_io/bag_inputs.hpp"
 
 namespace hjt
 {
@@ -44,7 +43,7 @@ TrackedBag::TrackedBag(const std::string& path, const MotionSource& source, cons
     openForReading(source_, source.path);
     for (const Joint& joint : joints)
     {
-      refuseTopics(source_, source.path, outputTopics(joint.joint_namespace));
+      refuseTopics(source_, source.path, trackerTopics(joint.joint_namespace));
     }
     view_.addQuery(source_);
     next_ = view_.begin();
