@@ -10,8 +10,8 @@
 
 namespace hjt
 {
-/// The drive of a measured joint, and what its messages hold: the gear at the measured angle under the joint's torque of
-/// the moment.
+/// The drive of a measured joint, and what its messages hold: the gear at the measured angle under the joint's torque
+/// of the moment.
 class MeasuredDrive
 {
 public:

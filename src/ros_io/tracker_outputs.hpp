@@ -27,8 +27,8 @@ inline std::vector<std::string> trackerTopics(const std::string& joint_namespace
 /// The topics of one joint beside a robot, each with a `Sink<Message>` that its messages go to. The ring is solved only
 /// for messages that are due and wanted.
 ///
-/// A sink is constructed from (context, topic's name, first message) and has `bool isWanted()`, `Message& message()`, to
-/// be filled, and `send()`.
+/// A sink is constructed from (context, topic's name, first message) and has `bool isWanted()`, `Message& message()`,
+/// to be filled, and `send()`.
 template <template <class> class Sink>
 class TrackerOutputs
 {
