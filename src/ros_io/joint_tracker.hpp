@@ -80,8 +80,8 @@ public:
 
   Tracker& tracker() { return tracker_; }
 
-  /// What the friction of the arm's joints has in common, a multiple of the expected of this one [-]; 1: nothing, or the
-  /// twin predicts with it.
+  /// What the friction of the arm's joints has in common, as a multiple of the expected of this one [-]; 1: nothing, or
+  /// the twin predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   /// A message on the load's topic.
