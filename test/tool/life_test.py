@@ -52,6 +52,8 @@ class Life(tool.ToolTest):
             self.assertEqual(row["allowed"], 1e4 if row["torque"] > 200.0 else None)
         self.assertGreater(rows[6]["cycles"], rows[6]["allowed"])
         self.assertEqual(self.succeed_json("life", "fatigue", "--torques", 67)["rows"], rows[:3])
+        beyond = self.succeed_json("life", "fatigue", "--torques", 300)["rows"]
+        self.assertEqual([row["allowed"] for row in beyond], [0.0] * 3)
 
     def test_trials_are_the_same_every_time(self):
         trials = ("life", "trials", self.duty(), "--lives", 5, "--every", 5000, "--particles", 200)

@@ -129,9 +129,12 @@ std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque,
   {
     const StressCycle& cycle = revolution_load.stress[place];
     const double share = fatigue_law.enduranceShare(place, cycle);
-    const bool lasting = std::abs(torque) <= parameters.life.repeated_peak_torque;
+    const double allowed =
+        std::abs(torque) <= parameters.life.repeated_peak_torque  ? HUGE_VAL :
+        std::abs(torque) <= parameters.life.momentary_peak_torque ? parameters.life.momentary_peak_cycles :
+                                                                    0.0;
     rows.push_back({ torque, place, cycle, fatigue_law.equivalentAmplitude(place, cycle), lasts(share),
-                     lasts(share / weak), lasting ? HUGE_VAL : parameters.life.momentary_peak_cycles });
+                     lasts(share / weak), allowed });
   }
   return rows;
 }
