@@ -11,8 +11,7 @@ namespace hjt
 {
 MeasuredDrive::MeasuredDrive(const Parameters& parameters)
   : parameters_(parameters)
-  , torque_per_current_(parameters.telemetry.torque_per_current / nominalRatio(parameters.gear))
-  , current_offset_(parameters.telemetry.current_offset)
+  , encoders_period_(toStampLength(1.0 / parameters.publish.encoders_rate))
   , ratio_(nominalRatio(parameters.gear))
   , gear_(parameters)
   , sensors_(parameters.sensors, 1.0 / parameters.publish.encoders_rate)
@@ -22,7 +21,8 @@ MeasuredDrive::MeasuredDrive(const Parameters& parameters)
 bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
 {
   now_ = comparison;
-  motor_torque_ = torque_per_current_ * (comparison.current.measured - current_offset_);
+  const TelemetryParameters& telemetry = parameters_.telemetry;
+  motor_torque_ = telemetry.torque_per_current / ratio_ * (comparison.current.measured - telemetry.current_offset);
   const bool found = gear_.moveTo(comparison.position.measured, comparison.joint_torque);
   failures_ += found ? 0 : 1;
   return found;
@@ -38,9 +38,9 @@ void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Stress& message) noex
   fillStress(stamp, gear_, parameters_, message);
 }
 
-void MeasuredDrive::fill(Stamp stamp, std::int64_t sample, harmonic_joint_twin::Encoders& message) noexcept
+void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept
 {
-  sensors_.update(sample, gear_.motorAngle(), gear_.position(), motor_torque_);
+  sensors_.update(stamp / encoders_period_, gear_.motorAngle(), gear_.position(), motor_torque_);
   fillEncoders(stamp, sensors_.encoders(), gear_.motorAngle(), gear_.position(), message);
 }
 

@@ -24,15 +24,14 @@ public:
 
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
-  /// The noise of the sensors is that of the sample with this number.
-  void fill(Stamp stamp, std::int64_t sample, harmonic_joint_twin::Encoders& message) noexcept;
+  /// The noise of the sensors is that of the sample in the stamp's period of publish.encoders_rate.
+  void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
   /// What follows from one instant; what takes a turn of the drive is not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:
   const Parameters parameters_;
-  const double torque_per_current_;  // at the motor [N.m/A]
-  const double current_offset_;      // [A]
+  const Stamp encoders_period_;  // [ns]
   const double ratio_;
   MeasuredGear gear_;
   JointSensors sensors_;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "ros_io/measured_drive.hpp"
@@ -38,17 +39,20 @@ public:
   TrackerOutputs(Context&& context, const Parameters& parameters)
     : drive_(parameters)
     , report_periods_(parameters.publish.indicators_rate)
-    , contact_forces_periods_(parameters.publish.contact_forces_rate)
-    , encoders_periods_(parameters.publish.encoders_rate)
-    , health_periods_(parameters.publish.health_rate)
-    , stress_periods_(parameters.publish.stress_rate)
     , comparison_(context, topics::COMPARISON, makeMessage<harmonic_joint_twin::Comparison>(parameters))
     , indicators_(context, topics::INDICATORS, makeIndicators(parameters))
     , assessment_(context, topics::ASSESSMENT, makeAssessment(parameters))
-    , contact_forces_(context, topics::CONTACT_FORCES, makeContactForces(parameters))
-    , encoders_(context, topics::ENCODERS, makeMessage<harmonic_joint_twin::Encoders>(parameters))
-    , health_(context, topics::HEALTH, makeMessage<harmonic_joint_twin::Health>(parameters))
-    , stress_(context, topics::STRESS, makeStress(parameters))
+    , ring_topics_(RingTopic<harmonic_joint_twin::ContactForces>{ StampPeriods(parameters.publish.contact_forces_rate),
+                                                                  { context, topics::CONTACT_FORCES,
+                                                                    makeContactForces(parameters) } },
+                   RingTopic<harmonic_joint_twin::Encoders>{
+                       StampPeriods(parameters.publish.encoders_rate),
+                       { context, topics::ENCODERS, makeMessage<harmonic_joint_twin::Encoders>(parameters) } },
+                   RingTopic<harmonic_joint_twin::Health>{
+                       StampPeriods(parameters.publish.health_rate),
+                       { context, topics::HEALTH, makeMessage<harmonic_joint_twin::Health>(parameters) } },
+                   RingTopic<harmonic_joint_twin::Stress>{ StampPeriods(parameters.publish.stress_rate),
+                                                           { context, topics::STRESS, makeStress(parameters) } })
   {
   }
 
@@ -64,51 +68,47 @@ public:
       fillAssessment(stamp, tracker.assessment(), assessment_.message());
       assessment_.send();
     }
-    const bool forces_due = contact_forces_periods_.begins(stamp) && contact_forces_.isWanted();
-    const bool encoders_due = encoders_periods_.begins(stamp) && encoders_.isWanted();
-    const bool health_due = health_periods_.begins(stamp) && health_.isWanted();
-    const bool stress_due = stress_periods_.begins(stamp) && stress_.isWanted();
-    if ((!forces_due && !encoders_due && !health_due && !stress_due) || !drive_.moveTo(comparison))
+    bool is_any_due = false;
+    const auto look = [&](auto& topic)
+    {
+      topic.is_due = topic.periods.begins(stamp) && topic.sink.isWanted();
+      is_any_due = is_any_due || topic.is_due;
+    };
+    std::apply([&](auto&... topic) { (look(topic), ...); }, ring_topics_);
+    if (!is_any_due || !drive_.moveTo(comparison))
     {
       return;
     }
-    if (forces_due)
+    const auto send = [&](auto& topic)
     {
-      drive_.fill(stamp, contact_forces_.message());
-      contact_forces_.send();
-    }
-    if (encoders_due)
-    {
-      drive_.fill(stamp, encoders_periods_.number(), encoders_.message());
-      encoders_.send();
-    }
-    if (health_due)
-    {
-      drive_.fill(stamp, health_.message());
-      health_.send();
-    }
-    if (stress_due)
-    {
-      drive_.fill(stamp, stress_.message());
-      stress_.send();
-    }
+      if (topic.is_due)
+      {
+        drive_.fill(stamp, topic.sink.message());
+        topic.sink.send();
+      }
+    };
+    std::apply([&](auto&... topic) { (send(topic), ...); }, ring_topics_);
   }
 
   std::uint64_t failures() const { return drive_.failures(); }  ///< instants without an equilibrium
 
 private:
+  /// A topic that the ring is solved for.
+  template <class Message>
+  struct RingTopic
+  {
+    StampPeriods periods;
+    Sink<Message> sink;
+    bool is_due{};
+  };
+
   MeasuredDrive drive_;
   StampPeriods report_periods_;
-  StampPeriods contact_forces_periods_;
-  StampPeriods encoders_periods_;
-  StampPeriods health_periods_;
-  StampPeriods stress_periods_;
   Sink<harmonic_joint_twin::Comparison> comparison_;
   Sink<harmonic_joint_twin::Indicators> indicators_;
   Sink<harmonic_joint_twin::Assessment> assessment_;
-  Sink<harmonic_joint_twin::ContactForces> contact_forces_;
-  Sink<harmonic_joint_twin::Encoders> encoders_;
-  Sink<harmonic_joint_twin::Health> health_;
-  Sink<harmonic_joint_twin::Stress> stress_;
+  std::tuple<RingTopic<harmonic_joint_twin::ContactForces>, RingTopic<harmonic_joint_twin::Encoders>,
+             RingTopic<harmonic_joint_twin::Health>, RingTopic<harmonic_joint_twin::Stress>>
+      ring_topics_;
 };
 }  // namespace hjt
