@@ -22,6 +22,13 @@ constexpr ChoiceNames<ContactLaw, 2> choiceNames(ContactLaw)
   return { { { "polar", ContactLaw::POLAR }, { "normal", ContactLaw::NORMAL } } };
 }
 
+constexpr ChoiceNames<SupportKind, 3> choiceNames(SupportKind)
+{
+  return { { { "springs", SupportKind::SPRINGS },
+             { "balls", SupportKind::BALLS },
+             { "single_balls", SupportKind::SINGLE_BALLS } } };
+}
+
 constexpr ChoiceNames<ProfileKind, 4> choiceNames(ProfileKind)
 {
   return { { { "trapezoid", ProfileKind::TRAPEZOID },

@@ -90,6 +90,8 @@ void visitFields(P& p, Visitor&& visit)
         "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
         "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
+  visit("manufacture.output_offset", "m", p.manufacture.output_offset, shift,
+        "misalignment: the output's axis from the motor's, at rest with the housing: x, y");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
         ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
@@ -101,8 +103,18 @@ void visitFields(P& p, Visitor&& visit)
         "bending stiffness of the rim per segment");
   visit("ring.bending_law", p.ring.bending_law,
         "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
+  visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
+        "of the rim in bending: energy lost in a cycle over 2 pi times the largest that it stores; 0 = elastic");
 
-  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 }, "wave generator to flexspline, per tooth");
+  visit("contact.support", p.contact.support,
+        "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
+        "around the ring; single_balls: each ball at its place");
+  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
+        "support springs: wave generator to flexspline, per tooth");
+  visit("contact.fit", "m", p.contact.fit, shift,
+        "mean radius of the wave generator over the flexspline's inner radius; > 0 interference, < 0 clearance");
+  visit("contact.temperature_difference", "K", p.contact.temperature_difference, Range{ -100.0, 100.0 },
+        "wave generator above the flexspline's rim, which adds its thermal growth to the fit");
   visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
   visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
   visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
@@ -134,14 +146,21 @@ void visitFields(P& p, Visitor&& visit)
         "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
   visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
         "torques at which the slope changes, ascending");
+  visit("cup.wall_stiffness", "N.m/rad", p.cup.wall_stiffness, Range{ 1.0, 1e9 },
+        "part of the cup's compliance that is its wall's and diaphragm's: what cracks and buckles of the cup act on; "
+        "more than torsion_stiffness");
   visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
         ofOthers("dry friction beside the cup's spring: half the height of its torsion loop"));
+  visit("cup.friction_angle", "rad", p.cup.friction_angle, Range{ 0.0, 1.0 },
+        ofOthers("twist after a reversal over which that friction builds up; 0 = at once"));
 
   visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
         ofOthers("f0 of Palmgren's law"));
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
   visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-        "sum of the ball forces with which the bearing's own outer race, bent to the ellipse, sits on the balls");
+        "sum of the ball forces beside those that carry the rim");
+  visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
+        "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
   visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
@@ -160,6 +179,12 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("wave generator"));
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
         ofOthers("Coulomb friction at the motor shaft beyond bearing, outer race and flanks"));
+  visit("motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
+        ofOthers("by which friction at the shaft exceeds this and that of the bearing at standstill"));
+  visit("motor.stribeck_velocity", "rad/s", p.motor.stribeck_velocity, Range{ 1e-6, 1e4 },
+        ofOthers("motor speed at which 1/e of that is left"));
+  visit("motor.presliding_angle", "rad", p.motor.presliding_angle, Range{ 0.0, 1.0 },
+        ofOthers("motor's angle after a reversal over which friction at the shaft builds up; 0 = at once"));
   visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
         ofOthers("viscous friction, motor side"));
   visit("motor.copper_loss", "W/(N.m)^2", p.motor.copper_loss, Range{ 0.0, 1e4 },
@@ -168,12 +193,32 @@ void visitFields(P& p, Visitor&& visit)
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
         ofOthers("the drive gives no torque that would speed the motor up beyond this"));
+  visit("motor.acceleration_limit", "rad/s^2", p.motor.acceleration_limit, Range{ 1e-3, 1e7 },
+        ofOthers("larger accelerations are counted, with a warning"));
+  visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
+        ofOthers("bandwidth of the current loop, first order; 0 = the torque follows the command at once"));
+  visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
+        ofOthers("change of torque per current over the one at 25 degC, of the magnets"));
+  visit("motor.torque_ripple", "-", p.motor.torque_ripple, Range{ 0.0, 0.5 },
+        ofOthers("amplitude of the ripple six times per electrical period over the torque"));
+  visit("motor.pole_pairs", "-", p.motor.pole_pairs, Range{ 1, 1000 },
+        ofOthers("pairs of poles: electrical periods per turn"));
+  visit("motor.cogging_torque", "N.m", p.motor.cogging_torque, Range{ 0.0, 1e3 },
+        ofOthers("amplitude of the torque between magnets and slots"));
+  visit("motor.cogging_periods", "-", p.motor.cogging_periods, Range{ 1, 10000 },
+        ofOthers("periods of it per turn: least common multiple of poles and slots"));
 
   visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{ 1e-7, 100.0 },
         ofOthers("circular spline and the parts that turn with it inside the joint"));
   visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, ofOthers("inertia of the load"));
   visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{ 0.0, 1e6 },
         ofOthers("viscous friction, joint side"));
+  visit("output.coulomb_torque", "N.m", p.output.coulomb_torque, Range{ 0.0, 1e4 },
+        ofOthers("dry friction of the output's bearing and seals, joint side"));
+  visit("output.tilting_moment", "N.m", p.output.tilting_moment, Range{ 0.0, 1e5 },
+        ofOthers("moment across its axis that the output's bearing carries"));
+  visit("output.tilting_friction", "-", p.output.tilting_friction, Range{ 0.0, 1.0 },
+        ofOthers("dry friction of that bearing per tilting moment"));
   visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 },
         ofOthers("m g l of the load; 0 = none"));
   visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
@@ -185,6 +230,10 @@ void visitFields(P& p, Visitor&& visit)
 
   visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{ 0.0, 1e4 },
         ofOthers("motor side; above it the brake slips"));
+  visit("brake.play", "rad", p.brake.play, Range{ 0.0, 6.2831853071795865 },
+        ofOthers("turn of the motor in which the pin of the engaged brake finds nothing to hold"));
+  visit("brake.delay", "s", p.brake.delay, Range{ 0.0, 10.0 },
+        ofOthers("from its command to the brake's engagement or release"));
   visit("brake.engaged_at_start", p.brake.engaged_at_start, ofOthers("state of the brake after start and reset"));
 
   visit("thermal.model", p.thermal.model,
@@ -228,10 +277,14 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("encoder velocities are differences over this time"));
   visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
         ofOthers("error of the motor encoder once a turn, sine of the motor angle: amplitude"));
+  visit("sensors.motor_lines", "rad", p.sensors.motor_lines, Range{ -0.1, 0.1 },
+        ofOthers("errors of the motor encoder two and four times a turn: amplitudes"));
   visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
         ofOthers("noise of the motor encoder at every step, before it is resolved into counts, rms"));
   visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
         ofOthers("error of the output encoder once a turn, sine of the output angle: amplitude"));
+  visit("sensors.output_lines", "rad", p.sensors.output_lines, Range{ -0.1, 0.1 },
+        ofOthers("errors of the output encoder two and four times a turn: amplitudes"));
   visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
         ofOthers("noise of the output encoder at every step, before it is resolved into counts, rms"));
   visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },

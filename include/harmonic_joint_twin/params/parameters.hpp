@@ -49,6 +49,7 @@ struct RingParameters
   double tooth_damping{};
   double bending_stiffness{};
   BendingLaw bending_law{};
+  double loss_factor{};
 };
 
 /// Where the wave generator pushes: at the thesis' polar point (eq. 5.11), or along the true normal.
@@ -58,9 +59,20 @@ enum class ContactLaw
   NORMAL
 };
 
+/// On what the rim sits.
+enum class SupportKind
+{
+  SPRINGS,      ///< a spring at each tooth on a rigid ellipse
+  BALLS,        ///< the balls of the bearing after Hertz, spread evenly around the ring
+  SINGLE_BALLS  ///< the same balls, each at its place
+};
+
 struct ContactParameters
 {
+  SupportKind support{};
   double stiffness{};
+  double fit{};
+  double temperature_difference{};
   double damping{};
   ContactLaw law{};
   double smoothing{};
@@ -112,13 +124,16 @@ struct ManufactureParameters
   std::array<double, 2> circular_spline_ellipticity{};
   std::array<double, 2> wave_generator_eccentricity{};
   double wave_generator_ellipticity{};
+  std::array<double, 2> output_offset{};
 };
 
 struct CupParameters
 {
   std::array<double, 3> torsion_stiffness{};
   std::array<double, 2> torsion_breakpoints{};
+  double wall_stiffness{};
   double friction_torque{};
+  double friction_angle{};
 };
 
 struct BearingParameters
@@ -126,6 +141,7 @@ struct BearingParameters
   double lubricant_factor{};
   double load_factor{};
   double race_preload{};
+  double race_bending_stiffness{};
   double pitch_diameter{};
   int balls{};
   double ball_diameter{};
@@ -140,10 +156,20 @@ struct MotorParameters
   double rotor_inertia{};
   double wave_generator_inertia{};
   double coulomb_torque{};
+  double stribeck_torque{};
+  double stribeck_velocity{};
+  double presliding_angle{};
   double viscous_friction{};
   double copper_loss{};
   double torque_limit{};
   double speed_limit{};
+  double acceleration_limit{};
+  double current_bandwidth{};
+  double torque_temperature_coefficient{};
+  double torque_ripple{};
+  int pole_pairs{};
+  double cogging_torque{};
+  int cogging_periods{};
 };
 
 struct OutputParameters
@@ -151,6 +177,9 @@ struct OutputParameters
   double circular_spline_inertia{};
   double load_inertia{};
   double viscous_friction{};
+  double coulomb_torque{};
+  double tilting_moment{};
+  double tilting_friction{};
   double gravity_torque{};
   double gravity_angle{};
   double torque_limit{};
@@ -160,6 +189,8 @@ struct OutputParameters
 struct BrakeParameters
 {
   double holding_torque{};
+  double play{};
+  double delay{};
   bool engaged_at_start{};
 };
 
@@ -213,8 +244,10 @@ struct SensorParameters
   int output_bits{};
   double velocity_window{};
   double motor_eccentricity{};
+  std::array<double, 2> motor_lines{};
   double motor_noise{};
   double output_eccentricity{};
+  std::array<double, 2> output_lines{};
   double output_noise{};
   double torque_noise{};
   double torque_resolution{};
