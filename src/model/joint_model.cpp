@@ -12,14 +12,14 @@ JointModel::JointModel(const Parameters& parameters)
   , cup_friction(parameters.cup)
   , interface_friction(parameters.contact)
   , damping(parameters.ring, parameters.contact)
-  , brake_torque(parameters.brake.holding_torque)
+  , brake(parameters.brake)
 {
 }
 
 /// Dry friction at the motor's shaft, flanks apart [N.m].
 double JointModel::shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept
 {
-  return motor.coulombTorque() + (running.inputs.brake_engaged ? brake_torque : 0.0) +
+  return motor.coulombTorque() + running.brake_torque +
          bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity) + interface_torque;
 }
 

@@ -41,6 +41,7 @@ SolveStatus JointDynamics::solveAtRest() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
+  pin_ = {};
   viscosity_ = model_.bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
@@ -147,6 +148,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
 
 void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
 {
+  const JointModel::Running running{ speeds, brakeTorque(speeds[0]), viscosity() };
   if (on_surface_)
   {
     RingFrictionResponse ring_friction;
@@ -154,11 +156,17 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     // The rim turns with the torque that it leans on the housing with.
     const double cup_stiffness =
         model_.ring.of<CupTorsion>().stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
-    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, { speeds, inputs, viscosity() }, friction_);
+    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, running, friction_);
     return;
   }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.forces(), rates, velocityRatio(), { speeds, inputs, viscosity() }, friction_);
+  model_.friction(ring_.forces(), rates, velocityRatio(), running, friction_);
+}
+
+/// That the brake holds the shaft with, at the present angle; its pin goes along.
+double JointDynamics::brakeTorque(double motor_speed) noexcept
+{
+  return model_.brake.hold(inputs.brake_engaged, motor_angle_, motor_speed != 0.0 ? motor_speed : torque()[0], pin_);
 }
 
 /// Of the bearing's grease, at the present temperature.
@@ -185,7 +193,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;
   rate.segment<2>(MOTOR_SPEED) = (torque() + drag).cwiseQuotient(model_.inertia());
-  rate[MOTOR_WORK] = inputs.motor_torque * speeds[0];
+  rate[MOTOR_WORK] = driveTorque() * speeds[0];
   rate[LOAD_WORK] = inputs.load_torque * speeds[1];
   rate[DISSIPATED] = -drag.dot(speeds);
 }

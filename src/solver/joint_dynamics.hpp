@@ -42,7 +42,9 @@ public:
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
   /// All torques but friction at the present ring [N.m].
-  Eigen::Vector2d torque() const noexcept { return model_.torque(response_, output_angle_, inputs); }
+  Eigen::Vector2d torque() const noexcept { return model_.torque(response_, position(), inputs); }
+  /// That the drive does work with at the present angle of the motor [N.m].
+  double driveTorque() const noexcept { return model_.motor.rippled(inputs.motor_torque, motor_angle_); }
 
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
@@ -57,7 +59,7 @@ public:
   const DryFriction& dryFriction() const noexcept { return dry_; }
   /// Output speed over motor speed at constant load: from the ring's stiffness, not from the tooth numbers [-].
   double velocityRatio() const noexcept { return response_.velocity_ratio; }
-  double storedEnergy() const noexcept { return model_.storedEnergy(response_, output_angle_); }
+  double storedEnergy() const noexcept { return model_.storedEnergy(response_, position()); }
 
   JointInputs inputs;
   SolveStatus status;  ///< worst since it was last cleared by its reader
@@ -68,6 +70,7 @@ private:
   void takeRing() noexcept;
   bool surfaceAgrees() const noexcept;
   double viscosity() noexcept;
+  double brakeTorque(double motor_speed) noexcept;
 
   const JointModel& model_;
   RingEquilibrium ring_;
@@ -79,6 +82,7 @@ private:
   Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output [N.m/rad]
   bool on_surface_{};
   bool surface_agrees_{};  // at the present angles, while on the full ring
+  Brake::Pin pin_;
   DryFriction dry_;
   JointFriction friction_;
   double temperature_;  // that the viscosity is known for [degC]

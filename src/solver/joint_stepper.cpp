@@ -35,7 +35,8 @@ void JointStepper::checkStep(const Parameters& parameters)
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
   const double stiffness = *std::max_element(slopes.begin(), slopes.end());
   const double ratio = nominalRatio(parameters.gear);
-  const double frequency = std::sqrt(stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)));
+  const double frequency = std::sqrt(stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)) +
+                                     dynamics_.model().motor.coggingStiffness() / inertia[0]);
   if (frequency * step_ > MAX_PHASE)
   {
     std::ostringstream text;
@@ -150,7 +151,7 @@ double JointStepper::phaseAdvance() const noexcept
 {
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
-  const double motor = ring.motor_stiffness / inertia[0];
+  const double motor = (ring.motor_stiffness + dynamics_.model().motor.coggingStiffness()) / inertia[0];
   const double output = ring.output_stiffness / inertia[1];
   const double cross = ring.velocity_ratio * ring.output_stiffness;
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +

@@ -31,7 +31,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<2>(MOTOR_SPEED) = after;
 
   // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
-  const double motor_work = dt * system.inputs.motor_torque * speeds_[0];
+  const double motor_work = dt * system.driveTorque() * speeds_[0];
   const double load_work = dt * system.inputs.load_torque * speeds_[1];
   const double dissipated = -dt * friction_.dot(speeds_);
   const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
