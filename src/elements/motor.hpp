@@ -76,7 +76,14 @@ public:
   double coggingStiffness() const noexcept { return parameters_.cogging_torque * parameters_.cogging_periods; }
 
   double inertia() const noexcept { return parameters_.rotor_inertia + parameters_.wave_generator_inertia; }
-  double coulombTorque() const noexcept { return parameters_.coulomb_torque; }
+  /// Dry friction at the shaft beyond the gear's, by speed (Stribeck, Gaussian as of the flanks) [N.m].
+  double dryTorque(double speed) const noexcept { return parameters_.coulomb_torque + stribeckTorque(speed); }
+  double stribeckTorque(double speed) const noexcept
+  {
+    const double relative = speed / parameters_.stribeck_velocity;
+    return parameters_.stribeck_torque > 0.0 ? parameters_.stribeck_torque * std::exp(-relative * relative) : 0.0;
+  }
+  double preslidingAngle() const noexcept { return parameters_.presliding_angle; }  ///< 0: stiction is exact [rad]
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
 
 private:

@@ -5,6 +5,7 @@
 
 #include "elements/bearing_friction.hpp"
 #include "elements/brake.hpp"
+#include "elements/cup_friction.hpp"
 #include "elements/joint_friction.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
@@ -75,7 +76,15 @@ struct JointModel
     double viscosity;        ///< of the bearing's grease [m^2/s]
   };
 
-  /// All friction. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from
+  /// What outer race and flexing rim take at the motor shaft [N.m]. `running`: rates of the ring's points by motor angle
+  /// while the output follows [m/rad].
+  double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
+  {
+    return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
+           flexing_loss.torque(shape, forces.of<RimBending>(), running);
+  }
+
+  /// All friction but that of a cup with a state. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from
   /// the ring's own stiffness [-].
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
@@ -91,10 +100,13 @@ struct JointModel
   MeshFriction mesh_friction;
   CupFriction cup_friction;
   InterfaceFriction interface_friction;
+  FlexingLoss flexing_loss;
   RingDamping damping;
   Brake brake;
 
 private:
-  double shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept;
+  void addShaft(const Running& running, double contact_force, double ring_torque,
+                JointFriction& friction) const noexcept;
+  void addOutput(JointFriction& friction) const noexcept;
 };
 }  // namespace hjt
