@@ -13,7 +13,7 @@ RPM = 0.10471975511965977  # rad/s
 
 SHIPPED = {
     "ring.tension_stiffness": 5e9, "ring.bending_stiffness": 400.0, "contact.stiffness": 1e8, "mesh.stiffness": 5e7,
-    "cup.torsion_stiffness": (32.5e3, 56.8e3, 65.4e3), "motor.rotor_inertia": 8.8e-5,
+    "cup.torsion_stiffness": (32.5e3, 56.8e3, 65.4e3), "cup.wall_stiffness": 305e3, "motor.rotor_inertia": 8.8e-5,
     "motor.wave_generator_inertia": 8.12e-5, "output.load_inertia": 0.5, "ring.tension_damping": 1e-2,
     "ring.tooth_damping": 1e-2, "contact.damping": 1e-2, "motor.viscous_friction": 6.6e-5,
 }
@@ -23,9 +23,9 @@ FACTORS = {
     "rim bending": ["ring.bending_stiffness"],
     "wave generator contact": ["contact.stiffness"],
     "tooth mesh": ["mesh.stiffness"],
-    "cup": ["cup.torsion_stiffness"],
+    "cup": ["cup.torsion_stiffness", "cup.wall_stiffness"],
     "all stiffness": ["ring.tension_stiffness", "ring.bending_stiffness", "contact.stiffness", "mesh.stiffness",
-                      "cup.torsion_stiffness"],
+                      "cup.torsion_stiffness", "cup.wall_stiffness"],
     "motor inertia": ["motor.rotor_inertia", "motor.wave_generator_inertia"],
     "load inertia": ["output.load_inertia"],
     "all inertia": ["motor.rotor_inertia", "motor.wave_generator_inertia", "output.load_inertia"],

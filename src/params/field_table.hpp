@@ -505,9 +505,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
         ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
   visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        ofFaults("part of the cup's compliance in torsion that lies behind the teeth"));
+        ofFaults("part of the compliance of the cup's wall and diaphragm in torsion that lies behind the teeth"));
   visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        ofFaults("part of the cup's compliance in torsion that lies at its flange"));
+        ofFaults("part of that compliance that lies at the cup's flange"));
   visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
         ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
   visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
@@ -533,7 +533,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
         ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
-        ofFaults("buckling at severity 1: part of the cup's stiffness in torsion that is lost"));
+        ofFaults("buckling at severity 1: part of the stiffness of the cup's wall that is lost"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
         ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
   visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -271,6 +272,29 @@ TEST(CupTorsion, StoresTheIntegralOfItsTorque)
     ASSERT_NEAR(model.of<CupTorsion>().storedEnergy((i + 1) * step), energy, 2 * 19e3 * step * step / 8);
     ASSERT_EQ(model.of<CupTorsion>().storedEnergy(-(i + 1) * step),
               model.of<CupTorsion>().storedEnergy((i + 1) * step));
+  }
+}
+
+TEST(CupTorsion, AWeakerWallAddsItsComplianceToEverySlope)
+{
+  const Parameters parameters = shippedParameters();
+  RingModel model(parameters);
+  model.edit<CupTorsion>().scaleWall(0.5);
+  model.edit<CupTorsion>().scaleWall(0.8);
+  const CupTorsion& cup = model.of<CupTorsion>();
+  const auto& torques = parameters.cup.torsion_breakpoints;
+  const std::array<double, 3> at{ 0.5 * torques[0], 0.5 * (torques[0] + torques[1]), 2.0 * torques[1] };
+  for (std::size_t i = 0; i < at.size(); ++i)
+  {
+    const double compliance = 1.0 / parameters.cup.torsion_stiffness[i] + 1.5 / parameters.cup.wall_stiffness;
+    EXPECT_NEAR(cup.stiffnessAtTorque(at[i]) * compliance, 1.0, 1e-12) << "factors multiply: 0.4 of the wall is left";
+  }
+  RingShape shape(model.rest.teeth());
+  const DrivePosition position{ 0.4, 0.1, 0.35e-3 };
+  for (const double rotation : { 3e-4, -1.1e-3, 3e-3 })
+  {
+    pressOnWaveGenerator(model.rest, position, rotation, shape);
+    expectGradientAndTangent(elementOf<CupTorsion>(model), shape, position);
   }
 }
 

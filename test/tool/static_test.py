@@ -127,7 +127,7 @@ class Insertion(tool.ToolTest):
 
 class Stiffness(tool.ToolTest):
     def test_rows_are_those_of_the_locked_wave_generator(self):
-        rows = self.succeed_json("stiffness", "--torques", "5,14,48", "--set",
+        rows = self.succeed_json("stiffness", "--torques", "5,14,48", "--config", "golden.yaml", "--set",
                                  "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]")["rows"]
         self.assertEqual([row["torque"] for row in rows], [5.0, 14.0, 48.0])
         for row, angle in zip(rows, [-0.169142e-3, -0.472083e-3, -1.233447e-3]):
