@@ -90,8 +90,6 @@ void visitFields(P& p, Visitor&& visit)
         "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
         "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
-  visit("manufacture.output_offset", "m", p.manufacture.output_offset, shift,
-        "misalignment: the output's axis from the motor's, at rest with the housing: x, y");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
         ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
@@ -195,8 +193,6 @@ void visitFields(P& p, Visitor&& visit)
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
         ofOthers("the drive gives no torque that would speed the motor up beyond this"));
-  visit("motor.acceleration_limit", "rad/s^2", p.motor.acceleration_limit, Range{ 1e-3, 1e7 },
-        ofOthers("larger accelerations are counted, with a warning"));
   visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
         ofOthers("bandwidth of the current loop, first order; 0 = the torque follows the command at once"));
   visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
