@@ -57,7 +57,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   if (model.cup_friction.hasState())
   {
     // To the first point, along the sweep and back.
-    CupFriction::State cup = CupFriction::relaxed(unloaded_rotation);
+    CupFriction::State cup = model.cup_friction.relaxed(unloaded_rotation);
     const auto add = [&](std::size_t i, TorsionPoint& point)
     {
       cup = model.cup_friction.turned(cup, rotations[i][0]);
