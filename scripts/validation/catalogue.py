@@ -135,10 +135,10 @@ def loops(page):
     spring = cup["friction_torque"] / sum(widths)
     page.text("""
 The friction beside the cup's spring is six springs with sliders (Masing's model): small loops are narrower than large
-ones, and all branches are one curve. The expected area is the closed form 4 k Σ w (A − w) over the elements that slip, A
-the cup's own rotation under what the housing holds at the largest load; the area of the loop of the whole gear is
-integrated. Its height grows by the friction: the load at the ends is the given one plus that. No loops of a real drive of
-this size at several amplitudes are public, so the growth itself is not compared.
+ones, and all branches are one curve. The expected area is the closed form 4 k Σ w (A − w) over the elements that
+slip, A the cup's own rotation under what the housing holds at the largest load; the area of the loop of the whole
+gear is integrated. Its height grows by the friction: the load at the ends is the given one plus that. No loops of a
+real drive of this size at several amplitudes are public, so the growth itself is not compared.
 """)
     rows = []
     for torque in LOOP_TORQUES:

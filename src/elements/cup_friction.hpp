@@ -23,9 +23,9 @@ namespace hjt
 ///   stored   sum_j k z_j^2 / 2;   dissipated where an element slips: k w_j per rad
 /// where      w_j = (a / 2) 2^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
 ///
-/// Equal springs over widths that double lose nearly the same share of the stored energy from w_5 to w_0, a range of 1 to
-/// 32, as structural damping does. Rate-independent. After a reversal the whole of it has turned round when the rim has
-/// turned by a.
+/// Equal springs over widths that double lose nearly the same share of the stored energy at amplitudes from w_5 to w_0,
+/// a range of 1 to 32, as structural damping does. Rate-independent. After a reversal all of it has turned round when
+/// the rim has turned by a.
 class CupFriction
 {
 public:

@@ -106,9 +106,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
         "of the rim in bending: energy lost in a cycle over 2 pi times the largest that it stores; 0 = elastic");
 
-  visit("contact.support", p.contact.support,
-        "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
-        "around the ring; single_balls: each ball at its place");
+  visit(
+      "contact.support", p.contact.support,
+      "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
+      "around the ring; single_balls: each ball at its place");
   visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
         "support springs: wave generator to flexspline, per tooth");
   visit("contact.fit", "m", p.contact.fit, shift,

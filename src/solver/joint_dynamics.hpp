@@ -99,8 +99,8 @@ private:
   struct Memory
   {
     CupFriction::State cup;
-    double share{};         // of the friction at the motor shaft that is mobilised, -1 ... 1
-    double motor_angle{};   // [rad]
+    double share{};        // of the friction at the motor shaft that is mobilised, -1 ... 1
+    double motor_angle{};  // [rad]
   };
 
   const JointModel& model_;
@@ -117,9 +117,9 @@ private:
   JointFriction friction_;
   bool remembers_;  // friction does
   Memory accepted_;
-  Memory now_;                                // at the present ring
-  Eigen::Vector2d cup_rates_{ 0.0, 0.0 };     // of the rim's mean rotation by motor and output angle, if that matters
-  double temperature_;  // that the viscosity is known for [degC]
-  double viscosity_;    // [m^2/s]
+  Memory now_;                             // at the present ring
+  Eigen::Vector2d cup_rates_{ 0.0, 0.0 };  // of the rim's mean rotation by motor and output angle, if that matters
+  double temperature_;                     // that the viscosity is known for [degC]
+  double viscosity_;                       // [m^2/s]
 };
 }  // namespace hjt

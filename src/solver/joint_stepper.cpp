@@ -33,8 +33,7 @@ void JointStepper::checkStep(const Parameters& parameters)
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
-  const double stiffness =
-      *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
+  const double stiffness = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
   const double ratio = nominalRatio(parameters.gear);
   double square = stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio));
   if (parameters.motor.presliding_angle > 0.0)

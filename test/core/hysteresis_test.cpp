@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Friction that remembers: the cup's Maxwell-slip elements and presliding at the shaft; the rim's own loss, and friction
-// of the output.
+// Friction that remembers: the cup's Maxwell-slip elements and presliding at the shaft; the rim's own loss; friction of
+// the output.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,8 +30,8 @@ namespace hjt
 {
 namespace
 {
-constexpr double FRICTION = 1.4;       // [N.m]
-constexpr double ANGLE = 0.5e-3;       // [rad]
+constexpr double FRICTION = 1.4;                                         // [N.m]
+constexpr double ANGLE = 0.5e-3;                                         // [rad]
 constexpr std::array<double, 4> AMPLITUDES{ 2e-5, 6e-5, 1.5e-4, 6e-4 };  // of the rim's mean rotation [rad]
 
 CupFriction cupFriction()
@@ -176,8 +176,8 @@ TEST(CupFriction, TorqueIsTheStoredEnergysDerivativeWhileNothingSlips)
 
 TEST(TorsionLoop, GrowsWithItsAmplitude)
 {
-  const Parameters parameters = shippedParameters(
-      { "cup.friction_torque=1.4", "cup.friction_angle=5.0e-4", "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" });
+  const Parameters parameters = shippedParameters({ "cup.friction_torque=1.4", "cup.friction_angle=5.0e-4",
+                                                    "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" });
   const JointModel model(parameters);
   const auto& cup = model.ring.of<CupTorsion>();
   double last = 0.0;
@@ -275,10 +275,10 @@ TEST(Hysteresis, IsTheSameOnTheSurface)
   std::array<double, 2> dissipated{};
   for (const bool fast : { false, true })
   {
-    const Parameters parameters = shippedParameters(
-        { "cup.friction_angle=5.0e-4", "motor.presliding_angle=3.0e-3", "output.coulomb_torque=0.5",
-          "ring.loss_factor=0.005", "motor.stribeck_torque=0.02", "input.command_timeout=10.0",
-          fast ? "solver.scene=auto" : "solver.scene=full_ring" });
+    const Parameters parameters =
+        shippedParameters({ "cup.friction_angle=5.0e-4", "motor.presliding_angle=3.0e-3", "output.coulomb_torque=0.5",
+                            "ring.loss_factor=0.005", "motor.stribeck_torque=0.02", "input.command_timeout=10.0",
+                            fast ? "solver.scene=auto" : "solver.scene=full_ring" });
     Twin twin(parameters, {});
     for (int i = 0; i < 6000; ++i)
     {
@@ -334,9 +334,8 @@ TEST(Presliding, LetsTheShaftTurnAsDahlsLaw)
 {
   // Torque grows slowly to 60 % of the friction and falls to nothing: the motor follows Dahl's curve.
   constexpr double PRESLIDING = 3e-3;  // [rad]
-  const Parameters parameters =
-      shippedParameters({ "motor.presliding_angle=3.0e-3", "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0",
-                          "output.viscous_friction=50.0" });
+  const Parameters parameters = shippedParameters({ "motor.presliding_angle=3.0e-3", "mesh.friction_static=0.0",
+                                                    "mesh.friction_kinetic=0.0", "output.viscous_friction=50.0" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   JointInputs inputs;
@@ -435,9 +434,9 @@ TEST(OutputFriction, HoldsTheOutputAndMustBeOvercome)
                        analyseTorsionLoop(shippedParameters(), 40.0, 2.0, 200).hysteresis;
   EXPECT_NEAR(width, 2.0 * 5.0 / parameters.cup.torsion_stiffness[0], 0.15 * width);
   // Beside a robot.
-  EXPECT_NEAR(FrictionMap(parameters).at(10.0, 0.0, 25.0).sum() -
-                  FrictionMap(shippedParameters()).at(10.0, 0.0, 25.0).sum(),
-              5.0 / 101.0, 1e-4);
+  EXPECT_NEAR(
+      FrictionMap(parameters).at(10.0, 0.0, 25.0).sum() - FrictionMap(shippedParameters()).at(10.0, 0.0, 25.0).sum(),
+      5.0 / 101.0, 1e-4);
   // In the twin, the motor held: a load below it moves nothing, one above the rest of the way.
   JointStepper stepper(parameters, model);
   JointInputs inputs;
@@ -461,7 +460,7 @@ TEST(OutputFriction, HoldsTheOutputAndMustBeOvercome)
 
 TEST(Observer, FollowsAShaftThatGivesWay)
 {
-  // Torque below the friction turns the motor to and fro by milliradians, which the output's encoder alone hardly shows.
+  // Torque below the friction turns the motor to and fro by milliradians, which the output hardly shows.
   const Parameters parameters = shippedParameters({ "motor.presliding_angle=3.0e-3", "input.command_timeout=10.0" });
   std::array<double, 2> largest{};
   std::array<double, 2> residual{};
