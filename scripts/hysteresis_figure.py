@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 AMPLITUDES = (2.0, 5.0, 14.0, 67.0)  # N.m
 PERIOD = 2.0  # s
-ROWS = 400  # of the load, a swing
+ROWS = 4000  # of the load, a swing
 
 
 def loop(tool, directory, amplitude, more):
@@ -31,7 +31,8 @@ def loop(tool, directory, amplitude, more):
         for i in range(int(1.5 * ROWS) + 1):
             file.write(f"{i * PERIOD / ROWS},0,{amplitude * math.sin(2.0 * math.pi * i / ROWS)},1\n")
     subprocess.run([tool, "simulate", "--profile", profile, "--duration", str(1.5 * PERIOD), "--out", out, "--force",
-                    "--set", "input.command_timeout=10.0", "--set", "output.load_inertia=0.02"] + more, check=True)
+                    "--set", "input.command_timeout=10.0", "--set", "output.load_inertia=0.3"] + more, check=True,
+                   stdout=subprocess.DEVNULL)
     with open(out) as file:
         rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
     rows = [row for row in rows if row["time"] > 0.5 * PERIOD]
@@ -53,7 +54,7 @@ def main():
             for axis, amplitude in zip(row, AMPLITUDES):
                 load, torsion, area = loop(arguments.tool, directory, amplitude, more)
                 axis.plot(load, torsion, linewidth=1)
-                axis.set_title(f"± {amplitude:g} N·m: {1e3 * area:.3g} µJ a swing", fontsize=9)
+                axis.set_title(f"± {amplitude:g} N·m: {1e3 * area:.0f} µJ a swing", fontsize=9)
                 axis.grid(color="0.9")
             row[0].set_ylabel(f"{name}\ntorsion [mrad]")
     for axis in axes[1]:

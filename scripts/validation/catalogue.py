@@ -135,10 +135,10 @@ def loops(page):
     spring = cup["friction_torque"] / sum(widths)
     page.text("""
 The friction beside the cup's spring is six springs with sliders (Masing's model): small loops are narrower than large
-ones, and all branches are one curve. The expected area is the closed form 4 k Σ w (A − w) over the elements that slip, A
-the cup's own rotation at the largest load; the area of the loop of the whole gear is integrated. Its height grows by the
-friction: the load at the ends is the given one plus that. No loops of a real drive of this size at several amplitudes
-are public, so the growth itself is not compared.
+ones, and all branches are one curve. The expected area is the closed form 4 k Σ w (A − w) over the elements that
+slip, A the cup's own rotation under what the housing holds at the largest load; the area of the loop of the whole
+gear is integrated. Its height grows by the friction: the load at the ends is the given one plus that. No loops of a
+real drive of this size at several amplitudes are public, so the growth itself is not compared.
 """)
     rows = []
     for torque in LOOP_TORQUES:
@@ -147,7 +147,7 @@ are public, so the growth itself is not compared.
         load = np.array([point["torque"] for point in loop["points"]])
         angle = np.array([point["output_angle"] for point in loop["points"]])
         area = float(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(angle)))
-        turned = catalogue_angle(torque, cup["torsion_stiffness"], cup["torsion_breakpoints"])
+        turned = catalogue_angle(torque * (RATIO - 1.0) / RATIO, cup["torsion_stiffness"], cup["torsion_breakpoints"])
         expected = sum(4.0 * spring * width * max(turned - width, 0.0) for width in widths)
         page.check(f"catalogue.loop.{torque:g}", f"energy of a torsion loop of ± {torque:g} N·m", "closed form",
                    Within(1e6 * expected, relative=0.01), 1e6 * area, "µJ", "integration over 400 points")

@@ -23,9 +23,9 @@ namespace hjt
 ///   stored   sum_j k z_j^2 / 2;   dissipated where an element slips: k w_j per rad
 /// where      w_j = (a / 2) 2^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
 ///
-/// Equal springs over widths that double lose nearly the same share of the stored energy from w_5 to w_0, a range of 1 to
-/// 32, as structural damping does; six of them follow that curve within 2 % of F. Rate-independent. After a reversal
-/// the whole of it has turned round when the rim has turned by a.
+/// Equal springs over widths that double lose nearly the same share of the stored energy at amplitudes from w_5 to w_0,
+/// a range of 1 to 32, as structural damping does. Rate-independent. After a reversal all of it has turned round when
+/// the rim has turned by a.
 class CupFriction
 {
 public:
@@ -39,7 +39,7 @@ public:
   void scale(double factor) noexcept { torque_ *= factor; }
 
   /// Springs with sliders, which have a state; else one dry term.
-  bool hasState() const noexcept { return width_ > 0.0; }
+  bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
 
   /// What springs and sliders remember, and what follows from it at `rotation`.
   struct State
@@ -53,10 +53,11 @@ public:
   };
 
   /// Without torque at a rotation [rad].
-  static State relaxed(double rotation) noexcept
+  State relaxed(double rotation) const noexcept
   {
     State state;
     state.rotation = rotation;
+    state.stiffness = stiffness();
     return state;
   }
 

@@ -58,8 +58,8 @@ HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const 
   const double* moments = moment.data();
   const auto turning = [&](int i, int j)
   {
-    const double across = direction[2 * i] * (rate[2 * j + 1] - rate[2 * i + 1]) -
-                          direction[2 * i + 1] * (rate[2 * j] - rate[2 * i]);
+    const double across =
+        direction[2 * i] * (rate[2 * j + 1] - rate[2 * i + 1]) - direction[2 * i + 1] * (rate[2 * j] - rate[2 * i]);
     return across / length[i];  // of the segment from tooth i to tooth j
   };
   double sum = std::abs(moments[0] * (turning(0, 1) - turning(n - 1, 0))) +

@@ -76,16 +76,16 @@ struct JointModel
     double viscosity;        ///< of the bearing's grease [m^2/s]
   };
 
-  /// What outer race and flexing rim take at the motor shaft [N.m]. `running`: rates of the ring's points by motor angle
-  /// while the output follows [m/rad].
+  /// What outer race and flexing rim take at the motor shaft [N.m]. `running`: rates of the ring's points by motor
+  /// angle while the output follows [m/rad].
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {
     return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
            flexing_loss.torque(shape, forces.of<RimBending>(), running);
   }
 
-  /// All friction but that of a cup with a state. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from
-  /// the ring's own stiffness [-].
+  /// All friction but that of a cup with a state. `forces`: at the shape of the rates; `velocity_ratio`: output speed
+  /// over motor speed at constant load, from the ring's own stiffness [-].
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 

@@ -415,7 +415,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
         ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        ofOthers("motor angle over which friction builds up after a reversal"));
+        ofOthers("motor angle over which friction builds up after a reversal, torsion and cup included"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
         ofOthers("share of the friction that a small motion does not reverse and that remains at rest"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },

@@ -49,7 +49,7 @@ SolveStatus JointDynamics::solveAtRest() noexcept
   takeRing();
   accepted_ = {};
   accepted_.motor_angle = motor_angle_;
-  accepted_.cup.rotation = now_.cup.rotation;
+  accepted_.cup = model_.cup_friction.relaxed(now_.cup.rotation);
   now_ = accepted_;
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
   return result;

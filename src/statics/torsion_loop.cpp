@@ -35,8 +35,8 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
   const double unloaded_rotation = ring.forces().of<CupTorsion>().rotation;
-  std::vector<TorsionPoint> up;    // load growing, torque ascending
-  std::vector<TorsionPoint> down;  // load falling
+  std::vector<TorsionPoint> up;            // load growing, torque ascending
+  std::vector<TorsionPoint> down;          // load falling
   std::vector<Eigen::Vector2d> rotations;  // of the rim at each angle [rad], and its rate by the output's [-]
   for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {
@@ -57,7 +57,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   if (model.cup_friction.hasState())
   {
     // To the first point, along the sweep and back.
-    CupFriction::State cup = CupFriction::relaxed(unloaded_rotation);
+    CupFriction::State cup = model.cup_friction.relaxed(unloaded_rotation);
     const auto add = [&](std::size_t i, TorsionPoint& point)
     {
       cup = model.cup_friction.turned(cup, rotations[i][0]);

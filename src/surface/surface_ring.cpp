@@ -181,8 +181,8 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
   {
     flanks += std::abs(node[i] + node[SurfaceTable::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
   }
-  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) +
-         node[SurfaceTable::RING_TORQUE] + static_friction_ * flanks;
+  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) + node[SurfaceTable::RING_TORQUE] +
+         static_friction_ * flanks;
 }
 
 int SurfaceRing::repetition()

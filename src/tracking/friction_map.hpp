@@ -18,7 +18,7 @@ struct FrictionShares
   double flanks{};   ///< tooth flanks; proportional to mesh.friction_static and _kinetic together
   double rest{};     ///< bearing under the wave generator's load, outer race, rim, cup, Coulomb torque of motor, output
   double stribeck{};  ///< rise at the motor shaft towards standstill; proportional to motor.stribeck_torque
-  double viscous{};  ///< motor and output, proportional to the speed
+  double viscous{};   ///< motor and output, proportional to the speed
 
   double sum() const noexcept { return preload + grease + flanks + rest + stribeck + viscous; }
 };

@@ -77,11 +77,11 @@ struct Observation
 /// both: an extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
 ///
 /// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed
-/// to stop the motor, at most what it is; or, with motor.presliding_angle, as built up over that angle. While the motor sticks, the angle measurement does not update the
-/// disturbance, so the estimate does not wind up; its band widens instead. If the robot moves nevertheless, the model's
-/// output follows it until the spring torque exceeds stiction. The remaining torque is the residual: increased
-/// friction, an unknown load. The model's parameters are never adapted, so a fault cannot be adapted away. A step costs
-/// about a microsecond.
+/// to stop the motor, at most what it is; or, with motor.presliding_angle, as built up over that angle. While the motor
+/// sticks, the angle measurement does not update the disturbance, so the estimate does not wind up; its band widens
+/// instead. If the robot moves nevertheless, the model's output follows it until the spring torque exceeds stiction.
+/// The remaining torque is the residual: increased friction, an unknown load. The model's parameters are never adapted,
+/// so a fault cannot be adapted away. A step costs about a microsecond.
 class Observer
 {
 public:
@@ -102,7 +102,7 @@ private:
   Load load_;
   ObserverParameters noise_;
   double ratio_;
-  double temperature_;  // of measurements without one [degC]
+  double temperature_;       // of measurements without one [degC]
   double presliding_angle_;  // of the motor [rad]
   TorsionCurve curve_;
   std::vector<ObserverPiece> pieces_;  // of the curve

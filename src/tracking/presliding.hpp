@@ -9,10 +9,10 @@
 namespace hjt
 {
 /// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle
-/// (`mobilised`, by the motor's angle). Two of them add up. The contacts' builds up over telemetry.presliding_angle. While the joint stands the motion does
-/// not tell it, and it forgets the last one within RELAXATION, as the current of standing joints does (UR5 CB series,
-/// K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over
-/// LASTING_ANGLE, so that the encoder's noise at standstill hardly changes it, and remains.
+/// (`mobilised`, by the motor's angle). Two of them add up. The contacts' builds up over telemetry.presliding_angle.
+/// While the joint stands the motion does not tell it, and it forgets the last one within RELAXATION, as the current of
+/// standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of
+/// the whole, builds up over LASTING_ANGLE, so that the encoder's noise at standstill hardly changes it, and remains.
 class Presliding
 {
 public:

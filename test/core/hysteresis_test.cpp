@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Friction that remembers: the cup's Maxwell-slip elements and presliding at the shaft; the rim's own loss, and friction
-// of the output.
+// Friction that remembers: the cup's Maxwell-slip elements and presliding at the shaft; the rim's own loss; friction of
+// the output.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -29,8 +30,8 @@ namespace hjt
 {
 namespace
 {
-constexpr double FRICTION = 1.4;       // [N.m]
-constexpr double ANGLE = 0.5e-3;       // [rad]
+constexpr double FRICTION = 1.4;                                         // [N.m]
+constexpr double ANGLE = 0.5e-3;                                         // [rad]
 constexpr std::array<double, 4> AMPLITUDES{ 2e-5, 6e-5, 1.5e-4, 6e-4 };  // of the rim's mean rotation [rad]
 
 CupFriction cupFriction()
@@ -73,7 +74,7 @@ double loopEnergy(double amplitude)
 CupFriction::State after(const std::vector<double>& rotations, int steps, double& slipped)
 {
   const CupFriction friction = cupFriction();
-  CupFriction::State state = CupFriction::relaxed(0.0);
+  CupFriction::State state = friction.relaxed(0.0);
   slipped = 0.0;
   for (const double end : rotations)
   {
@@ -133,7 +134,7 @@ TEST(CupFriction, GivesBackWhatItStores)
   std::mt19937 random(SEED);
   std::normal_distribution<double> turn(0.0, 3e-5);
   const CupFriction friction = cupFriction();
-  CupFriction::State state = CupFriction::relaxed(0.0);
+  CupFriction::State state = friction.relaxed(0.0);
   double work = 0.0;
   double slipped = 0.0;
   for (int i = 0; i < 20000; ++i)
@@ -163,7 +164,7 @@ TEST(CupFriction, TorqueIsTheStoredEnergysDerivativeWhileNothingSlips)
   const CupFriction friction = cupFriction();
   const CupFriction::State state = after({ 3e-4, 2.5e-4, 2.502e-4 }, 1, unused);
   // Backwards from a forward turn and forwards: sticking elements only, as far as they stick.
-  const CupFriction::State here = friction.turned(state, state.rotation - 1e-6);
+  const CupFriction::State here = friction.turned(state, state.rotation - 1e-7);
   const auto energy = [&](double by) { return friction.turned(here, here.rotation + by).energy; };
   const auto torque = [&](double by) { return friction.turned(here, here.rotation + by).torque; };
   ASSERT_EQ(friction.turned(here, here.rotation + STEP).slipped, 0.0);
@@ -175,8 +176,8 @@ TEST(CupFriction, TorqueIsTheStoredEnergysDerivativeWhileNothingSlips)
 
 TEST(TorsionLoop, GrowsWithItsAmplitude)
 {
-  const Parameters parameters = shippedParameters(
-      { "cup.friction_torque=1.4", "cup.friction_angle=5.0e-4", "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" });
+  const Parameters parameters = shippedParameters({ "cup.friction_torque=1.4", "cup.friction_angle=5.0e-4",
+                                                    "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" });
   const JointModel model(parameters);
   const auto& cup = model.ring.of<CupTorsion>();
   double last = 0.0;
@@ -191,8 +192,8 @@ TEST(TorsionLoop, GrowsWithItsAmplitude)
       const TorsionPoint& b = loop.points[i];
       area += 0.5 * (a.torque + b.torque) * (b.output_angle - a.output_angle);
     }
-    // The rim's mean rotation swings between those of the cup's torque at the ends.
-    EXPECT_NEAR(area, loopEnergy(cup.rotationAtTorque(torque)), 0.01 * area) << torque;
+    // The housing holds the load less what the wave generator does.
+    EXPECT_NEAR(area, loopEnergy(cup.rotationAtTorque(torque * 100.0 / 101.0)), 0.002 * area) << torque;
     EXPECT_GE(loop.hysteresis, last);
     last = loop.hysteresis;
   }
@@ -237,8 +238,10 @@ TEST(Hysteresis, BalancesItsEnergyInTheRunningJoint)
                                "solver.stiction_velocity=20.0", "output.load_inertia=0.1" },
                              20.0);
     EXPECT_LT(seen.residual, 1e-4 * seen.throughput) << stepper;
-    // Four turns to and fro: 4 loops and their swings.
-    EXPECT_GT(seen.dissipated, 3.5 * loopEnergy(6e-4)) << stepper;
+    // Four swings, the first from rest: less than four loops of the cup's rotation at 20 N.m less the friction.
+    EXPECT_GT(seen.dissipated, 3.5 * loopEnergy(5.1e-4)) << stepper;
+    // The other stepper's regularised brake slips a little.
+    EXPECT_LT(seen.dissipated, (stepper == "leapfrog" ? 4.1 : 60.0) * loopEnergy(5.1e-4)) << stepper;
   }
 }
 
@@ -257,7 +260,7 @@ TEST(Hysteresis, StiffensTheJointWhereTheStepIsJudged)
   EXPECT_NEAR(soft / rigid, std::sqrt(1.0 + 17.1e3 / 32.5e3), 0.04);
   const auto make = [](const char* angle)
   {
-    const Parameters parameters = shippedParameters({ "cup.friction_torque=1.4", "output.load_inertia=0.0", angle });
+    const Parameters parameters = shippedParameters({ "cup.friction_torque=1.4", "output.load_inertia=0.01", angle });
     const JointModel model(parameters);
     JointStepper(parameters, model);
   };
@@ -272,10 +275,10 @@ TEST(Hysteresis, IsTheSameOnTheSurface)
   std::array<double, 2> dissipated{};
   for (const bool fast : { false, true })
   {
-    const Parameters parameters = shippedParameters(
-        { "cup.friction_angle=5.0e-4", "motor.presliding_angle=3.0e-3", "output.coulomb_torque=0.5",
-          "ring.loss_factor=0.005", "motor.stribeck_torque=0.02", "input.command_timeout=10.0",
-          fast ? "solver.scene=auto" : "solver.scene=full_ring" });
+    const Parameters parameters =
+        shippedParameters({ "cup.friction_angle=5.0e-4", "motor.presliding_angle=3.0e-3", "output.coulomb_torque=0.5",
+                            "ring.loss_factor=0.005", "motor.stribeck_torque=0.02", "input.command_timeout=10.0",
+                            fast ? "solver.scene=auto" : "solver.scene=full_ring" });
     Twin twin(parameters, {});
     for (int i = 0; i < 6000; ++i)
     {
@@ -329,10 +332,10 @@ TEST(Hysteresis, SurvivesAFaultAndEndsWithAReset)
 
 TEST(Presliding, LetsTheShaftTurnAsDahlsLaw)
 {
-  // Torque grows slowly to 95 % of the friction and falls to nothing: the motor follows Dahl's curve, less the gear's.
+  // Torque grows slowly to 60 % of the friction and falls to nothing: the motor follows Dahl's curve.
   constexpr double PRESLIDING = 3e-3;  // [rad]
-  const Parameters parameters =
-      shippedParameters({ "motor.presliding_angle=3.0e-3", "mesh.friction_static=0.0", "mesh.friction_kinetic=0.0" });
+  const Parameters parameters = shippedParameters({ "motor.presliding_angle=3.0e-3", "mesh.friction_static=0.0",
+                                                    "mesh.friction_kinetic=0.0", "output.viscous_friction=50.0" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   JointInputs inputs;
@@ -343,7 +346,7 @@ TEST(Presliding, LetsTheShaftTurnAsDahlsLaw)
   constexpr int STEPS = 20000;
   for (int i = 1; i <= STEPS; ++i)
   {
-    inputs.motor_torque = 0.95 * friction * i / STEPS;
+    inputs.motor_torque = 0.6 * friction * i / STEPS;
     ASSERT_TRUE(stepper.step(inputs));
   }
   const double share = mobilised(0.0, stepper.motorAngle(), PRESLIDING);
@@ -351,7 +354,7 @@ TEST(Presliding, LetsTheShaftTurnAsDahlsLaw)
   const double turned = stepper.motorAngle();
   for (int i = STEPS - 1; i >= 0; --i)
   {
-    inputs.motor_torque = 0.95 * friction * i / STEPS;
+    inputs.motor_torque = 0.6 * friction * i / STEPS;
     ASSERT_TRUE(stepper.step(inputs));
   }
   // Back by x: s = -1 + (s0 + 1) exp(-x / x_p) = 0.
@@ -431,9 +434,9 @@ TEST(OutputFriction, HoldsTheOutputAndMustBeOvercome)
                        analyseTorsionLoop(shippedParameters(), 40.0, 2.0, 200).hysteresis;
   EXPECT_NEAR(width, 2.0 * 5.0 / parameters.cup.torsion_stiffness[0], 0.15 * width);
   // Beside a robot.
-  EXPECT_NEAR(FrictionMap(parameters).at(10.0, 0.0, 25.0).sum() -
-                  FrictionMap(shippedParameters()).at(10.0, 0.0, 25.0).sum(),
-              5.0 / 101.0, 1e-4);
+  EXPECT_NEAR(
+      FrictionMap(parameters).at(10.0, 0.0, 25.0).sum() - FrictionMap(shippedParameters()).at(10.0, 0.0, 25.0).sum(),
+      5.0 / 101.0, 1e-4);
   // In the twin, the motor held: a load below it moves nothing, one above the rest of the way.
   JointStepper stepper(parameters, model);
   JointInputs inputs;
@@ -452,24 +455,25 @@ TEST(OutputFriction, HoldsTheOutputAndMustBeOvercome)
   EXPECT_LT(std::abs(settle(4.5)), 2e-6);
   const double moved = settle(15.0);
   EXPECT_GT(moved, 0.5 * 10.0 / 50e3);
-  EXPECT_LT(moved, 15.0 / 31e3);
+  EXPECT_LT(moved, 20.0 / 31e3);  // it swings past and stays there
 }
 
-TEST(ObserverPresliding, FollowsTheTwinThroughAReversal)
+TEST(Observer, FollowsAShaftThatGivesWay)
 {
-  // The twin's own torque and angles: what the observer is missing stays within its band through reversals.
+  // Torque below the friction turns the motor to and fro by milliradians, which the output hardly shows.
   const Parameters parameters = shippedParameters({ "motor.presliding_angle=3.0e-3", "input.command_timeout=10.0" });
+  std::array<double, 2> largest{};
+  std::array<double, 2> residual{};
   for (const bool knows : { false, true })
   {
     Parameters observed = parameters;
     observed.motor.presliding_angle = knows ? parameters.motor.presliding_angle : 0.0;
     Twin twin(parameters);
     Observer observer(observed);
-    double squares = 0.0;
     for (int i = 0; i < 20000; ++i)
     {
       const Stamp next = twin.stamp() + twin.stepLength();
-      const double torque = 0.06 * std::sin(TWO_PI * 1.0e-4 * i);  // below the friction: it gives way elastically
+      const double torque = 0.06 * std::sin(TWO_PI * 1.0e-4 * i);
       twin.commandMotorTorque(next, torque);
       twin.step(next);
       if (i % 20 == 0)
@@ -478,18 +482,19 @@ TEST(ObserverPresliding, FollowsTheTwinThroughAReversal)
         row.time = 1e-9 * static_cast<double>(twin.stamp());
         row.motor_torque = torque;
         row.output_angle = twin.outputs().output_angle;
-        row.motor_angle = twin.outputs().motor_angle;
+        row.motor_angle = std::numeric_limits<double>::quiet_NaN();
         const Observation seen = observer.step(row);
-        squares += seen.residual_torque * seen.residual_torque;
+        double& most = largest[knows ? 1 : 0];
+        most = std::max(most, std::abs(seen.motor_angle - twin.outputs().motor_angle));
+        residual[knows ? 1 : 0] = std::max(residual[knows ? 1 : 0], std::abs(seen.residual_torque));
       }
     }
-    const double rms = std::sqrt(squares / 1000.0);
-    RecordProperty(knows ? "with" : "without", std::to_string(rms));
-    if (knows)
-    {
-      EXPECT_LT(rms, 0.01);
-    }
   }
+  RecordProperty("motor_angle_without", std::to_string(largest[0]));
+  RecordProperty("motor_angle_with", std::to_string(largest[1]));
+  RecordProperty("residual_with", std::to_string(residual[1]));
+  EXPECT_LT(largest[1], 0.3 * largest[0]);
+  EXPECT_LT(residual[1], 1e-3);
 }
 }  // namespace
 }  // namespace hjt

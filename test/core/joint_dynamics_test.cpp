@@ -342,7 +342,8 @@ TEST(FreeOscillation, LosesTwiceTheCupsFrictionEveryHalfSwing)
   // Dry friction beside a spring: every half swing ends a constant nearer to rest, and the swing stops where the spring
   // no longer overcomes the friction.
   constexpr double FRICTION = 1.4;  // [N.m]
-  const Parameters parameters = shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=1.4", "cup.friction_angle=0.0" });
+  const Parameters parameters =
+      shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=1.4", "cup.friction_angle=0.0" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   JointInputs inputs;
