@@ -157,8 +157,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
         ofOthers("f0 of Palmgren's law"));
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
-  visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-        "sum of the ball forces beside those that carry the rim");
+  visit(
+      "bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
+      "sum of the ball forces beside those under the rim: the fit of the bearing's outer race, and its bending unless "
+      "race_bending_stiffness has it");
   visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
         "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
