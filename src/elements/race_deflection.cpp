@@ -10,13 +10,7 @@ namespace hjt
 {
 namespace
 {
-/// A value with its derivatives by the wave generator's angle.
-struct Bump
-{
-  double value{};
-  double rate{};
-  double second{};
-};
+using Bump = RaceDeflection::Drop;  // of 0 ... 1
 
 /// Raised cosine of half width `half` at `angle` from its middle, which moves at `rate` over it.
 Bump bump(double angle, double rate, double half) noexcept
@@ -32,10 +26,6 @@ Bump bump(double angle, double rate, double half) noexcept
   return { 0.5 + c, -scale * rate * s, -scale * scale * rate * rate * c };
 }
 }  // namespace
-
-struct RaceDeflection::Drop : Bump
-{
-};
 
 RaceDeflection::RaceDeflection(const BearingParameters& bearing)
   : balls_(bearing.balls)
@@ -80,9 +70,9 @@ void RaceDeflection::addIdleBall(int ball, double depth) noexcept
   add({ Where::UNDER_BALL, ball, 0.0, depth, 0.0 });
 }
 
-double RaceDeflection::ballPlace(int ball, double angle) const noexcept
+double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const noexcept
 {
-  return TWO_PI * ball / balls_ + cage_rate_ * angle;
+  return TWO_PI * ball / balls_ + cage_rate_ * wave_generator_angle;
 }
 
 /// How far a ball drops through one spall.
@@ -111,7 +101,20 @@ RaceDeflection::Drop RaceDeflection::drop(const Spall& spall, int ball, double a
       at.value = ball == spall.ball ? 1.0 : 0.0;
       break;
   }
-  return { { spall.depth * at.value, spall.depth * at.rate, spall.depth * at.second } };
+  return { spall.depth * at.value, spall.depth * at.rate, spall.depth * at.second };
+}
+
+RaceDeflection::Drop RaceDeflection::drop(int ball, double wave_generator_angle) const noexcept
+{
+  Drop sum;
+  for (std::size_t k = 0; k < size_; ++k)
+  {
+    const Drop one = drop(spalls_[k], ball, wave_generator_angle);
+    sum.value += one.value;
+    sum.rate += one.rate;
+    sum.second += one.second;
+  }
+  return sum;
 }
 
 void RaceDeflection::at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen::VectorXd& rate,
@@ -126,14 +129,7 @@ void RaceDeflection::at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen
   const int reach = static_cast<int>(std::ceil(ball_pitch / tooth_pitch));
   for (int ball = 0; ball < balls_; ++ball)
   {
-    Drop sum;
-    for (std::size_t k = 0; k < size_; ++k)
-    {
-      const Drop one = drop(spalls_[k], ball, wave_generator_angle);
-      sum.value += one.value;
-      sum.rate += one.rate;
-      sum.second += one.second;
-    }
+    const Drop sum = drop(ball, wave_generator_angle);
     if (sum.value == 0.0)
     {
       continue;

@@ -41,6 +41,19 @@ public:
   void at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen::VectorXd& rate,
           Eigen::VectorXd& second) const noexcept;
 
+  /// A value with its derivatives by the wave generator's angle.
+  struct Drop
+  {
+    double value{};   ///< [m]
+    double rate{};    ///< [m/rad]
+    double second{};  ///< [m/rad^2]
+  };
+  /// How far a ball drops through all its spalls.
+  Drop drop(int ball, double wave_generator_angle) const noexcept;
+
+  int balls() const noexcept { return balls_; }
+  /// Of a ball in the housing [rad], not within a turn.
+  double ballPlace(int ball, double wave_generator_angle) const noexcept;
   double cageRate() const noexcept { return cage_rate_; }  ///< turns of the cage per turn of the wave generator [-]
 
 private:
@@ -61,9 +74,7 @@ private:
   };
   void add(const Spall& spall) noexcept;
   double dropInto(double depth, double length) const noexcept;
-  struct Drop;
   Drop drop(const Spall& spall, int ball, double angle) const noexcept;
-  double ballPlace(int ball, double angle) const noexcept;
 
   int balls_;
   double ball_diameter_;

@@ -11,6 +11,7 @@ namespace hjt
 RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
   : law_(parameters.ring.bending_law)
   , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.ring.bending_stiffness))
+  , race_(parameters.bearing.race_bending_stiffness)
   , natural_angle_(Eigen::VectorXd::Zero(rest.teeth()))
   , rest_directions_(rest.segments())
   , rest_cos_(std::cos(rest.pitchAngle()))
@@ -25,6 +26,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
   const double* __restrict__ natural_angle = natural_angle_.data();
+  const double race = race_;
   double* reference = sum.segment.data();
   double* moment = scratch.moment.data();
   if (law_ == BendingLaw::ABSOLUTE)
@@ -54,19 +56,21 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
 #pragma omp simd reduction(+ : energy, large)
   for (int i = 0; i < n; ++i)
   {
-    const double angle = smallAngle(across(i) / along(i)) - natural_angle[i];
+    const double turn = smallAngle(across(i) / along(i));
+    const double angle = turn - natural_angle[i];
     large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
-    moment[i] = stiffness[i] * angle;
-    energy += 0.5 * stiffness[i] * angle * angle;
+    moment[i] = stiffness[i] * angle + race * turn;
+    energy += 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
   }
   if (large > 0.0)
   {
     energy = 0.0;
     for (int i = 0; i < n; ++i)
     {
-      const double angle = smallAngle(across(i), along(i)) - natural_angle[i];
-      moment[i] = stiffness[i] * angle;
-      energy += 0.5 * stiffness[i] * angle * angle;
+      const double turn = smallAngle(across(i), along(i));
+      const double angle = turn - natural_angle[i];
+      moment[i] = stiffness[i] * angle + race * turn;
+      energy += 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
     }
   }
   sum.energy += energy;
@@ -115,6 +119,7 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   const double* __restrict__ length = shape.lengths.data();
   const double* moment = scratch.moment.data();
   const double* __restrict__ stiffness = stiffness_.data();
+  const double race = race_;
   double* __restrict__ xx = tangent.segment.xx.data();
   double* __restrict__ xy = tangent.segment.xy.data();
   double* __restrict__ yy = tangent.segment.yy.data();
@@ -125,7 +130,7 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
     const double y = direction[2 * i + 1];
     const double scale = 1.0 / (length[i] * length[i]);
     const double couple = scale * (moment[i] - shared * moment[j]);
-    const double across = scale * (1.0 - shared) * stiffness[i];
+    const double across = scale * (1.0 - shared) * (stiffness[i] + race);
     xx[i] = couple * 2.0 * x * y + across * y * y;
     xy[i] = couple * (y * y - x * x) - across * x * y;
     yy[i] = -couple * 2.0 * x * y + across * x * x;
@@ -146,7 +151,8 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
   const int n = shape.teeth();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
-  const double* __restrict__ k = stiffness_.data();
+  const double* __restrict__ rim = stiffness_.data();
+  const double race = race_;
   double* __restrict__ gx = tangent.segment.xx.data();
   double* __restrict__ gy = tangent.segment.xy.data();
 #pragma omp simd
@@ -173,17 +179,20 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
     const double before_y = gy[i] + gy[h];
     const double after_x = gx[i] + gx[j];
     const double after_y = gy[i] + gy[j];
-    d_xx[i] += k[h] * gx[h] * gx[h] + k[i] * before_x * before_x + k[j] * gx[i] * gx[i];
-    d_xy[i] += k[h] * gx[h] * gy[h] + k[i] * before_x * before_y + k[j] * gx[i] * gy[i];
-    d_yy[i] += k[h] * gy[h] * gy[h] + k[i] * before_y * before_y + k[j] * gy[i] * gy[i];
-    n_xx[i] -= k[i] * before_x * gx[i] + k[j] * gx[i] * after_x;
-    n_xy[i] -= k[i] * before_x * gy[i] + k[j] * gx[i] * after_y;
-    n_yx[i] -= k[i] * before_y * gx[i] + k[j] * gy[i] * after_x;
-    n_yy[i] -= k[i] * before_y * gy[i] + k[j] * gy[i] * after_y;
-    s_xx[i] += k[j] * gx[i] * gx[j];
-    s_xy[i] += k[j] * gx[i] * gy[j];
-    s_yx[i] += k[j] * gy[i] * gx[j];
-    s_yy[i] += k[j] * gy[i] * gy[j];
+    const double k_h = rim[h] + race;
+    const double k_i = rim[i] + race;
+    const double k_j = rim[j] + race;
+    d_xx[i] += k_h * gx[h] * gx[h] + k_i * before_x * before_x + k_j * gx[i] * gx[i];
+    d_xy[i] += k_h * gx[h] * gy[h] + k_i * before_x * before_y + k_j * gx[i] * gy[i];
+    d_yy[i] += k_h * gy[h] * gy[h] + k_i * before_y * before_y + k_j * gy[i] * gy[i];
+    n_xx[i] -= k_i * before_x * gx[i] + k_j * gx[i] * after_x;
+    n_xy[i] -= k_i * before_x * gy[i] + k_j * gx[i] * after_y;
+    n_yx[i] -= k_i * before_y * gx[i] + k_j * gy[i] * after_x;
+    n_yy[i] -= k_i * before_y * gy[i] + k_j * gy[i] * after_y;
+    s_xx[i] += k_j * gx[i] * gx[j];
+    s_xy[i] += k_j * gx[i] * gy[j];
+    s_yx[i] += k_j * gy[i] * gx[j];
+    s_yy[i] += k_j * gy[i] * gy[j];
   };
   row(n - 1, 0, 1);
 #pragma omp simd

@@ -11,14 +11,15 @@
 
 namespace hjt
 {
-/// Bending stiffness of the flexspline rim.
+/// Bending stiffness of the flexspline rim and of the bearing's outer race, which bends with it.
 ///
-/// Energy:  absolute   U = 1/2 sum_i k_i eta_i^2                 (thesis eq. 5.47-5.53; not frame-indifferent)
-///          curvature  U = 1/2 sum_i k_i (eta_i - eta_{i-1})^2   (frame-indifferent)
-/// where    eta_i  rotation of the segment from tooth i to i+1 from rest [rad]
-///          k_i    stiffness, >= 0                                       [N.m/rad]
-/// A rim that has been bent for good adds its own angle: less natural_angle_i, what the brackets would be of
-/// themselves.
+/// Energy:  absolute   U = 1/2 sum_i (k_i + k_race) eta_i^2                 (thesis eq. 5.47-5.53; not frame-indifferent)
+///          curvature  U = 1/2 sum_i (k_i + k_race) (eta_i - eta_{i-1})^2   (frame-indifferent)
+/// where    eta_i   rotation of the segment from tooth i to i+1 from rest [rad]
+///          k_i     stiffness of the rim, >= 0                            [N.m/rad]
+///          k_race  that of the race, everywhere beside the rim           [N.m/rad]
+/// A rim that has been bent for good adds its own angle: for its k_i, less natural_angle_i, what the brackets would be
+/// of themselves.
 class RimBending
 {
 public:
@@ -42,7 +43,7 @@ public:
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N.m/rad]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, of the rim alone, editable per tooth [N.m/rad]
   const Eigen::VectorXd& naturalAngle() const noexcept { return natural_angle_; }
   Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
 
@@ -53,6 +54,7 @@ private:
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;
+  double race_;  // [N.m/rad]
   Eigen::VectorXd natural_angle_;
   Eigen::VectorXd rest_directions_;
   double rest_cos_;  // of the angle between neighbouring segments at rest

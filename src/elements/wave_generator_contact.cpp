@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elements/contact_ramp.hpp"
+#include "elements/hertz_contact.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -24,11 +25,30 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
   foot.curvature = 1.0 / radius;
   return foot;
 }
+
+/// Of the wave generator's surface, hot and with its fit [m].
+double meanRadius(const Parameters& parameters) noexcept
+{
+  constexpr double EXPANSION = 11.5e-6;  // of steel [1/K]
+  const double radius = parameters.gear.flexspline_inner_radius;
+  return radius + parameters.contact.fit + EXPANSION * radius * parameters.contact.temperature_difference;
+}
+
+/// The stiffness of each tooth's support, see WaveGeneratorContact.
+double supportStiffness(const Parameters& parameters) noexcept
+{
+  return parameters.contact.support == SupportKind::SPRINGS ?
+             parameters.contact.stiffness :
+             hertzStiffness(parameters.bearing.ball_diameter) * parameters.bearing.balls /
+                 parameters.gear.teeth_flexspline;
+}
 }  // namespace
 
 WaveGeneratorContact::Scratch::Scratch(int teeth)
-  : force(Eigen::VectorXd::Zero(teeth))
+  : SingleBalls::Scratch(teeth)
+  , force(Eigen::VectorXd::Zero(teeth))
   , depth(teeth)
+  , slope(teeth)
   , curvature(teeth)
   , normal(2 * teeth)
   , gap(teeth)
@@ -39,14 +59,16 @@ WaveGeneratorContact::Scratch::Scratch(int teeth)
 
 WaveGeneratorContact::WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest)
   : law_(parameters.contact.law)
+  , support_(parameters.contact.support)
   , smoothing_(parameters.contact.smoothing)
-  , mean_radius_(parameters.gear.flexspline_inner_radius)
+  , mean_radius_(meanRadius(parameters))
   , ellipticity_(parameters.manufacture.wave_generator_ellipticity)
   , centre_x_(parameters.manufacture.wave_generator_eccentricity[0])
   , centre_y_(parameters.manufacture.wave_generator_eccentricity[1])
-  , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), parameters.contact.stiffness))
+  , stiffness_(Eigen::VectorXd::Constant(rest.teeth(), supportStiffness(parameters)))
   , gap_(Eigen::VectorXd::Zero(rest.teeth()))
   , bearing_(parameters.bearing)
+  , single_balls_(hertzStiffness(parameters.bearing.ball_diameter), rest.teeth())
 {
 }
 
@@ -123,46 +145,96 @@ void WaveGeneratorContact::addSag(const DrivePosition& position, Scratch& scratc
   scratch.gap += gap_;
 }
 
-HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
-                                                       Scratch& scratch, ForceSum& sum) const noexcept
+/// Each tooth on its spring. @returns the energy [J].
+HJT_VECTOR_CLONES double WaveGeneratorContact::pressSprings(Scratch& scratch) const noexcept
 {
-  findFeet(shape, position, scratch);
-  if (!bearing_.sound())
-  {
-    addSag(position, scratch);
-  }
-  const int n = shape.teeth();
-  const double* __restrict__ point = shape.points.data();
+  const auto n = static_cast<int>(scratch.force.size());
   const double* __restrict__ stiffness = stiffness_.data();
   const double* __restrict__ gap = gapOf(scratch);
   double* __restrict__ depth = scratch.depth.data();
-  const double* __restrict__ normal = scratch.normal.data();
-  double* __restrict__ contact_force = scratch.force.data();
-  double* __restrict__ teeth = sum.teeth.data();
+  double* __restrict__ force = scratch.force.data();
+  double* __restrict__ slope = scratch.slope.data();
   const double smoothing = smoothing_;
-  double torque = 0.0;
   double energy = 0.0;
-#pragma omp simd reduction(+ : torque, energy)
+#pragma omp simd reduction(+ : energy)
   for (int i = 0; i < n; ++i)
   {
     const double pressed = depth[i] - gap[i];
     depth[i] = pressed;
     const ContactRamp ramp(pressed, smoothing);
-    const double force = stiffness[i] * ramp.force;
+    force[i] = stiffness[i] * ramp.force;
+    slope[i] = stiffness[i] * ramp.tangent;
+    energy += stiffness[i] * ramp.energy;
+  }
+  return energy;
+}
+
+/// Each tooth on its share of the balls. @returns the energy [J].
+HJT_VECTOR_CLONES double WaveGeneratorContact::pressBalls(Scratch& scratch) const noexcept
+{
+  const auto n = static_cast<int>(scratch.force.size());
+  const double* __restrict__ stiffness = stiffness_.data();
+  const double* __restrict__ gap = gapOf(scratch);
+  double* __restrict__ depth = scratch.depth.data();
+  double* __restrict__ force = scratch.force.data();
+  double* __restrict__ slope = scratch.slope.data();
+  double energy = 0.0;
+#pragma omp simd reduction(+ : energy)
+  for (int i = 0; i < n; ++i)
+  {
+    depth[i] -= gap[i];
+    const HertzContact contact(depth[i]);
+    force[i] = stiffness[i] * contact.force;
+    slope[i] = stiffness[i] * contact.tangent;
+    energy += stiffness[i] * contact.energy;
+  }
+  return energy;
+}
+
+HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
+                                                       Scratch& scratch, ForceSum& sum) const noexcept
+{
+  findFeet(shape, position, scratch);
+  if (hasSag())
+  {
+    addSag(position, scratch);
+  }
+  double torque = 0.0;
+  switch (support_)
+  {
+    case SupportKind::SPRINGS:
+      sum.energy += pressSprings(scratch);
+      break;
+    case SupportKind::BALLS:
+      sum.energy += pressBalls(scratch);
+      break;
+    case SupportKind::SINGLE_BALLS:
+      scratch.depth -= gap_;
+      scratch.slope.setZero();
+      sum.energy +=
+          single_balls_.press(bearing_, position.wave_generator_angle, scratch.depth, scratch, scratch.force, torque);
+      break;
+  }
+  const int n = shape.teeth();
+  const double* __restrict__ point = shape.points.data();
+  const double* __restrict__ normal = scratch.normal.data();
+  const double* __restrict__ contact_force = scratch.force.data();
+  double* __restrict__ teeth = sum.teeth.data();
+#pragma omp simd reduction(+ : torque)
+  for (int i = 0; i < n; ++i)
+  {
+    const double force = contact_force[i];
     const double nx = normal[2 * i];
     const double ny = normal[2 * i + 1];
-    contact_force[i] = force;
     teeth[2 * i] += force * nx;
     teeth[2 * i + 1] += force * ny;
     torque -= force * (point[2 * i] * ny - point[2 * i + 1] * nx);
-    energy += stiffness[i] * ramp.energy;
   }
-  if (!bearing_.sound())
+  if (hasSag())
   {
     torque += scratch.force.dot(scratch.gap_rate);
   }
   sum.wave_generator_torque += torque;
-  sum.energy += energy;
 }
 
 /// A tooth out of contact has neither force nor stiffness and adds nothing.
@@ -171,7 +243,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
 {
   const int n = shape.teeth();
   const double* __restrict__ point = shape.points.data();
-  const double* __restrict__ tooth_stiffness = stiffness_.data();
+  const double* __restrict__ slope = scratch.slope.data();
   const double* __restrict__ gap = gapOf(scratch);
   const double* __restrict__ depth = scratch.depth.data();
   const double* __restrict__ normal = scratch.normal.data();
@@ -181,7 +253,6 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
   double* __restrict__ xy = tangent.diagonal.xy.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   double* __restrict__ by_angle = tangent.wave_generator.data();
-  const double smoothing = smoothing_;
   double by_angle_twice = 0.0;
 #pragma omp simd reduction(+ : by_angle_twice)
   for (int i = 0; i < n; ++i)
@@ -191,7 +262,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double nx = normal[2 * i];
     const double ny = normal[2 * i + 1];
     const double force = contact_force[i];
-    const double stiffness = tooth_stiffness[i] * ContactRamp(depth[i], smoothing).tangent;
+    const double stiffness = slope[i];
     // The normal turns with the point at this rate; the force follows it.
     const double turn = curvature[i] / (1.0 - curvature[i] * (depth[i] + gap[i]));
     const double across = -force * turn;
@@ -207,12 +278,12 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     by_angle[2 * i + 1] -= along * ny + sideways * nx;
     by_angle_twice += along * lever + sideways * reach;
   }
-  if (!bearing_.sound())
+  if (hasSag())
   {
     // The gap changes with the wave generator's angle alone.
     for (int i = 0; i < n; ++i)
     {
-      const double stiffness = tooth_stiffness[i] * ContactRamp(depth[i], smoothing).tangent;
+      const double stiffness = slope[i];
       const double nx = normal[2 * i];
       const double ny = normal[2 * i + 1];
       const double lever = point[2 * i] * ny - point[2 * i + 1] * nx;
@@ -223,6 +294,10 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     }
   }
   tangent.wave_generator_stiffness += by_angle_twice;
+  if (isOnSingleBalls())
+  {
+    single_balls_.addTangent(bearing_, shape, scratch.depth, scratch.normal, scratch, tangent);
+  }
 }
 
 void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, const Scratch& scratch,

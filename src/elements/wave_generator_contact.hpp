@@ -6,6 +6,7 @@
 #include "elements/force_sum.hpp"
 #include "elements/race_deflection.hpp"
 #include "elements/ring_tangent.hpp"
+#include "elements/single_balls.hpp"
 #include "gear/ellipse.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
@@ -14,14 +15,16 @@
 namespace hjt
 {
 /// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by
-/// theta. Errors of manufacture add to w (ellipticity) and move the ellipse's centre off the axis it turns about
-/// (eccentricity).
+/// theta. r0 is the rim's inner radius with the fit and its thermal growth. Errors of manufacture add to w (ellipticity)
+/// and move the ellipse's centre off the axis it turns about (eccentricity).
 ///
-/// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), r the contact ramp, depth_i inside the ellipse along its normal
+/// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal; r the contact ramp
+///                   where each tooth has a spring, Hertz' point contact where it has its share of the balls
+///                   Single balls: SingleBalls
 /// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
 ///                   (thesis eq. 5.11-5.23): not a gradient; only for the insertion of the thesis. Its tangent leaves
 ///                   the unsymmetric part out, which costs Newton some iterations and nothing else.
-/// where             k_i  stiffness per tooth, >= 0 [N/m]
+/// where             k_i  stiffness per tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
 ///                   gap_i  worn off rim and race there, plus the sag of a faulty bearing's outer race [m]
 class WaveGeneratorContact
 {
@@ -29,13 +32,14 @@ public:
   WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest);
 
   /// What it found, one entry per tooth.
-  struct Scratch
+  struct Scratch : SingleBalls::Scratch
   {
     explicit Scratch(int teeth);
     void setZero() noexcept {}  // `addForces` writes every entry
 
     Eigen::VectorXd force;       ///< N, normal force of the wave generator on each tooth, >= 0 [N]
     Eigen::VectorXd depth;       ///< N, depth of each tooth point inside the wave generator, less the gap [m]
+    Eigen::VectorXd slope;       ///< N, of the force over the depth; 0 on single balls [N/m]
     Eigen::VectorXd curvature;   ///< N, of the wave generator there [1/m]
     Eigen::VectorXd normal;      ///< 2 N, direction of the force, outward [-]
     Eigen::VectorXd gap;         ///< N, while the bearing is faulty: between wave generator and rim [m]
@@ -53,22 +57,28 @@ public:
   void surfaceByAmplitude(const DrivePosition& position, const Scratch& scratch, Eigen::VectorXd& rates) const noexcept;
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m], [N/m^1.5]
   Eigen::VectorXd& gap() noexcept { return gap_; }              ///< N, editable per tooth, >= 0 [m]
-  RaceDeflection& bearing() noexcept { return bearing_; }       ///< editable
+  const RaceDeflection& bearing() const noexcept { return bearing_; }
+  RaceDeflection& bearing() noexcept { return bearing_; }  ///< editable
+
+  /// Whether the force's slope jumps where a tooth makes contact.
+  bool hasKinks() const noexcept { return support_ == SupportKind::SPRINGS; }
 
   /// Shortens the major semi-axis at lobe 0 and at lobe 1 [m]. The minor axis stays.
   void wear(double lobe, double other_lobe) noexcept;
 
 private:
   void addSag(const DrivePosition& position, Scratch& scratch) const noexcept;
-  const double* gapOf(const Scratch& scratch) const noexcept
-  {
-    return bearing_.sound() ? gap_.data() : scratch.gap.data();
-  }
+  const double* gapOf(const Scratch& scratch) const noexcept { return hasSag() ? scratch.gap.data() : gap_.data(); }
+  bool isOnSingleBalls() const noexcept { return support_ == SupportKind::SINGLE_BALLS; }
+  bool hasSag() const noexcept { return !bearing_.sound() && !isOnSingleBalls(); }
+  double pressSprings(Scratch& scratch) const noexcept;
+  double pressBalls(Scratch& scratch) const noexcept;
   void findFeet(const RingShape& shape, const DrivePosition& position, Scratch& scratch) const noexcept;
 
   ContactLaw law_;
+  SupportKind support_;
   double smoothing_;
   double mean_radius_;
   double ellipticity_;  // [m]
@@ -77,5 +87,6 @@ private:
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd gap_;
   RaceDeflection bearing_;
+  SingleBalls single_balls_;
 };
 }  // namespace hjt

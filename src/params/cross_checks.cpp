@@ -101,6 +101,10 @@ void checkElements(const Parameters& p, Contradictions& check)
                 { "bearing.ball_diameter", "bearing.pitch_diameter" },
                 "bearing.ball_diameter = " + numberText(p.bearing.ball_diameter) +
                     " [m] must be less than bearing.pitch_diameter = " + numberText(p.bearing.pitch_diameter) + " [m]");
+  check.require(p.contact.support != SupportKind::SINGLE_BALLS || p.bearing.balls <= p.gear.teeth_flexspline,
+                { "contact.support", "bearing.balls" },
+                "contact.support = single_balls needs no more balls than teeth, and bearing.balls = " +
+                    std::to_string(p.bearing.balls));
 }
 
 void checkLife(const Parameters& p, Contradictions& check)

@@ -118,7 +118,8 @@ void visitFields(P& p, Visitor&& visit)
         "wave generator above the flexspline's rim, which adds its thermal growth to the fit");
   visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
   visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
-  visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
+  visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
+        "support springs: C1 ramp of the contact; 0 = exact law");
   visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
         "friction between the bearing's outer race and the flexspline");
   visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },

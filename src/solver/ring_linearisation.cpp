@@ -53,7 +53,8 @@ bool RingLinearisation::slopesChanged() const noexcept
     return true;
   }
   return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
-         ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_) != 0;
+         (model_.of<WaveGeneratorContact>().hasKinks() &&
+          ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_) != 0);
 }
 
 void RingLinearisation::solve(Eigen::VectorXd& step) noexcept

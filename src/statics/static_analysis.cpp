@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "gear/angle.hpp"
@@ -50,6 +51,19 @@ ToothStress stressOf(const RingEquilibrium& ring, const Parameters& parameters)
   ToothStress stress(parameters.gear.teeth_flexspline);
   FlexsplineStress(parameters).at(ring, 0, stress);
   return stress;
+}
+
+/// Of each ball, on single balls [N].
+std::vector<double> ballForces(const RingEquilibrium& ring, const Parameters& parameters)
+{
+  std::vector<double> forces;
+  if (parameters.contact.support == SupportKind::SINGLE_BALLS)
+  {
+    const auto& balls = ring.forces().of<WaveGeneratorContact>().balls;
+    std::transform(balls.begin(), balls.begin() + parameters.bearing.balls, std::back_inserter(forces),
+                   [](const SingleBalls::Ball& ball) { return ball.force; });
+  }
+  return forces;
 }
 
 /// Of the housing on the flexspline [N.m].
@@ -126,6 +140,7 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
     row.wave_generator_torque = ring.forces().wave_generator_torque;
     row.housing_torque = housingTorque(ring);
     row.cup_rotation = ring.forces().of<CupTorsion>().rotation;
+    row.ball_force = ballForces(ring, parameters);
     row.stress = stressOf(ring, parameters);
     row.teeth = tabulateTeeth(ring, row.stress);
     for (int i = 0; i < model.rest.teeth(); ++i)

@@ -74,6 +74,16 @@ RingTheory secondOrderRing(const Parameters& parameters, double bending, double 
   return theory;
 }
 
+/// As the theories have it: a bare rim on springs, neither tight nor loose.
+Parameters onSprings(Parameters parameters)
+{
+  parameters.contact.support = SupportKind::SPRINGS;
+  parameters.contact.fit = 0.0;
+  parameters.contact.temperature_difference = 0.0;
+  parameters.bearing.race_bending_stiffness = 0.0;
+  return parameters;
+}
+
 Displacement displacement(const RingModel& model, const RingShape& shape, int i)
 {
   const Eigen::Vector2d radial = model.rest.radial().segment<2>(2 * i);
@@ -99,8 +109,9 @@ ShapeError errorOf(const RingTheory& theory, const RingModel& model, const RingS
 }
 }  // namespace
 
-std::vector<SmallWaveRow> analyseSmallWave(const Parameters& parameters, WaveBending kind, double smallest, int count)
+std::vector<SmallWaveRow> analyseSmallWave(const Parameters& given, WaveBending kind, double smallest, int count)
 {
+  const Parameters parameters = onSprings(given);
   RingModel model(parameters);
   model.setMeshed(false);
   RingEquilibrium ring(model, staticSolver(parameters.solver));

@@ -45,6 +45,14 @@ bool isOfTheBalls(const ActiveFault& active) noexcept
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source)
 {
+  if (parameters.contact.support == SupportKind::SINGLE_BALLS)
+  {
+    if (source.notice)
+    {
+      source.notice("no response surface on single balls: the twin solves the full ring at every step");
+    }
+    return nullptr;
+  }
   if (std::any_of(faults.begin(), faults.end(), isOfTheBalls))
   {
     if (source.notice)

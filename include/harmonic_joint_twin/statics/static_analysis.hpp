@@ -75,6 +75,7 @@ struct StiffnessRow
   int teeth_loaded{};
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_sum{};  ///< [N]
+  std::vector<double> ball_force;     ///< of each ball of the bearing [N]; empty unless on single balls
   ToothStress stress;
   ToothTable teeth;
 };

@@ -223,6 +223,10 @@ int stiffness(const StiffnessOptions& options)
   std::vector<Column<StiffnessRow>> columns = STIFFNESS_COLUMNS;
   columns.push_back({ "stress_max", [&](const StiffnessRow& row) { return largestStress(parameters, row); }, "" });
   columns.push_back({ "stress", [&](const StiffnessRow& row) { return stressJson(parameters, row); }, "" });
+  if (parameters.contact.support == SupportKind::SINGLE_BALLS)
+  {
+    columns.push_back({ "ball_force", &StiffnessRow::ball_force, "" });
+  }
   if (options.teeth)
   {
     columns.push_back({ "teeth", teethJson, "" });

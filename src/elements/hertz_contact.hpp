@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+namespace hjt
+{
+/// Point contact after Hertz per unit stiffness: energy, force and tangent over the depth. Beside a contact that opens
+/// the tangent goes to zero without a jump.
+struct HertzContact
+{
+  double energy{};   ///< [m^2.5]
+  double force{};    ///< [m^1.5]
+  double tangent{};  ///< [m^0.5]
+
+  explicit HertzContact(double depth) noexcept
+  {
+    const double pressed = depth > 0.0 ? depth : 0.0;
+    const double root = std::sqrt(pressed);
+    force = pressed * root;
+    energy = 0.4 * pressed * force;
+    tangent = 1.5 * root;
+  }
+};
+
+/// Of a ball of steel between two races, K in Q = K depth^1.5 [N/m^1.5]; depth: by how much the races approach each
+/// other. Palmgren, for ball bearings with the usual osculation: depth = 4.36e-4 Q^(2/3) d^(-1/3), in mm and N, d the
+/// ball's diameter [m].
+inline double hertzStiffness(double ball_diameter) noexcept
+{
+  constexpr double PALMGREN = 4.36e-4;                                         // mm^(4/3) / N^(2/3)
+  constexpr double MILLIMETRES = 1e3;                                          // per metre
+  const double per_force = PALMGREN / std::cbrt(MILLIMETRES * ball_diameter);  // depth over Q^(2/3) [mm/N^(2/3)]
+  const double depth_scale = MILLIMETRES / per_force;
+  return depth_scale * std::sqrt(depth_scale);
+}
+}  // namespace hjt
