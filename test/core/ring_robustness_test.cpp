@@ -39,7 +39,7 @@ void expectEquilibrium(const RingEquilibrium& ring, double tolerance)
 void expectInsertedOrSaid(const Assignments& assignments, bool must_converge)
 {
   SCOPED_TRACE(testing::PrintToString(assignments));
-  const Parameters parameters = shippedParameters(assignments);
+  const Parameters parameters = goldenParameters(assignments);
   const RingModel model(parameters);
   RingEquilibrium ring(model, parameters.solver);
   const SolveStatus status = ring.insert({ 0.1, 0.0, parameters.gear.wave_amplitude });
@@ -91,7 +91,7 @@ TEST_P(StiffenedRing, IsInsertedOrSaysThatItIsNot)
 /// Without the circular spline, as statics solve it.
 SolveStatus insertAlone(const Assignments& assignments, double tolerance = 5e-7)
 {
-  Parameters parameters = shippedParameters(assignments);
+  Parameters parameters = goldenParameters(assignments);
   parameters.solver.force_tolerance = tolerance;
   RingModel model(parameters);
   model.setMeshed(false);
