@@ -97,7 +97,7 @@ def calibrate_gear(twin, gear):
     report(twin, gear, {}, "as configured")
     found, _ = solve(errors, start)
     report(twin, gear, values(found), "fitted")
-    print("cup:\n  torsion_stiffness: [" + ", ".join(f"{1e-3 * slope:.1f}e+3" for slope in found[:3]) + "]")
+    print("cup:\n  torsion_stiffness: [" + ", ".join(f"{1e-3 * slope:.3g}e+3" for slope in found[:3]) + "]")
     print(f"bearing:\n  race_preload: {found[3]:.0f}.0\n  viscosity: {1e6 * found[4]:.1f}e-6")
 
 

@@ -326,9 +326,9 @@ TEST(Faults, OfTheCupSoftenItsWallAlone)
   {
     parameters.faults = { { row.kind, 1.0, WHOLE_MEMBER, 0.0 } };
     const double added = 1.0 / StandingGear(parameters).at(0.0, 5.0).stiffness()(1, 1) - sound;
-    // The cup carries load and wave generator's torque, 1 + 1/101 of the load, and turns by as much more than the
-    // output. Rim and teeth under the same torque give way as before.
-    const double share = 1.0 + 1.0 / nominalRatio(parameters.gear);
+    // The wave generator takes 1/101 of the load, the cup the rest, and the output turns by as much of the cup's
+    // rotation. Rim and teeth under the same torque give way as before.
+    const double share = 1.0 - 1.0 / nominalRatio(parameters.gear);
     EXPECT_NEAR(added * parameters.cup.wall_stiffness / (share * share), row.softer, 1e-3 * row.softer)
         << describe(row.kind).name;
   }
