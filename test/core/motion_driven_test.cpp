@@ -173,6 +173,29 @@ TEST(MotionDriven, TakesTheTorqueThatMadeTheMotion)
   EXPECT_LT(std::sqrt(error / signal), 0.04);
 }
 
+TEST(Identification, FindsTheStribeckRise)
+{
+  std::vector<std::string> hidden = hiddenParameters();
+  hidden.emplace_back("motor.stribeck_torque=0.04");
+  hidden.emplace_back("motor.stribeck_velocity=20.0");
+  const Parameters robot = shippedParameters(hidden);
+  Parameters known = knownParameters();
+  known.motor.stribeck_velocity = robot.motor.stribeck_velocity;
+  const std::vector<MotionSample> samples = smoothed(runRobot(robot, 18.0, { 3e-6, 0.02 }), MotionDriven(known));
+  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
+  const Identification found = identify(known, { samples.begin(), middle }, { { middle, samples.end() } }, false);
+  const IdentifiedValue& rise = valueOf(found, "motor.stribeck_torque");
+  EXPECT_EQ(rise.refusal, "");
+  EXPECT_NEAR(rise.value, robot.motor.stribeck_torque, std::max(rise.half_width, 0.25 * robot.motor.stribeck_torque));
+  EXPECT_EQ(found.parameters.motor.stribeck_torque, rise.value);
+  RecordProperty("rise", std::to_string(rise.value));
+  // The prediction has it.
+  Parameters without = found.parameters;
+  without.motor.stribeck_torque = 0.0;
+  EXPECT_GT(MotionDriven(found.parameters).frictionAt(0.02, 0.0, 25.0),
+            MotionDriven(without).frictionAt(0.02, 0.0, 25.0) + 2.0);
+}
+
 TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
 {
   const Parameters robot = shippedParameters(hiddenParameters());
