@@ -63,6 +63,21 @@ TEST(EnergyLedgerOfTheLeapfrog, ClosesToAMillionthWhereStepsResolveTheTeeth)
   EXPECT_LT(energyResidual(shippedParameters({ "solver.rate=50000", "motor.speed_limit=60.0" }), 75, true), 1e-6);
 }
 
+class EnergyLedgerOnBalls : public testing::TestWithParam<const char*>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Supports, EnergyLedgerOnBalls, testing::Values("balls", "single_balls"));
+
+TEST_P(EnergyLedgerOnBalls, ClosesAsOnSprings)
+{
+  const std::vector<std::string> support{ std::string("contact.support=") + GetParam(), "ring.bending_stiffness=258.0",
+                                          "bearing.race_bending_stiffness=670.0" };
+  EXPECT_LT(energyResidual(shippedParameters(support), 71, true), 1e-3);
+  std::vector<std::string> fine = support;
+  fine.insert(fine.end(), { "solver.rate=50000", "motor.speed_limit=60.0" });
+  EXPECT_LT(energyResidual(shippedParameters(fine), 75, true), 1e-6);
+}
+
 TEST(EnergyLedgerOfRungeKutta, ClosesOverAViolentSecond)
 {
   // Friction is explicit here: it must be regularised as widely as the stepper asks for, and there is no brake.
