@@ -7,6 +7,7 @@ import statistics
 from bounds import AtLeast, AtMost, Within
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
+GOLDEN = ("--config", "golden.yaml")
 HALF_ULP = 2.0**-53  # relative rounding of a number
 LOADS = [0.0, 20.0, 67.0, 150.0, -150.0]  # N.m
 RATES = [10000, 20000, 50000, 100000]  # Hz
@@ -26,7 +27,7 @@ def build(page):
     ratio(page, parameters)
     states(page, parameters)
     frame(page, parameters)
-    small_wave(page, parameters)
+    small_wave(page)
     same_bytes(page)
 
 
@@ -321,15 +322,16 @@ def frame(page, parameters):
 # -----------------------------------------------------------------------------------------------------------
 
 
-def small_wave(page, parameters):
+def small_wave(page):
     page.heading("Small wave against thin-ring theory")
+    parameters = page.tool("parameters", *GOLDEN)
     radius = parameters["gear"]["flexspline_inner_radius"]
     amplitude = parameters["gear"]["wave_amplitude"]
     ring = parameters["ring"]
     pitch = 2.0 * math.pi / parameters["gear"]["teeth_flexspline"]
     yielding = ring["tension_stiffness"] * pitch**2 / parameters["contact"]["stiffness"]
-    held = page.tool("invariants", "small-wave", "--smallest", 1e-7, "--count", 41, "--hold")["rows"]
-    free = page.tool("invariants", "small-wave", "--smallest", 1e-7, "--count", 81)["rows"]
+    held = page.tool("invariants", "small-wave", "--smallest", 1e-7, "--count", 41, "--hold", *GOLDEN)["rows"]
+    free = page.tool("invariants", "small-wave", "--smallest", 1e-7, "--count", 81, *GOLDEN)["rows"]
     page.text(
         f"The ring after the insertion, no circular spline, wave amplitude w from {1e3 * amplitude:g} mm down to 0.1 "
         f"µm. For a thin ring that does not "
@@ -380,11 +382,12 @@ def small_wave(page, parameters):
                Within(half, relative=0.005), smallest["thin_ring"]["tangential"], "",
                "second order in w, 4e-7, and bending, 7e-8")
     lift = 36.0 * ring["bending_stiffness"] * (1.0 + yielding) / (ring["tension_stiffness"] * radius)
-    page.check("invariants.wave_lift_off", "amplitude at which the rim, bending as shipped, leaves the wave generator",
+    page.check("invariants.wave_lift_off", "amplitude at which the rim leaves the wave generator",
                "36 k_F (1 + k p²/k_WG) / (k R)", Within(1e3 * lift, relative=0.03), 1e3 * lift_off(page, lift), "mm",
                "next order: some ten times w/R")
     limit = free[-1]["linear"]["radial"]
-    page.text(f"The shipped drive, w0 = {1e3 * amplitude:g} mm, stands {amplitude / lift:.1f} times above lift-off: "
+    page.text(f"The gear of the thesis (`golden.yaml`), w0 = {1e3 * amplitude:g} mm, stands "
+              f"{amplitude / lift:.1f} times above lift-off: "
               f"the wave generator presses every "
               f"tooth, by {free[0]['contact_force_min']:.2f} to {free[0]['contact_force_max']:.2f} N. A rim that lifts "
               f"off keeps a shape of its own, "
@@ -399,7 +402,7 @@ def small_wave(page, parameters):
                             label=key if style == "-" and axes is left else None)
         right.loglog([1e3 * row["wave_amplitude"] for row in free], [row["second_order"]["radial"] for row in free],
                      "-", color=RED,
-                     label="radial, bending as shipped:\nlifts off")
+                     label="radial, bending as it is:\nlifts off")
         right.axvline(1e3 * lift, color=GREY, linewidth=0.8, linestyle="--")
         for axes, power, at in ((left, 1, 3e-3), (right, 2, 4e-6)):
             low = 1e-6 if power == 1 else 3e-5
@@ -416,14 +419,14 @@ def small_wave(page, parameters):
     page.figure("invariants_small_wave",
                 "Shape of the inserted ring against theory, ring held all round. Left: to first order, for arcs "
                 "(dotted) and "
-                "for the ring as it is (full). Right: with the second order in w; red: bending as shipped, the dashed "
+                "for the ring as it is (full). Right: with the second order in w; red: bending as it is, the dashed "
                 "line is where "
                 "it must lift off.", draw, size=(8.0, 3.6))
 
 
 def lift_off(page, about):
     """The largest amplitude at which a tooth stands off, to three thousandths [m]."""
-    rows = page.tool("invariants", "small-wave", "--smallest", repr(0.8 * about), "--count", 600)["rows"]
+    rows = page.tool("invariants", "small-wave", "--smallest", repr(0.8 * about), "--count", 600, *GOLDEN)["rows"]
     return max((row["wave_amplitude"] for row in rows if row["contact_force_min"] <= 0.0), default=0.0)
 
 

@@ -5,7 +5,7 @@ import math
 from bounds import AtLeast, AtMost, Within
 from page import BLUE, ORANGE
 from teeth_profiles import chord
-from teeth_runs import loaded
+from teeth_runs import golden, loaded
 
 
 def tilted_gap(teeth, tooth_height):
@@ -24,7 +24,7 @@ def tilted_gap(teeth, tooth_height):
 
 def interference(page, path):
     page.heading("Interference of the straight flank")
-    height = page.tool("parameters")["gear"]["tooth_height_flexspline"]
+    height = page.tool("parameters", *golden())["gear"]["tooth_height_flexspline"]
     angles = [8, 9, 10, 11, 12, 12.5, 13, 13.25, 13.5, 13.6, 13.7, 13.8, 13.9, 14, 14.5, 15, 15.5, 16, 17, 18, 20, 22.5,
               25]
     forces = []

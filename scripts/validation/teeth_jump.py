@@ -4,7 +4,7 @@ import math
 
 from bounds import AtLeast, AtMost
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, ToolError
-from teeth_runs import PROFILES, TEETH, loaded, row_at, set_all
+from teeth_runs import PROFILES, TEETH, golden, loaded, row_at, set_all
 
 CATALOGUE_JUMP = 500.0  # N.m
 BALLS = 23
@@ -13,7 +13,7 @@ BALL_DIAMETER = 5.47e-3  # m, thesis Table 3.1
 
 def ratchet(page, *options, limit=2000):
     try:
-        return page.tool("ratchet", "--torque-limit", limit, *options)
+        return page.tool("ratchet", "--torque-limit", limit, *golden(), *options)
     except ToolError:  # with a wrong parameter a soft gear may stand nowhere: that fails its row, not the page
         nowhere = {"torque": math.nan, "output_angle": math.nan, "wave_amplitude": math.nan}
         return {"end": "nowhere", "peak": nowhere, "rows": [nowhere]}
@@ -46,7 +46,7 @@ def support_for(page, torque):
 
 def jump(page):
     page.heading("Jump of the teeth")
-    parameters = page.tool("parameters")
+    parameters = page.tool("parameters", *golden())
     gear, mesh = parameters["gear"], parameters["mesh"]
     rigid = ratchet(page, limit=20000)
     lobes = {stiffness: ratchet(page, "--lobe-stiffness", f"{stiffness:.3e}")

@@ -4,7 +4,7 @@ import math
 
 from bounds import AtMost, Between, Within
 from page import RED
-from teeth_runs import LOADS, PROFILES, TEETH, lobe, loaded, row_at, set_all
+from teeth_runs import LOADS, PROFILES, TEETH, golden, lobe, loaded, row_at
 
 RATED = 67  # N.m
 LIMIT = 150  # of the joint, N.m
@@ -101,7 +101,7 @@ def turning(page):
     table = []
     for name, (label, _) in PROFILES.items():
         rows = page.tool("turn", "--load", load, "--angle-range", repr(pitch), "--steps", 100,
-                         *set_all("mesh.profile=" + name))["rows"]
+                         *golden("mesh.profile=" + name))["rows"]
         mean = sum(row["wave_generator_torque"] for row in rows[:-1]) / (len(rows) - 1)
         errors = [row["output_angle"] - row["wave_generator_angle"] / ratio for row in rows]
         table.append([label, f"{math.degrees(max(errors) - min(errors)) * 3600.0:.3f}"])

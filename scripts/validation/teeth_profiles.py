@@ -3,17 +3,20 @@
 import math
 
 from bounds import AtLeast, AtMost
-from teeth_runs import PROFILES, lobe, set_all
+from teeth_runs import PROFILES, golden, lobe
 
 
 def profiles(page):
     """Gives the path of a tooth: drops and half clearances that touch it [m], its slopes as angles [rad]."""
     page.heading("Four profiles")
-    mesh = page.tool("parameters")["mesh"]
-    shapes = {name: page.tool("profile", *set_all("mesh.profile=" + name)) for name in PROFILES}
+    mesh = page.tool("parameters", *golden())["mesh"]
+    shapes = {name: page.tool("profile", *golden("mesh.profile=" + name)) for name in PROFILES}
     cycloid = shapes["cycloid"]["clearance"]
     path = {"drop": cycloid["drop"], "across": cycloid["path"], "angle": cycloid["flank_angle"]}
     page.text(f"""
+Profiles and supports are compared on the gear as the thesis computes it (`config/golden.yaml`): a spring under each
+tooth on a rigid wave generator.
+
 A flank enters the mesh as the half clearance c between tooth and space over the tooth's drop from full engagement. On
 an ideal ring (inextensible, w0 cos 2ψ) the tooth's own path through its space is a cycloid; a flank touches where its
 clearance meets the path. All have the same clearance at full engagement. Free dimensions:
@@ -121,7 +124,7 @@ def clearance_at_rest(page, rows, path):
     page.table(["profile", "teeth pressed at no load", "smallest gap [µm]", "largest gap [µm]"],
                [[PROFILES[name][0], rows[name][0]["teeth_loaded"], f"{min(gaps[name]):.2f}", f"{max(gaps[name]):.2f}"]
                 for name in PROFILES])
-    mesh, gear = page.tool("parameters")["mesh"], page.tool("parameters")["gear"]
+    mesh, gear = page.tool("parameters", *golden())["mesh"], page.tool("parameters", *golden())["gear"]
     steep = next(drop for drop, angle in zip(path["drop"], path["angle"]) if angle > mesh["tangent_angle"])
     steep_angle = 0.5 * math.degrees(math.acos(1.0 - steep / gear["wave_amplitude"]))
     page.text(f"""

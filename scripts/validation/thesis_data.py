@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 INSERTION = ("--config", "thesis_insertion.yaml")
+GOLDEN = ("--config", "golden.yaml")
 # The set of the prototypes: the cup as Table 7.1 gives it, straight flanks.
-OPERATION = ("--set", "cup.torsion_stiffness=[31.0e+3,50.0e+3,57.0e+3]", "--set", "cup.torsion_breakpoints=[14.0,48.0]",
-             "--set", "mesh.stiffness=5.0e+7", "--set", "mesh.flank_angle=0.29670597283903605", "--set",
-             "mesh.flank_clearance=-1.0e-6", "--set", "mesh.engagement_depth=20.0e-6")
+OPERATION = (*GOLDEN, "--set", "cup.torsion_stiffness=[31.0e+3,50.0e+3,57.0e+3]", "--set",
+             "cup.torsion_breakpoints=[14.0,48.0]", "--set", "mesh.flank_angle=0.29670597283903605", "--set",
+             "mesh.engagement_depth=20.0e-6")
 LOADS = (0.0, 5.0, 14.0, 48.0, 100.0, 150.0)  # N.m, of the prototypes' table and none
 TEETH_FS, TEETH_CS, RATIO = 200, 202, 101
 PITCH = 2.0 * math.pi / TEETH_FS  # rad

@@ -9,17 +9,27 @@
 namespace hjt
 {
 CupTorsion::CupTorsion(const Parameters& parameters, const ToothRing& rest)
-  : slopes_(parameters.cup.torsion_stiffness), torques_(parameters.cup.torsion_breakpoints), rest_radial_(rest.radial())
+  : wall_compliance_(1.0 / parameters.cup.wall_stiffness)
+  , slopes_(parameters.cup.torsion_stiffness)
+  , torques_(parameters.cup.torsion_breakpoints)
+  , rest_radial_(rest.radial())
 {
-  scaleStiffness(1.0);
+  placeBreakpoints();
 }
 
-void CupTorsion::scaleStiffness(double factor) noexcept
+void CupTorsion::scaleWall(double factor) noexcept
 {
+  const double added = wall_compliance_ * (1.0 / factor - 1.0);
+  wall_compliance_ += added;
   for (double& slope : slopes_)
   {
-    slope *= factor;
+    slope /= 1.0 + slope * added;
   }
+  placeBreakpoints();
+}
+
+void CupTorsion::placeBreakpoints() noexcept
+{
   rotations_[0] = torques_[0] / slopes_[0];
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
 }
@@ -79,6 +89,21 @@ double CupTorsion::torque(double rotation) const noexcept
     torque = torques_[0] + slopes_[1] * (size - rotations_[0]);
   }
   return std::copysign(torque, rotation);
+}
+
+double CupTorsion::rotationAtTorque(double torque) const noexcept
+{
+  const double size = std::abs(torque);
+  double rotation = size / slopes_[0];
+  if (size > torques_[1])
+  {
+    rotation = rotations_[1] + (size - torques_[1]) / slopes_[2];
+  }
+  else if (size > torques_[0])
+  {
+    rotation = rotations_[0] + (size - torques_[0]) / slopes_[1];
+  }
+  return std::copysign(rotation, torque);
 }
 
 double CupTorsion::storedEnergy(double rotation) const noexcept

@@ -20,20 +20,25 @@ namespace hjt
 ///
 /// The torque acts on the mean rotation. Taken per tooth, as the thesis writes it, the cup would be N times too stiff
 /// and would resist the travelling wave.
+///
+/// The curve is the catalogue's for the whole gear less what rim, teeth and bearing of the model give way: a lumping.
+/// Of its compliance 1/K_W is the wall's and diaphragm's; the rest has no place of its own in the model.
 class CupTorsion
 {
 public:
   CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// The cup's stiffness times this, > 0; the torques where it changes stay [-].
-  void scaleStiffness(double factor) noexcept;
+  /// Stiffness of wall and diaphragm times this, > 0; the rest of the compliance and the torques where the slope
+  /// changes stay [-].
+  void scaleWall(double factor) noexcept;
 
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
   /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
-  double torque(double rotation) const noexcept;        ///< C(Phi) [N.m]
-  double storedEnergy(double rotation) const noexcept;  ///< [J]
-  double stiffness(double rotation) const noexcept;     ///< dC/dPhi [N.m/rad]
+  double torque(double rotation) const noexcept;          ///< C(Phi) [N.m]
+  double rotationAtTorque(double torque) const noexcept;  ///< inverse of C [rad]
+  double storedEnergy(double rotation) const noexcept;    ///< [J]
+  double stiffness(double rotation) const noexcept;       ///< dC/dPhi [N.m/rad]
   double stiffnessAtTorque(double torque) const noexcept
   {
     const double size = torque < 0.0 ? -torque : torque;
@@ -51,6 +56,9 @@ public:
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
 private:
+  void placeBreakpoints() noexcept;
+
+  double wall_compliance_;  // [rad/(N.m)]
   std::array<double, 3> slopes_;
   std::array<double, 2> torques_;
   std::array<double, 2> rotations_;  // where the slope changes [rad]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "params/cross_checks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -83,6 +84,12 @@ void checkElements(const Parameters& p, Contradictions& check)
   check.require(breakpoints[0] < breakpoints[1], { "cup.torsion_breakpoints" },
                 "cup.torsion_breakpoints = [" + numberText(breakpoints[0]) + ", " + numberText(breakpoints[1]) +
                     "] [N.m] must ascend");
+  const auto& slopes = p.cup.torsion_stiffness;
+  const double steepest = *std::max_element(slopes.begin(), slopes.end());
+  check.require(p.cup.wall_stiffness > steepest, { "cup.wall_stiffness", "cup.torsion_stiffness" },
+                "cup.wall_stiffness = " + numberText(p.cup.wall_stiffness) +
+                    " [N.m/rad] must exceed the steepest slope of cup.torsion_stiffness, " + numberText(steepest) +
+                    " [N.m/rad]: the wall is a part of the cup's compliance");
   check.require(p.mesh.profile == ProfileKind::TRAPEZOID || p.gear.engagementDepth() > 0.0,
                 { "mesh.profile", "gear.tip_radius_circular_spline" },
                 "mesh.profile needs teeth that reach into the circular spline: they end " +

@@ -90,8 +90,6 @@ void visitFields(P& p, Visitor&& visit)
         "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
         "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
-  visit("manufacture.output_offset", "m", p.manufacture.output_offset, shift,
-        "misalignment: the output's axis from the motor's, at rest with the housing: x, y");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
         ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
@@ -197,8 +195,6 @@ void visitFields(P& p, Visitor&& visit)
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
         ofOthers("the drive gives no torque that would speed the motor up beyond this"));
-  visit("motor.acceleration_limit", "rad/s^2", p.motor.acceleration_limit, Range{ 1e-3, 1e7 },
-        ofOthers("larger accelerations are counted, with a warning"));
   visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
         ofOthers("bandwidth of the current loop, first order; 0 = the torque follows the command at once"));
   visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
@@ -421,7 +417,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
         ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        ofOthers("motor angle over which friction builds up after a reversal"));
+        ofOthers("motor angle over which friction builds up after a reversal, torsion and cup included"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
         ofOthers("share of the friction that a small motion does not reverse and that remains at rest"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
@@ -508,9 +504,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
         ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
   visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        ofFaults("part of the cup's compliance in torsion that lies behind the teeth"));
+        ofFaults("part of the compliance of the cup's wall and diaphragm in torsion that lies behind the teeth"));
   visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        ofFaults("part of the cup's compliance in torsion that lies at its flange"));
+        ofFaults("part of that compliance that lies at the cup's flange"));
   visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
         ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
   visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
@@ -536,7 +532,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
         ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
-        ofFaults("buckling at severity 1: part of the cup's stiffness in torsion that is lost"));
+        ofFaults("buckling at severity 1: part of the stiffness of the cup's wall that is lost"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
         ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
   visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace
 {
 TEST(RimTension, HasTheEnergyOfItsSprings)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const RingModel model(parameters);
   RandomRing ring(2);
   RingShape shape(model.rest.teeth());
@@ -36,7 +37,7 @@ TEST(RimTension, HasTheEnergyOfItsSprings)
 
 TEST(RimTension, ACutSegmentPullsNoLonger)
 {
-  RingModel model(shippedParameters());
+  RingModel model(goldenParameters());
   model.edit<RimTension>().stiffness()[7] = 0.0;
   RandomRing ring(3);
   RingShape shape(model.rest.teeth());
@@ -53,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Both, RimBendingLaws, testing::Values("absolute", "curv
 
 TEST_P(RimBendingLaws, IsTheGradientOfItsEnergy)
 {
-  RingModel model(shippedParameters({ "ring.bending_law=" + GetParam() }));
+  RingModel model(goldenParameters({ "ring.bending_law=" + GetParam() }));
   RandomRing ring(4);
   RingShape shape(model.rest.teeth());
   DrivePosition position;
@@ -69,7 +70,7 @@ TEST_P(RimBendingLaws, IsTheGradientOfItsEnergy)
 
 TEST_P(RimBendingLaws, HasTheEnergyOfItsLaw)
 {
-  const Parameters parameters = shippedParameters({ "ring.bending_law=" + GetParam() });
+  const Parameters parameters = goldenParameters({ "ring.bending_law=" + GetParam() });
   const RingModel model(parameters);
   RandomRing ring(5);
   RingShape shape(model.rest.teeth());
@@ -94,8 +95,8 @@ TEST_P(RimBendingLaws, HasTheEnergyOfItsLaw)
 /// What is done to the rim is not done to the race beside it.
 TEST(RimBending, LeavesTheRaceAsItIs)
 {
-  const RingModel bare(shippedParameters({ "ring.bending_stiffness=100.0" }));
-  RingModel both(shippedParameters({ "ring.bending_stiffness=400.0", "bearing.race_bending_stiffness=100.0" }));
+  const RingModel bare(goldenParameters({ "ring.bending_stiffness=100.0" }));
+  RingModel both(goldenParameters({ "ring.bending_stiffness=400.0", "bearing.race_bending_stiffness=100.0" }));
   RimBending& cracked = both.edit<RimBending>();
   cracked.stiffness().setZero();
   cracked.naturalAngle().setConstant(1e-3);
@@ -119,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Smoothing, WaveGeneratorContactNormal, testing::Values(
 
 TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergy)
 {
-  const Parameters parameters = shippedParameters({ "contact.smoothing=" + GetParam() });
+  const Parameters parameters = goldenParameters({ "contact.smoothing=" + GetParam() });
   const RingModel model(parameters);
   const ElementUnderTest contact = elementOf<WaveGeneratorContact>(model);
   RandomRing ring(6);
@@ -154,7 +155,7 @@ TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergyBehindAGap)
 {
   for (const bool sound : { true, false })
   {
-    RingModel model(shippedParameters({ "contact.smoothing=" + GetParam() }));
+    RingModel model(goldenParameters({ "contact.smoothing=" + GetParam() }));
     auto& worn = model.edit<WaveGeneratorContact>();
     for (int i = 0; i < model.rest.teeth(); ++i)
     {
@@ -185,7 +186,7 @@ TEST_P(WaveGeneratorContactNormal, IsTheGradientOfItsEnergyBehindAGap)
 
 TEST_P(WaveGeneratorContactNormal, SurfaceAdvancesByTheAmplitudeAsTheEnergyTells)
 {
-  const RingModel model(shippedParameters({ "contact.smoothing=" + GetParam() }));
+  const RingModel model(goldenParameters({ "contact.smoothing=" + GetParam() }));
   const ElementUnderTest contact = elementOf<WaveGeneratorContact>(model);
   RandomRing ring(26);
   RingShape shape(model.rest.teeth());
@@ -256,7 +257,7 @@ TEST(WaveGeneratorContact, BallsCarryARoundRingAlike)
 {
   for (const std::string support : { "balls", "single_balls" })
   {
-    const Parameters parameters = shippedParameters({ "contact.support=" + support, "contact.fit=10.0e-6" });
+    const Parameters parameters = goldenParameters({ "contact.support=" + support, "contact.fit=10.0e-6" });
     const RingModel model(parameters);
     RingShape shape = model.restShape({});
     const RingForces forces = elementOf<WaveGeneratorContact>(model).forces(shape, { 0.3, 0.0, 0.0 });
@@ -269,7 +270,7 @@ TEST(WaveGeneratorContact, BallsCarryARoundRingAlike)
 /// 3 K are worth 1.04 um of fit: steel of 30.3 mm grows by 0.35 um a kelvin.
 TEST(WaveGeneratorContact, GrowsWithItsTemperature)
 {
-  const Parameters parameters = shippedParameters({ "contact.temperature_difference=3.0" });
+  const Parameters parameters = goldenParameters({ "contact.temperature_difference=3.0" });
   const double growth = 3.0 * 11.5e-6 * parameters.gear.flexspline_inner_radius;
   const RingModel model(parameters);
   const RingForces forces = elementOf<WaveGeneratorContact>(model).forces(model.restShape({}), { 0.3, 0.0, 0.0 });
@@ -311,7 +312,7 @@ protected:
     }
   }
 
-  const Parameters parameters_ = shippedParameters({ "contact.support=single_balls" });
+  const Parameters parameters_ = goldenParameters({ "contact.support=single_balls" });
   RingModel model_{ parameters_ };
   const ElementUnderTest contact_ = elementOf<WaveGeneratorContact>(model_);
   RingShape shape_{ model_.rest.teeth() };
@@ -381,7 +382,7 @@ INSTANTIATE_TEST_SUITE_P(BothSigns, CupTorsionRanges,
 
 TEST_P(CupTorsionRanges, IsTheGradientOfItsEnergy)
 {
-  const RingModel model(shippedParameters());
+  const RingModel model(goldenParameters());
   RingShape shape(model.rest.teeth());
   DrivePosition position{ 0.4, 0.1, 0.35e-3 };
   pressOnWaveGenerator(model.rest, position, GetParam(), shape);
@@ -393,7 +394,7 @@ TEST_P(CupTorsionRanges, IsTheGradientOfItsEnergy)
 
 TEST(CupTorsion, FollowsItsTableOnBothSides)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const RingModel model(parameters);
   const auto& k = parameters.cup.torsion_stiffness;
   const auto& t = parameters.cup.torsion_breakpoints;
@@ -417,7 +418,7 @@ TEST(CupTorsion, FollowsItsTableOnBothSides)
 
 TEST(CupTorsion, StoresTheIntegralOfItsTorque)
 {
-  const RingModel model(shippedParameters());
+  const RingModel model(goldenParameters());
   constexpr int STEPS = 3000;
   const double step = 3e-3 / STEPS;
   double energy = 0.0;
@@ -431,13 +432,36 @@ TEST(CupTorsion, StoresTheIntegralOfItsTorque)
   }
 }
 
+TEST(CupTorsion, AWeakerWallAddsItsComplianceToEverySlope)
+{
+  const Parameters parameters = goldenParameters();
+  RingModel model(parameters);
+  model.edit<CupTorsion>().scaleWall(0.5);
+  model.edit<CupTorsion>().scaleWall(0.8);
+  const CupTorsion& cup = model.of<CupTorsion>();
+  const auto& torques = parameters.cup.torsion_breakpoints;
+  const std::array<double, 3> at{ 0.5 * torques[0], 0.5 * (torques[0] + torques[1]), 2.0 * torques[1] };
+  for (std::size_t i = 0; i < at.size(); ++i)
+  {
+    const double compliance = 1.0 / parameters.cup.torsion_stiffness[i] + 1.5 / parameters.cup.wall_stiffness;
+    EXPECT_NEAR(cup.stiffnessAtTorque(at[i]) * compliance, 1.0, 1e-12) << "factors multiply: 0.4 of the wall is left";
+  }
+  RingShape shape(model.rest.teeth());
+  const DrivePosition position{ 0.4, 0.1, 0.35e-3 };
+  for (const double rotation : { 3e-4, -1.1e-3, 3e-3 })
+  {
+    pressOnWaveGenerator(model.rest, position, rotation, shape);
+    expectGradientAndTangent(elementOf<CupTorsion>(model), shape, position);
+  }
+}
+
 /// RingModel::tangent asserts it.
 TEST(RingForces, AreOfTheShapeTheyWereComputedFor)
 {
 #ifdef NDEBUG
   GTEST_SKIP() << "a build without assertions notes no shape";
 #endif
-  const RingModel model(shippedParameters());
+  const RingModel model(goldenParameters());
   RingShape shape = model.restShape({});
   RingForces forces(shape.teeth());
   model.forces(shape, {}, forces);
@@ -477,7 +501,7 @@ class AnyElement : public testing::TestWithParam<Row>
 protected:
   ElementUnderTest element() const { return GetParam().of(model_); }
 
-  RingModel model_{ shippedParameters(GetParam().parameters) };
+  RingModel model_{ goldenParameters(GetParam().parameters) };
 };
 INSTANTIATE_TEST_SUITE_P(All, AnyElement, testing::ValuesIn(ELEMENTS),
                          [](const auto& row) { return std::string(row.param.name); });
@@ -486,7 +510,7 @@ TEST_P(AnyElement, IsTheGradientOfItsEnergy)
 {
   std::vector<std::string> parameters = GetParam().parameters;
   parameters.insert(parameters.end(), { "contact.smoothing=20.0e-6", "mesh.smoothing=20.0e-6" });
-  const RingModel model(shippedParameters(parameters));
+  const RingModel model(goldenParameters(parameters));
   RandomRing ring(12);
   RingShape shape(model.rest.teeth());
   DrivePosition position;

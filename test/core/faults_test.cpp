@@ -9,6 +9,7 @@
 
 #include "element_under_test.hpp"
 #include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "model/faults/fault_edits.hpp"
 #include "model/faults/joint_faults.hpp"
@@ -305,6 +306,31 @@ TEST_P(Effects, GrowWithSeverity)
     const double value = GetParam().measure(parameters);
     EXPECT_GT(value, last) << GetParam().what << " at severity " << severity;
     last = value;
+  }
+}
+
+/// Of the compliance of a whole gear what is not the wall's stays.
+TEST(Faults, OfTheCupSoftenItsWallAlone)
+{
+  Parameters parameters = shippedParameters();
+  const FaultScaleParameters& scale = parameters.fault_scale;
+  const double cracked = scale.cup_crack_fraction / (1.0 - scale.cup_crack_fraction);
+  const double sound = 1.0 / StandingGear(parameters).at(0.0, 5.0).stiffness()(1, 1);
+  struct Row
+  {
+    FaultKind kind;
+    double softer;  // compliance added over that of the wall
+  };
+  for (const Row& row : { Row{ FaultKind::FLANGE_CRACK, scale.flange_share * cracked },
+                          Row{ FaultKind::REAR_SECTION_CRACK, scale.rear_section_share * cracked } })
+  {
+    parameters.faults = { { row.kind, 1.0, WHOLE_MEMBER, 0.0 } };
+    const double added = 1.0 / StandingGear(parameters).at(0.0, 5.0).stiffness()(1, 1) - sound;
+    // The wave generator takes 1/101 of the load, the cup the rest, and the output turns by as much of the cup's
+    // rotation. Rim and teeth under the same torque give way as before.
+    const double share = 1.0 - 1.0 / nominalRatio(parameters.gear);
+    EXPECT_NEAR(added * parameters.cup.wall_stiffness / (share * share), row.softer, 1e-3 * row.softer)
+        << describe(row.kind).name;
   }
 }
 

@@ -74,7 +74,7 @@ TEST(GoldenInsertion, ThesisSetWithTheTrueNormal)
 
 TEST(GoldenInsertion, OperationSet)
 {
-  const InsertionResult result = analyseInsertion(shippedParameters());
+  const InsertionResult result = analyseInsertion(goldenParameters());
   ASSERT_TRUE(result.status.ok());
   EXPECT_EQ(result.teeth_in_contact, 200);
   expectGolden(result.wave_generator_force_min, 3.32, 0.01, "wave generator force, N");
@@ -127,7 +127,7 @@ TEST(GoldenStiffness, WaveGeneratorLocked)
                                  { 48.0, -1.233447, -0.9991, 16, 138.51, 1800.3 },
                                  { 100.0, -2.271496, -1.0001, 22, 220.23, 3609.0 },
                                  { 150.0, -3.251982, -0.9998, 26, 282.85, 5306.7 } };
-  const Parameters parameters = shippedParameters({ WHOLE_GEAR_CUP });
+  const Parameters parameters = goldenParameters({ WHOLE_GEAR_CUP });
   const std::vector<StiffnessRow> rows = analyseStiffness(parameters, 0.0, { 5.0, 14.0, 48.0, 100.0, 150.0 });
   ASSERT_EQ(rows.size(), golden.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -150,7 +150,7 @@ TEST(GoldenStiffness, DoesNotDependOnTheOrderOfTheLoads)
   // Hyperelastic and with one pairing: there and back gives the same angles, to the 1e-8 N.m that loads are balanced to
   // over some 3e4 N.m/rad, with margin for the tolerance on the teeth.
   const std::vector<StiffnessRow> rows =
-      analyseStiffness(shippedParameters({ WHOLE_GEAR_CUP }), 0.0, { 5.0, 150.0, -150.0, 48.0, 5.0, 0.0 });
+      analyseStiffness(goldenParameters({ WHOLE_GEAR_CUP }), 0.0, { 5.0, 150.0, -150.0, 48.0, 5.0, 0.0 });
   EXPECT_NEAR(rows[4].output_angle, rows[0].output_angle, 1e-11);
   EXPECT_NEAR(rows[5].output_angle, 0.0, 1e-11);
   // The mesh is symmetric at angle 0: no left and right.
@@ -167,7 +167,7 @@ protected:
 
   static void SetUpTestSuite()
   {
-    parameters() = shippedParameters({ WHOLE_GEAR_CUP });
+    parameters() = goldenParameters({ WHOLE_GEAR_CUP });
     rows() = analyseTurn(parameters(), LOAD, TWO_PI, STEPS_PER_PITCH * PITCHES, nullptr);
   }
 

@@ -32,7 +32,7 @@ TEST(Ratchet, RowsAreThoseOfTheStiffnessWhereNothingJumps)
 
 TEST(Ratchet, TeethJumpFromASoftWaveGeneratorAndTheTorqueFalls)
 {
-  const Parameters parameters = shippedParameters({ "contact.stiffness=3.0e+5" });
+  const Parameters parameters = goldenParameters({ "contact.stiffness=3.0e+5" });
   const RatchetResult result = analyseRatchet(parameters, 0.0, RIGID, STEP, 2000.0, {});
   ASSERT_TRUE(result.status.ok());
   EXPECT_EQ(result.end, RatchetEnd::TEETH_JUMPED);

@@ -235,12 +235,10 @@ TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
   expectTheFullRing(surfaceParameters(), surface(), 5e-3, 3000);
 }
 
-/// Spread evenly the balls keep the gear the same after every tooth pitch; a part of the range is enough here.
-TEST(ResponseSurface, AgreesWithTheFullRingOnBalls)
+/// Of the golden gear; a part of the range is enough here.
+TEST(ResponseSurface, AgreesWithTheFullRingOnSprings)
 {
-  Parameters parameters = shippedParameters({ "contact.support=balls", "ring.bending_stiffness=258.0",
-                                              "bearing.race_bending_stiffness=670.0", "output.load_torque_limit=80.0",
-                                              "motor.torque_limit=0.79" });
+  const Parameters parameters = goldenParameters({ "output.load_torque_limit=80.0", "motor.torque_limit=0.79" });
   const SurfaceBuild build = buildSurface(parameters, JointModel(parameters), {});
   ASSERT_EQ(build.failure_reason, "");
   expectTheFullRing(parameters, ResponseSurface(build.table), 2e-3, 1000);

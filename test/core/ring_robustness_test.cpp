@@ -39,7 +39,7 @@ void expectEquilibrium(const RingEquilibrium& ring, double tolerance)
 void expectInsertedOrSaid(const Assignments& assignments, bool must_converge)
 {
   SCOPED_TRACE(testing::PrintToString(assignments));
-  const Parameters parameters = shippedParameters(assignments);
+  const Parameters parameters = goldenParameters(assignments);
   const RingModel model(parameters);
   RingEquilibrium ring(model, parameters.solver);
   const SolveStatus status = ring.insert({ 0.1, 0.0, parameters.gear.wave_amplitude });
@@ -91,7 +91,7 @@ TEST_P(StiffenedRing, IsInsertedOrSaysThatItIsNot)
 /// Without the circular spline, as statics solve it.
 SolveStatus insertAlone(const Assignments& assignments, double tolerance = 5e-7)
 {
-  Parameters parameters = shippedParameters(assignments);
+  Parameters parameters = goldenParameters(assignments);
   parameters.solver.force_tolerance = tolerance;
   RingModel model(parameters);
   model.setMeshed(false);
@@ -333,8 +333,8 @@ TEST(Overload, MakesTheTeethOfASoftGearJump)
 {
   // Flat flanks on a rim that gives way: under the circular spline turned on by three of its pitches the teeth climb
   // out, and find the next space.
-  const Parameters parameters = shippedParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7",
-                                                    "mesh.flank_angle=1.0", "mesh.engagement_depth=200.0e-6" });
+  const Parameters parameters = goldenParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7",
+                                                   "mesh.flank_angle=1.0", "mesh.engagement_depth=200.0e-6" });
   const double w = parameters.gear.wave_amplitude;
   const double space = TWO_PI / parameters.gear.teeth_circular_spline;
   const RingModel model(parameters);

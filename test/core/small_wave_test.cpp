@@ -15,7 +15,7 @@ namespace
 TEST(SmallWave, AmplitudesFallInEqualRatiosAndTheTheoriesComeTrue)
 {
   constexpr int COUNT = 4;
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const double largest = parameters.gear.wave_amplitude;
   const double smallest = 1e-3 * largest;
   const std::vector<SmallWaveRow> rows = analyseSmallWave(parameters, WaveBending::PROPORTIONAL, smallest, COUNT);

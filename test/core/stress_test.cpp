@@ -59,7 +59,7 @@ double boundOfStiffness(const Parameters& parameters)
 
 TEST(FlexsplineStress, IsThatOfTheEquilibriumsOwnMomentAndTension)
 {
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   EXPECT_NEAR(boundOfStiffness(parameters), 258.0, 1.0);
   EXPECT_GT(parameters.ring.bending_stiffness, boundOfStiffness(parameters)) << "docs/life.md says so";
   parameters.ring.bending_stiffness = boundOfStiffness(parameters);
@@ -79,7 +79,7 @@ TEST(FlexsplineStress, IsThatOfTheEquilibriumsOwnMomentAndTension)
 
 TEST(FlexsplineStress, HardlyDependsOnTheRingsBendingStiffness)
 {
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   const StressCycle shipped = stressUnder(parameters, 67.0).cycle(TOOTH_SPACE);
   parameters.ring.bending_stiffness = boundOfStiffness(parameters);
   const StressCycle bound = stressUnder(parameters, 67.0).cycle(TOOTH_SPACE);
@@ -101,7 +101,7 @@ TEST(FlexsplineStress, WithoutLoadIsThatOfAnEllipse)
 // 629 MPa of an independent calculation; finite elements of such roots: 590 to 640 MPa.
 TEST(FlexsplineStress, OfTheToothSpaceIsThatOfAnIndependentCalculation)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const double notch = parameters.stress.concentration[TOOTH_SPACE];
   const std::vector<std::array<double, 3>> expected{
     { 0.0, -405e6, 491e6 }, { 67.0, -374e6, 629e6 }, { 150.0, -307e6, 804e6 }, { 284.0, -327e6, 1061e6 }
@@ -145,7 +145,7 @@ TEST(FlexsplineStress, OfTheCupIsThatOfItsShell)
 
 TEST(FlexsplineStress, OfACrackedSegmentIsThatOfItsNetSection)
 {
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   parameters.ring.bending_stiffness = boundOfStiffness(parameters);
   parameters.faults.push_back({ FaultKind::FLEXSPLINE_CRACK, 0.5, 50 });
   const JointModel joint = startingJoint(parameters);

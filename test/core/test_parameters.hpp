@@ -28,6 +28,14 @@ inline Parameters shippedParameters(const std::vector<std::string>& assignments 
 /// The cup as the golden numbers of the working drive have it: with the catalogue's stiffness of the whole gear.
 constexpr const char* WHOLE_GEAR_CUP = "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]";
 
+/// The gear as the thesis computes it, which the golden numbers are of; overlays over it.
+inline Parameters goldenParameters(const std::vector<std::string>& assignments = {},
+                                   std::vector<std::string> overlays = {})
+{
+  overlays.insert(overlays.begin(), "golden");
+  return shippedParameters(assignments, overlays);
+}
+
 /// The laws of the thesis' insertion; its contact law unless another is given.
 inline Parameters thesisParameters(const std::vector<std::string>& assignments = {})
 {

@@ -66,9 +66,11 @@ class Parameters(unittest.TestCase):
         self.check_start(configuration_files("elbow", ["recorded_load.yaml", "beside_robot.yaml"]))
         self.check_clean_exit(signal.SIGTERM)
 
-    def test_the_gear_as_built_starts(self):
-        self.check_start(configuration_files("elbow", ["as_built.yaml"]))
-        self.check_clean_exit(signal.SIGINT)
+    def test_the_gear_as_built_and_that_of_the_thesis_start(self):
+        for overlay in ("as_built.yaml", "golden.yaml"):
+            with self.subTest(overlay=overlay):
+                self.check_start(configuration_files("elbow", [overlay]))
+                self.check_clean_exit(signal.SIGINT)
 
     def test_the_other_size_and_the_friction_of_a_ur5e_start(self):
         for overlays in (["size_14.yaml"], ["joints/ur5e_elbow.yaml"]):
@@ -86,8 +88,8 @@ class Parameters(unittest.TestCase):
 
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
-        overlays = ["as_built", "beside_robot", "real_sensors", "recorded_load", "size_14", "thesis_insertion",
-                    *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
+        overlays = ["as_built", "beside_robot", "golden", "real_sensors", "recorded_load", "size_14",
+                    "thesis_insertion", *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 

@@ -103,7 +103,7 @@ class Insertion(tool.ToolTest):
                           "bending_force_max", "residual", "iterations", "solve_time"})
 
     def test_table_names_units(self):
-        text = self.succeed("insert").stdout
+        text = self.succeed("insert", "--config", "golden.yaml").stdout
         self.assertRegex(text, r"wave generator force, largest +6\.29\d* N\n")
 
     def test_csv_holds_every_tooth_and_is_not_overwritten_unasked(self):
@@ -120,14 +120,14 @@ class Insertion(tool.ToolTest):
 
     def test_no_equilibrium_is_a_failure(self):
         self.fail_with(1, ["no equilibrium found for the insertion", "raise solver.max_iterations from 1 to"],
-                       "insert", "--json", "--set",
+                       "insert", "--json", "--config", "golden.yaml", "--set",
                        "solver.max_iterations=1", "--set", "solver.max_step_cuts=0", "--set",
                        "contact.stiffness=1.0e+12")
 
 
 class Stiffness(tool.ToolTest):
     def test_rows_are_those_of_the_locked_wave_generator(self):
-        rows = self.succeed_json("stiffness", "--torques", "5,14,48", "--set",
+        rows = self.succeed_json("stiffness", "--torques", "5,14,48", "--config", "golden.yaml", "--set",
                                  "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]")["rows"]
         self.assertEqual([row["torque"] for row in rows], [5.0, 14.0, 48.0])
         for row, angle in zip(rows, [-0.169142e-3, -0.472083e-3, -1.233447e-3]):
@@ -166,10 +166,11 @@ class Stiffness(tool.ToolTest):
     def test_a_gear_that_does_not_fit_is_named(self):
         done = self.fail_with(1, ["no equilibrium found for the row of torque 5 N.m: no output angle balances the load "
                                   "(DISENGAGED, no tooth touches)", "gear.rim_thickness"],
-                              "stiffness", "--torques", "5", "--set", "gear.rim_thickness=0.4e-3")
+                              "stiffness", "--torques", "5", "--config", "golden.yaml", "--set",
+                              "gear.rim_thickness=0.4e-3")
         self.assertNotIn("solver.max_iterations", done.stderr)
-        done = self.run_tool("stiffness", "--torques", "5", "--set", "gear.teeth_flexspline=160", "--set",
-                             "gear.teeth_circular_spline=162")
+        done = self.run_tool("stiffness", "--torques", "5", "--config", "golden.yaml", "--set",
+                             "gear.teeth_flexspline=160", "--set", "gear.teeth_circular_spline=162")
         self.assertEqual(done.returncode, 0)
         self.assertIn("warning: the teeth jam without load: 78 of 160 loaded, 13519", done.stderr)
         self.assertEqual(self.succeed("stiffness", "--torques", "5").stderr, "")
@@ -180,7 +181,7 @@ class Stiffness(tool.ToolTest):
         self.assertAlmostEqual(back["output_angle"], -forth["output_angle"], delta=1e-9)
 
     def test_teeth_are_told_on_request(self):
-        row = self.succeed_json("stiffness", "--torques", "48", "--teeth")["rows"][0]
+        row = self.succeed_json("stiffness", "--torques", "48", "--teeth", "--config", "golden.yaml")["rows"][0]
         teeth = row["teeth"]
         self.assertEqual(set(teeth), {"tooth_x", "tooth_y", "radius", "angle_deviation", "wave_generator_force",
                                       "rim_tension", "bending_force", "mesh_force", "across", "depth", "tilt", "gap",
@@ -232,7 +233,7 @@ class Ratchet(tool.ToolTest):
             "wave_generator_force_max", "teeth_loaded", "snaps", "teeth_jumped"}
 
     def test_teeth_jump_from_a_soft_wave_generator_and_not_from_a_stiff_one(self):
-        soft = self.succeed_json("ratchet", "--set", "contact.stiffness=3.0e+5")
+        soft = self.succeed_json("ratchet", "--config", "golden.yaml", "--set", "contact.stiffness=3.0e+5")
         self.assertEqual(soft["end"], "teeth jumped")
         self.assertEqual(set(soft["peak"]), self.KEYS)
         self.assertEqual(soft["peak"]["torque"], max(row["torque"] for row in soft["rows"]))

@@ -72,17 +72,17 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   {
     natural_angle[i] += amplitude * TWO_PI / teeth * std::cos(TWO_PI * waves * i / teeth);
   }
-  joint.ring.edit<CupTorsion>().scaleStiffness(1.0 - fault.severity * scale.buckling_stiffness_loss);
+  joint.ring.edit<CupTorsion>().scaleWall(1.0 - fault.severity * scale.buckling_stiffness_loss);
 }
 
 // The cup.
 
-/// A crack round a part x of the circumference: the rest carries the torque, so the part of the cup that it lies in is
-/// softer by 1/(1 - x). `share`: of that part in the whole compliance. The faces of the crack rub on each other.
+/// A crack round a part x of the circumference: the rest carries the torque, so the part of the wall that it lies in is
+/// softer by 1/(1 - x). `share`: of that part in the wall's compliance. The faces of the crack rub on each other.
 void crackCup(const Fault& fault, double share, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double cracked = fault.severity * parameters.fault_scale.cup_crack_fraction;
-  joint.ring.edit<CupTorsion>().scaleStiffness(1.0 / (1.0 + share * cracked / (1.0 - cracked)));
+  joint.ring.edit<CupTorsion>().scaleWall(1.0 / (1.0 + share * cracked / (1.0 - cracked)));
   joint.cup_friction.scale(1.0 + fault.severity * (parameters.fault_scale.cup_crack_friction_factor - 1.0));
 }
 
