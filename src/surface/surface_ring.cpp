@@ -128,6 +128,10 @@ bool SurfaceRing::moveTo(double motor_angle, double v)
 
 Node SurfaceRing::measure()
 {
+  if (!model_.ring.of<WaveGeneratorContact>().hasKinks())
+  {
+    ring_.refreshSensitivities();
+  }
   Node node{};
   const RingForces& forces = ring_.forces();
   const auto& contact = forces.of<WaveGeneratorContact>();
@@ -172,6 +176,14 @@ double SurfaceRing::outputTolerance(const Node& node) const noexcept
 double SurfaceRing::motorTolerance(const Node& node) const noexcept
 {
   return MOTOR_TOLERANCE * motor_limit_ * overload(node);
+}
+
+double SurfaceRing::frictionTolerance(const Node& node) const noexcept
+{
+  constexpr double SHARE = 0.01;
+  return model_.ring.of<WaveGeneratorContact>().hasKinks() ?
+             motorTolerance(node) :
+             std::max(motorTolerance(node), SHARE * frictionTorque(node));
 }
 
 double SurfaceRing::frictionTorque(const Node& node) const noexcept

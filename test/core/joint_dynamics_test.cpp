@@ -63,6 +63,20 @@ TEST(EnergyLedgerOfTheLeapfrog, ClosesToAMillionthWhereStepsResolveTheTeeth)
   EXPECT_LT(energyResidual(shippedParameters({ "solver.rate=50000", "motor.speed_limit=60.0" }), 75, true), 1e-6);
 }
 
+class EnergyLedgerOnBalls : public testing::TestWithParam<const char*>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Supports, EnergyLedgerOnBalls, testing::Values("balls", "single_balls"));
+
+TEST_P(EnergyLedgerOnBalls, ClosesAsOnSprings)
+{
+  const std::vector<std::string> support{ std::string("contact.support=") + GetParam() };
+  EXPECT_LT(energyResidual(shippedParameters(support), 71, true), 1e-3);
+  std::vector<std::string> fine = support;
+  fine.insert(fine.end(), { "solver.rate=50000", "motor.speed_limit=60.0" });
+  EXPECT_LT(energyResidual(shippedParameters(fine), 75, true), 1e-6);
+}
+
 TEST(EnergyLedgerOfTheMotor, ClosesWithCoggingAndRipple)
 {
   // Cogging stores its energy; the ripple is work of the drive. 120 and 60 periods a turn, 53 steps in one at most.
