@@ -35,7 +35,7 @@ const std::vector<LoadedGear> GEARS{
 struct UnloadedRing
 {
   explicit UnloadedRing(const LoadedGear& gear)
-    : parameters(shippedParameters(gear.assignments, gear.overlays)), model(parameters), ring(model, solver())
+    : parameters(goldenParameters(gear.assignments, gear.overlays)), model(parameters), ring(model, solver())
   {
     EXPECT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok()) << gear.name;
     EXPECT_TRUE(balanceOutput(ring, 0.0, 0.0).ok()) << gear.name;
