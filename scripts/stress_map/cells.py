@@ -109,12 +109,46 @@ def lines():
         yield Cell("flank clearance", (clearance,), {"mesh.flank_clearance": clearance})
     for amplitude in [0.0, 5e-324, 1e-9, 0.05e-3, 0.089e-3, 0.2e-3, 0.5e-3, 0.7e-3]:
         yield Cell("wave amplitude", (amplitude,), {"gear.wave_amplitude": amplitude})
+    yield from options()
     for missing in [1, 5, 20, 100, 200]:
         yield Cell("missing teeth", (missing,), missing=tuple(range(missing)))
         yield Cell("missing teeth, reversal", (missing,), at_speed(3030), reversal(12.0), missing=tuple(range(missing)))
     for cut in [1, 2, 10]:
         yield Cell("rim cut", (cut,), cut=tuple(range(40, 40 + cut)))
         yield Cell("rim cut, reversal", (cut,), at_speed(3030), reversal(12.0), cut=tuple(range(40, 40 + cut)))
+
+
+# What is off or neutral as shipped: values up to the ends of the ranges.
+OPTIONS = {
+    "contact.fit": [-1e-4, -1e-5, 2e-6, 1e-5, 1e-4],
+    "contact.temperature_difference": [-100.0, 100.0],
+    "bearing.race_bending_stiffness": [0.0, 67.0, 6.7e3, 6.7e5],
+    "ring.loss_factor": [1e-3, 1.0],
+    "cup.friction_angle": [0.0, 1e-6, 1e-2, 1.0],
+    "output.coulomb_torque": [1.0, 100.0, 1e4],
+    "output.tilting_moment": [1e5],
+    "motor.stribeck_torque": [0.05, 5.0],
+    "motor.presliding_angle": [1e-3, 3e-3, 1.0],
+    "motor.torque_ripple": [0.5],
+    "motor.cogging_torque": [0.01, 0.1, 1.0],
+    "brake.play": [0.1, 6.28],
+}
+WITH = {"output.tilting_moment": {"output.tilting_friction": 1e-3}, "motor.stribeck_torque": {"motor.stribeck_velocity": 1e-3}}
+
+
+def options():
+    """Each support of the rim, and each value above, under load steps and at a reversal."""
+    for support in ["springs", "balls", "single_balls"]:
+        for load in [14.0, 150.0, 284.0]:
+            yield Cell("support", (support, load), {"contact.support": support}, load_steps(load))
+        yield Cell("support, reversal", (support,), {"contact.support": support, **at_speed(3030)}, reversal(12.0))
+        for fit in [-1e-5, 1e-5, 1e-4]:
+            yield Cell("support and fit", (support, fit), {"contact.support": support, "contact.fit": fit})
+    for key, values in OPTIONS.items():
+        for value in values:
+            changes = {key: value, **WITH.get(key, {})}
+            yield Cell(key, (value,), changes)
+            yield Cell(f"{key}, reversal", (value,), {**changes, **at_speed(3030)}, reversal(12.0))
 
 
 def odd():

@@ -18,6 +18,7 @@ SECTIONS = {
     "catalogue": "Catalogue, size 25",
     "teeth": "Teeth",
     "stress": "Stress and fatigue",
+    "published": "Published finite elements",
     "manufacture": "Errors of manufacture",
     "drives": "Real drives",
     "heat": "Heat",

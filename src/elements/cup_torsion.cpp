@@ -91,6 +91,21 @@ double CupTorsion::torque(double rotation) const noexcept
   return std::copysign(torque, rotation);
 }
 
+double CupTorsion::rotationAtTorque(double torque) const noexcept
+{
+  const double size = std::abs(torque);
+  double rotation = size / slopes_[0];
+  if (size > torques_[1])
+  {
+    rotation = rotations_[1] + (size - torques_[1]) / slopes_[2];
+  }
+  else if (size > torques_[0])
+  {
+    rotation = rotations_[0] + (size - torques_[0]) / slopes_[1];
+  }
+  return std::copysign(rotation, torque);
+}
+
 double CupTorsion::storedEnergy(double rotation) const noexcept
 {
   const double size = std::abs(rotation);

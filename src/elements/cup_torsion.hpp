@@ -35,9 +35,10 @@ public:
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
   /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
-  double torque(double rotation) const noexcept;        ///< C(Phi) [N.m]
-  double storedEnergy(double rotation) const noexcept;  ///< [J]
-  double stiffness(double rotation) const noexcept;     ///< dC/dPhi [N.m/rad]
+  double torque(double rotation) const noexcept;          ///< C(Phi) [N.m]
+  double rotationAtTorque(double torque) const noexcept;  ///< inverse of C [rad]
+  double storedEnergy(double rotation) const noexcept;    ///< [J]
+  double stiffness(double rotation) const noexcept;       ///< dC/dPhi [N.m/rad]
   double stiffnessAtTorque(double torque) const noexcept
   {
     const double size = torque < 0.0 ? -torque : torque;

@@ -22,8 +22,8 @@ struct FrictionTerm
 /// coefficient, is left out.
 struct JointFriction
 {
-  /// Room for one term a tooth, the motor shaft's and the cup's.
-  explicit JointFriction(int teeth) : running(2 * teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 2); }
+  /// Room for one term a tooth, the motor shaft's, the cup's and the output's.
+  explicit JointFriction(int teeth) : running(2 * teeth) { terms.reserve(static_cast<std::size_t>(teeth) + 3); }
 
   void setZero() noexcept
   {
@@ -43,6 +43,7 @@ struct JointFriction
   }
 
   std::vector<FrictionTerm> terms;
+  double presliding{};  ///< dry friction at the motor shaft that is no term: it builds up over an angle [N.m]
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
   Eigen::VectorXd running;  ///< 2 N, rates of the ring's points by motor angle while the output follows [m/rad]
 };

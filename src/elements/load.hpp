@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What hangs on the output: inertia, viscous friction and gravity (thesis eq. 7.37-7.38, brackets mended).
+/// What hangs on the output: inertia, friction and gravity (thesis eq. 7.37-7.38, brackets mended).
 ///
 /// Gravity's energy:  U = -m g l cos(phi - phi_g), phi_g the angle at which the load hangs straight down. [J]
 class Load
@@ -17,6 +17,11 @@ public:
 
   double inertia() const noexcept { return parameters_.circular_spline_inertia + parameters_.load_inertia; }
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
+  /// Of bearing and seals, the bearing under its tilting moment [N.m].
+  double dryFriction() const noexcept
+  {
+    return parameters_.coulomb_torque + parameters_.tilting_friction * parameters_.tilting_moment;
+  }
 
   double gravityEnergy(double angle) const noexcept
   {

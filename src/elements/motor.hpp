@@ -12,6 +12,11 @@ namespace hjt
 ///
 /// The command is clamped at the torque limit. Towards the speed limit the torque that would speed the motor up further
 /// fades out linearly over the last two per cent; braking torque is never held back.
+///
+/// Shaft:   T (1 + r sin 6 p theta) - T_c sin n theta, the second from U = -(T_c / n) cos n theta
+/// where    T    torque of the drive, T_25 (1 + a (temperature - 25 degC)), T_25 that of its current  [N.m]
+///          r    ripple six times per electrical period, p pairs of poles                             [-]
+///          T_c  cogging, n times a turn                                                              [N.m]
 class Motor
 {
 public:
@@ -42,11 +47,48 @@ public:
     return drive;
   }
 
+  /// Torque over the one of the same current at 25 degC [-].
+  double torqueFactor(double temperature) const noexcept
+  {
+    constexpr double REFERENCE = 25.0;  // [degC]
+    return 1.0 + parameters_.torque_temperature_coefficient * (temperature - REFERENCE);
+  }
+
+  /// The drive's torque with its ripple at an angle of the motor [N.m].
+  double rippled(double torque, double angle) const noexcept
+  {
+    return parameters_.torque_ripple == 0.0 ?
+               torque :
+               torque * (1.0 + parameters_.torque_ripple * std::sin(6 * parameters_.pole_pairs * angle));
+  }
+
+  /// Stored between magnets and slots; its torque and second derivative [J], [N.m], [N.m/rad].
+  double coggingEnergy(double angle) const noexcept
+  {
+    return cogs() ? -parameters_.cogging_torque / parameters_.cogging_periods *
+                        std::cos(parameters_.cogging_periods * angle) :
+                    0.0;
+  }
+  double coggingTorque(double angle) const noexcept
+  {
+    return cogs() ? -parameters_.cogging_torque * std::sin(parameters_.cogging_periods * angle) : 0.0;
+  }
+  double coggingStiffness() const noexcept { return parameters_.cogging_torque * parameters_.cogging_periods; }
+
   double inertia() const noexcept { return parameters_.rotor_inertia + parameters_.wave_generator_inertia; }
-  double coulombTorque() const noexcept { return parameters_.coulomb_torque; }
+  /// Dry friction at the shaft beyond the gear's, by speed (Stribeck, Gaussian as of the flanks) [N.m].
+  double dryTorque(double speed) const noexcept { return parameters_.coulomb_torque + stribeckTorque(speed); }
+  double stribeckTorque(double speed) const noexcept
+  {
+    const double relative = speed / parameters_.stribeck_velocity;
+    return parameters_.stribeck_torque > 0.0 ? parameters_.stribeck_torque * std::exp(-relative * relative) : 0.0;
+  }
+  double preslidingAngle() const noexcept { return parameters_.presliding_angle; }  ///< 0: stiction is exact [rad]
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
 
 private:
+  bool cogs() const noexcept { return parameters_.cogging_torque != 0.0; }
+
   MotorParameters parameters_;
 };
 }  // namespace hjt

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "gear/angle.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -44,5 +45,30 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
     sum += lost(i - 1, i, i + 1);
   }
   return coefficient_ * slip_lever_ * sum;
+}
+
+/// (pi / 2) sum_i |M_i dkappa_i/dtheta| [N.m].
+HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const Eigen::VectorXd& moment,
+                                                  const Eigen::VectorXd& rates) noexcept
+{
+  const int n = shape.teeth();
+  const double* direction = shape.directions.data();
+  const double* length = shape.lengths.data();
+  const double* rate = rates.data();
+  const double* moments = moment.data();
+  const auto turning = [&](int i, int j)
+  {
+    const double across =
+        direction[2 * i] * (rate[2 * j + 1] - rate[2 * i + 1]) - direction[2 * i + 1] * (rate[2 * j] - rate[2 * i]);
+    return across / length[i];  // of the segment from tooth i to tooth j
+  };
+  double sum = std::abs(moments[0] * (turning(0, 1) - turning(n - 1, 0))) +
+               std::abs(moments[n - 1] * (turning(n - 1, 0) - turning(n - 2, n - 1)));
+#pragma omp simd reduction(+ : sum)
+  for (int i = 1; i < n - 1; ++i)
+  {
+    sum += std::abs(moments[i] * (turning(i, i + 1) - turning(i - 1, i)));
+  }
+  return 0.25 * TWO_PI * sum;
 }
 }  // namespace hjt

@@ -7,6 +7,7 @@
 
 #include "elements/cup_torsion.hpp"
 #include "elements/joint_friction.hpp"
+#include "elements/rim_bending.hpp"
 #include "elements/tooth_mesh.hpp"
 #include "elements/wave_generator_contact.hpp"
 #include "gear/ring_shape.hpp"
@@ -20,6 +21,12 @@ struct RingRates
   const RingShape& shape;
   const Eigen::VectorXd& by_motor;   ///< 2 N, by wave generator angle [m/rad]
   const Eigen::VectorXd& by_output;  ///< 2 N, by output angle [m/rad]
+
+  /// Of the rim's mean rotation, by motor and output angle [-].
+  Eigen::Vector2d meanRotation() const noexcept
+  {
+    return { CupTorsion::meanRotationRate(shape, by_motor), CupTorsion::meanRotationRate(shape, by_output) };
+  }
 };
 
 /// Friction on the tooth flanks: mu |F| against the sliding along the flank, mu falling from static to kinetic with the
@@ -75,37 +82,6 @@ private:
   Eigen::VectorXd tooth_factor_;
 };
 
-/// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
-/// acts on the mean rotation of the rim, so it costs nothing while the drive runs at constant load; it opens the
-/// torsion loop and damps the output when the motor stands.
-class CupFriction
-{
-public:
-  explicit CupFriction(const CupParameters& parameters) : torque_(parameters.friction_torque) {}
-
-  void scale(double factor) noexcept { torque_ *= factor; }
-
-  /// Adds one term, or none if there is no friction.
-  void addTerm(const RingRates& rates, JointFriction& friction) const noexcept
-  {
-    addTerm({ CupTorsion::meanRotationRate(rates.shape, rates.by_motor),
-              CupTorsion::meanRotationRate(rates.shape, rates.by_output) },
-            friction);
-  }
-
-  /// The same where the mean rotation's rates by motor and output angle [-] are known.
-  void addTerm(const Eigen::Vector2d& rates, JointFriction& friction) const noexcept
-  {
-    if (torque_ > 0.0)
-    {
-      friction.terms.push_back({ torque_, rates });
-    }
-  }
-
-private:
-  double torque_;  // [N.m]
-};
-
 /// Friction between the outer race of the wave generator's bearing and the flexspline.
 ///
 /// The race does not slide in the rim: it rolls, held by mu F r >> bearing friction. What slips are the two surfaces as
@@ -130,5 +106,31 @@ public:
 private:
   double slip_lever_;  // [m]
   double coefficient_;
+};
+
+/// Energy that the rim's steel loses as the wave bends it to and fro, whatever the speed:
+///
+///   torque at the motor shaft = (pi / 2) eta sum_i |M_i dkappa_i/dtheta|
+/// where  M_i     bending moment at tooth i [N.m]
+///        kappa_i angle between the segments on either side of it [rad]; theta the motor's, the output following
+///        eta     ring.loss_factor: a cycle of the amplitude M_a loses pi eta M_a^2 / k, k the stiffness at the tooth
+///
+/// Exact where the moment swings about zero, as that of the wave does; a moment that stays counts as swinging too.
+class FlexingLoss
+{
+public:
+  explicit FlexingLoss(const RingParameters& parameters) : factor_(parameters.loss_factor) {}
+
+  /// >= 0 [N.m]. `found`: by the bending, at the same shape; `rates`: as InterfaceFriction's.
+  double torque(const RingShape& shape, const RimBending::Scratch& found, const Eigen::VectorXd& rates) const noexcept
+  {
+    return factor_ > 0.0 ? factor_ * bendingRate(shape, found.moment, rates) : 0.0;
+  }
+
+private:
+  static double bendingRate(const RingShape& shape, const Eigen::VectorXd& moment,
+                            const Eigen::VectorXd& rates) noexcept;
+
+  double factor_;
 };
 }  // namespace hjt

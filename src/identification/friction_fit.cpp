@@ -18,10 +18,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double STRIBECK_SPEED = 5.0;  // of the motor, where the static rise has faded [rad/s]
-constexpr double OUTLIER = 3.0;         // blocks that many deviations off count less
-constexpr double LEAST_GREASE = 0.05;   // of the configured, so that a viscosity remains
-constexpr double NARROWED = 0.5;        // deviation after the motion over that before
+constexpr double OUTLIER = 3.0;        // blocks that many deviations off count less
+constexpr double LEAST_GREASE = 0.05;  // of the configured, so that a viscosity remains
+constexpr double NARROWED = 0.5;       // deviation after the motion over that before
 constexpr std::size_t MIN_BLOCKS = 12;
 constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
 
@@ -76,19 +75,17 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   }
   solve();
 
-  // Beside what was found, and without changing it: the twin has no parameter for it.
+  // Last, and only if it is there: the others are then those beside it.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
   solve();
-  const bool is_there = values_[STRIBECK] > half_width_[STRIBECK];
-  const double rise = is_there ? values_[STRIBECK] : 0.0;
-  const double rise_width = is_there ? half_width_[STRIBECK] : 0.0;
-  values_ = found;
-  half_width_ = width;
-  values_[STRIBECK] = rise;
-  half_width_[STRIBECK] = rise_width;
-  refusal_[STRIBECK] = is_there ? "" : "its 95 % interval holds zero";
+  if (values_[STRIBECK] <= half_width_[STRIBECK])
+  {
+    values_ = found;
+    half_width_ = width;
+    refusal_[STRIBECK] = "its 95 % interval holds zero";
+  }
 }
 
 /// What is known of a joint of this type before it moves: gain within 10 %; offset 0.03 A; the motor's inertia within
@@ -111,7 +108,7 @@ void FrictionFit::setKnown(const Parameters& parameters, const FrictionMap& fric
   set(GREASE, 1.0, 0.5);
   set(FLANKS, 1.0, 0.5);
   set(VISCOUS, parameters.motor.viscous_friction, 0.5 * typical / speed);
-  set(STRIBECK, 0.0, typical);
+  set(STRIBECK, parameters.motor.stribeck_torque, typical);
 }
 
 void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& friction,
@@ -132,7 +129,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
     block.column[GREASE] += joint * shares.grease;
     block.column[FLANKS] += joint * shares.flanks;
     block.column[VISCOUS] += joint * std::abs(speed);
-    block.column[STRIBECK] += joint * std::exp(-std::pow(speed / STRIBECK_SPEED, 2));
+    block.column[STRIBECK] += joint * std::exp(-std::pow(speed / parameters.motor.stribeck_velocity, 2));
   };
   for (auto from = samples.begin(); from != samples.end();)
   {

@@ -22,7 +22,8 @@ namespace hjt
 /// correlation of their residual. Known before is each value as configured, normally distributed with the deviation of
 /// `known`: what a motion hardly shows stays near it, and others do not run away in its place. No friction can be
 /// negative. A quantity whose deviation the motion does not halve is refused and stays as configured; the others are
-/// fitted again. A Stribeck term, S n exp(-(w/5)^2), is fitted in addition.
+/// fitted again; last with a Stribeck term, S n exp(-(w/v)^2), v motor.stribeck_velocity, which stays if its interval
+/// does not hold zero.
 class FrictionFit
 {
 public:

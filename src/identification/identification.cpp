@@ -167,8 +167,9 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::VISCOUS, "viscous friction", "motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction,
       found(FrictionFit::VISCOUS), width(FrictionFit::VISCOUS));
   p.motor.viscous_friction = found(FrictionFit::VISCOUS);
-  add(FrictionFit::STRIBECK, "Stribeck rise at the motor", "", "N.m", 0.0, found(FrictionFit::STRIBECK),
-      width(FrictionFit::STRIBECK));
+  add(FrictionFit::STRIBECK, "Stribeck rise at the motor", "motor.stribeck_torque", "N.m", p.motor.stribeck_torque,
+      found(FrictionFit::STRIBECK), width(FrictionFit::STRIBECK));
+  p.motor.stribeck_torque = found(FrictionFit::STRIBECK);
 }
 
 Parameters withoutRipple(Parameters parameters)

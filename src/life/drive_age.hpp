@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -16,13 +17,17 @@ namespace hjt
 /// How old a drive is, by every way in which it ages.
 struct DriveAge
 {
-  double turns{};           ///< of the wave generator
-  double flank_wear{};      ///< depth worn off both flanks of a pair [m]
+  double turns{};  ///< of the wave generator
+  /// Depth worn off both flanks of a pair, by the direction of the load that presses them: > 0, < 0 [m]
+  std::array<double, 2> flank_wear{};
   double interface_wear{};  ///< depth worn off outer race and rim [m]
   double grease{};          ///< share of its life that the grease has behind it; 1: a change is due [-]
   double flaw_depth{};      ///< of the deepest crack at a tooth root; 0: none [m]
   double bearing_turns{};   ///< of the wave generator's bearing, in turns at rated torque
   std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
+
+  double worstFlank() const { return std::max(flank_wear[0], flank_wear[1]); }  ///< [m]
+  double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
 };
 
 /// In what one drive differs from the next: unknown from outside, constant over its life.

@@ -15,8 +15,8 @@ namespace
 enum Entry
 {
   TURNS,
-  FLANK,
-  INTERFACE,
+  FLANK,  // under a load > 0; the other direction follows
+  INTERFACE = FLANK + 2,
   GREASE,
   FLAW,
   BEARING,
@@ -28,16 +28,21 @@ using Entries = std::array<double, ENTRIES>;
 struct Scale
 {
   explicit Scale(const Parameters& parameters, const UnitVariation& variation)
-    : by{ parameters.life.grease_turns,         parameters.life.flank_wear_limit,
-          parameters.life.interface_wear_limit, 1.0,
-          parameters.gear.rim_thickness,        variation.bearing_life }
+    : by{ parameters.life.grease_turns,
+          parameters.life.flank_wear_limit,
+          parameters.life.flank_wear_limit,
+          parameters.life.interface_wear_limit,
+          1.0,
+          parameters.gear.rim_thickness,
+          variation.bearing_life }
   {
     std::fill(by.begin() + FATIGUE, by.end(), 1.0);
   }
 
   Entries from(const DriveAge& age) const
   {
-    Entries entries{ age.turns, age.flank_wear, age.interface_wear, age.grease, age.flaw_depth, age.bearing_turns };
+    Entries entries{ age.turns,  age.flank_wear[0], age.flank_wear[1], age.interface_wear,
+                     age.grease, age.flaw_depth,    age.bearing_turns };
     std::copy(age.fatigue.begin(), age.fatigue.end(), entries.begin() + FATIGUE);
     std::transform(entries.begin(), entries.end(), by.begin(), entries.begin(), std::divides<>());
     return entries;
@@ -46,9 +51,13 @@ struct Scale
   DriveAge to(Entries entries) const
   {
     std::transform(entries.begin(), entries.end(), by.begin(), entries.begin(), std::multiplies<>());
-    DriveAge age{
-      entries[TURNS], entries[FLANK], entries[INTERFACE], entries[GREASE], entries[FLAW], entries[BEARING], {}
-    };
+    DriveAge age{ entries[TURNS],
+                  { entries[FLANK], entries[FLANK + 1] },
+                  entries[INTERFACE],
+                  entries[GREASE],
+                  entries[FLAW],
+                  entries[BEARING],
+                  {} };
     std::copy(entries.begin() + FATIGUE, entries.end(), age.fatigue.begin());
     return age;
   }
@@ -102,13 +111,14 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   std::array<MinerSum, STRESS_PLACES> fatigue;
   for (const DutyPhase& phase : duty_.phases)
   {
-    const RevolutionLoad revolution_load = load_map_.at(phase.load_torque, age.flank_wear, age.interface_wear);
+    const RevolutionLoad revolution_load = load_map_.at(phase.load_torque, age.meanFlank(), age.interface_wear);
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
-    // Each of the two surfaces loses its own depth: those of a pair share force and way.
-    rate.flank_wear += turns * 2.0 * variation.flank_factor * grease_factor *
-                       archardDepth(life.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
+    // Each of the two surfaces loses its own depth: those of a pair share force and way. The load presses one side.
+    rate.flank_wear[phase.load_torque < 0.0 ? 1 : 0] +=
+        turns * 2.0 * variation.flank_factor * grease_factor *
+        archardDepth(life.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
     rate.interface_wear +=
         turns * 2.0 * variation.interface_factor * grease_factor *
         archardDepth(life.interface_wear_coefficient, revolution_load.interface_sliding, interface_area);
@@ -120,7 +130,10 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   rate.grease *= rate.turns > 0.0 ? greaseLoadFactor(rate.bearing_turns / rate.turns) : 1.0;
   const double per_hour = 3600.0 / time;
   rate.turns *= per_hour;
-  rate.flank_wear *= per_hour;
+  for (double& wear : rate.flank_wear)
+  {
+    wear *= per_hour;
+  }
   rate.interface_wear *= per_hour;
   rate.grease *= per_hour;
   rate.flaw_depth *= per_hour;
@@ -134,7 +147,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
 
 std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, const DriveAge& age) const
 {
-  if (age.flank_wear >= parameters_.life.flank_wear_limit)
+  if (age.worstFlank() >= parameters_.life.flank_wear_limit)
   {
     return EndOfLife::FLANK_WEAR;
   }

@@ -53,7 +53,7 @@ public:
 
     const DriveAge age = ageing.live(nominal, estimate.hours, estimate.hours, GREASE_IS_CHANGED, {}).age;
     const auto used = [&](EndOfLife limit) -> double& { return estimate.used[static_cast<std::size_t>(limit)]; };
-    used(EndOfLife::FLANK_WEAR) = age.flank_wear / life.flank_wear_limit;
+    used(EndOfLife::FLANK_WEAR) = age.worstFlank() / life.flank_wear_limit;
     used(EndOfLife::INTERFACE_WEAR) = age.interface_wear / life.interface_wear_limit;
     used(EndOfLife::ROOT_CRACK) =
         (age.flaw_depth - life.flaw_depth) / (parameters_.gear.rim_thickness - life.flaw_depth);

@@ -17,7 +17,7 @@ public:
     : grease_factor_(life.grease_wear_factor), grease_changes_(grease_changes)
   {
     const DriveAge rate = ageing.rates(nominalDrive(life), {});
-    hourly_ = { rate.flank_wear, rate.interface_wear, rate.bearing_turns, {} };
+    hourly_ = { rate.worstFlank(), rate.interface_wear, rate.bearing_turns, {} };
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
       hourly_.fatigue[i] = ageing.fatigueRates(strengthAt(life, i));

@@ -38,7 +38,7 @@ RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
 {
   Parameters worn = parameters;
-  worn.faults.push_back({ FaultKind::TOOTH_WEAR, age.flank_wear / worn.fault_scale.tooth_wear_depth });
+  worn.faults.push_back({ FaultKind::TOOTH_WEAR, age.meanFlank() / worn.fault_scale.tooth_wear_depth });
   worn.faults.push_back({ FaultKind::INTERFACE_WEAR, age.interface_wear / worn.fault_scale.interface_wear_depth });
   return worn;
 }
@@ -56,9 +56,10 @@ void RevolutionLoadMap::cover(const DutyCycle& duty, const std::function<void(do
   std::map<double, Stages> added;
   for (const DutyPhase& phase : duty.phases)
   {
-    if (nodes_.count(phase.load_torque) == 0)
+    const double load = std::abs(phase.load_torque);
+    if (nodes_.count(load) == 0)
     {
-      added[phase.load_torque] = {};
+      added[load] = {};
     }
   }
   if (added.empty())
@@ -70,7 +71,7 @@ void RevolutionLoadMap::cover(const DutyCycle& duty, const std::function<void(do
     for (int interface = 0; interface < STAGES; ++interface)
     {
       DriveAge age;
-      age.flank_wear = flank * flank_step_;
+      age.flank_wear.fill(flank * flank_step_);
       age.interface_wear = interface * interface_step_;
       RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
       for (auto& [load, stages] : added)
@@ -90,7 +91,7 @@ RevolutionLoad RevolutionLoadMap::at(double load_torque, double flank_wear, doub
 {
   const Cell flank = cellOf(flank_wear, flank_step_, STAGES);
   const Cell interface = cellOf(interface_wear, interface_step_, STAGES);
-  const Stages& stages = nodes_.at(load_torque);
+  const Stages& stages = nodes_.at(std::abs(load_torque));
   const auto along = [&](std::size_t row)
   { return blend(stages[row][interface.index], stages[row][interface.index + 1], interface.share); };
   return blend(along(flank.index), along(flank.index + 1), flank.share);
@@ -105,13 +106,13 @@ double RevolutionLoadMap::largestError() const
     for (int interface = 0; interface < STAGES - 1; ++interface)
     {
       DriveAge age;
-      age.flank_wear = (flank + 0.5) * flank_step_;
+      age.flank_wear.fill((flank + 0.5) * flank_step_);
       age.interface_wear = (interface + 0.5) * interface_step_;
       RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
       for (const auto& [load, stages] : nodes_)
       {
         const RevolutionLoad measured = analysis.under(load);
-        const RevolutionLoad mapped = at(load, age.flank_wear, age.interface_wear);
+        const RevolutionLoad mapped = at(load, age.meanFlank(), age.interface_wear);
         largest = larger(largest, measured);
         miss = larger(miss, combined(mapped, measured, std::minus<>()));
       }

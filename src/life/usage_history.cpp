@@ -11,6 +11,7 @@ namespace hjt
 namespace
 {
 constexpr double LOAD_STEPS = 16.0;        // in the rated torque
+constexpr double NO_LOAD = 64.0;           // its node
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 
 /// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is
@@ -49,7 +50,7 @@ void UsageHistory::clear() noexcept
 
 void UsageHistory::add(const DutyPhase& use) noexcept
 {
-  const Share load(std::abs(use.load_torque) / load_step_, LOADS);
+  const Share load(use.load_torque / load_step_ + NO_LOAD, LOADS);
   const Share temperature((use.temperature - MIN_TEMPERATURE) / TEMPERATURE_STEP, TEMPERATURES);
   const double travel = use.duration * use.motor_speed;
   for (std::size_t i = 0; i < 2; ++i)
@@ -113,7 +114,7 @@ DutyCycle UsageHistory::duty() const
       const Node& node = nodes_[i][k];
       if (node.time > 0.0)
       {
-        duty.phases.push_back({ node.time, node.travel / node.time, static_cast<double>(i) * load_step_,
+        duty.phases.push_back({ node.time, node.travel / node.time, (static_cast<double>(i) - NO_LOAD) * load_step_,
                                 MIN_TEMPERATURE + static_cast<double>(k) * TEMPERATURE_STEP });
       }
     }

@@ -11,16 +11,32 @@ JointModel::JointModel(const Parameters& parameters)
   , mesh_friction(parameters.mesh, parameters.gear.teeth_flexspline)
   , cup_friction(parameters.cup)
   , interface_friction(parameters.contact)
+  , flexing_loss(parameters.ring)
   , damping(parameters.ring, parameters.contact)
-  , brake_torque(parameters.brake.holding_torque)
+  , brake(parameters.brake)
 {
 }
 
-/// Dry friction at the motor's shaft, flanks apart [N.m].
-double JointModel::shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept
+/// Dry friction at the motor's shaft, flanks apart.
+void JointModel::addShaft(const Running& running, double contact_force, double ring_torque,
+                          JointFriction& friction) const noexcept
 {
-  return motor.coulombTorque() + (running.inputs.brake_engaged ? brake_torque : 0.0) +
-         bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity) + interface_torque;
+  const double bearing_torque = bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity);
+  const double sliding = motor.dryTorque(running.speeds[0]);
+  const bool builds_up = motor.preslidingAngle() > 0.0;
+  friction.presliding = builds_up ? sliding + bearing_torque + ring_torque : 0.0;
+  friction.terms.push_back(
+      { builds_up ? running.brake_torque : sliding + running.brake_torque + bearing_torque + ring_torque,
+        { 1.0, 0.0 } });
+}
+
+void JointModel::addOutput(JointFriction& friction) const noexcept
+{
+  const double strength = load.dryFriction();
+  if (strength > 0.0)
+  {
+    friction.terms.push_back({ strength, { 0.0, 1.0 } });
+  }
 }
 
 void JointModel::friction(const RingForces& forces, const RingRates& rates, double velocity_ratio,
@@ -29,10 +45,13 @@ void JointModel::friction(const RingForces& forces, const RingRates& rates, doub
   const auto& contact = forces.of<WaveGeneratorContact>();
   friction.setZero();
   friction.running = rates.by_motor + velocity_ratio * rates.by_output;
-  const double interface_torque = interface_friction.torque(rates.shape, contact, friction.running);
-  friction.terms.push_back({ shaftTorque(running, contact.force.sum(), interface_torque), { 1.0, 0.0 } });
+  addShaft(running, contact.force.sum(), ringTorque(rates.shape, forces, friction.running), friction);
   mesh_friction.addTerms(ring.of<ToothMesh>(), forces.of<ToothMesh>(), rates, running.speeds, friction);
-  cup_friction.addTerm(rates, friction);
+  if (cup_friction.isTerm())
+  {
+    cup_friction.addTerm(rates.meanRotation(), friction);
+  }
+  addOutput(friction);
   friction.viscous(0, 0) += motor.viscousFriction();
   friction.viscous(1, 1) += load.viscousFriction();
   damping.add(contact, rates, friction);
@@ -42,8 +61,7 @@ void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen
                           const Running& running, JointFriction& friction) const noexcept
 {
   friction.terms.clear();
-  const double shaft = shaftTorque(running, ring_response.contact_force, ring_response.interface_torque);
-  friction.terms.push_back({ shaft, { 1.0, 0.0 } });
+  addShaft(running, ring_response.contact_force, ring_response.ring_torque, friction);
   using Groups = RingFrictionResponse::Groups;
   const Groups sliding =
       ring_response.rms_slip_by_motor * running.speeds[0] + ring_response.rms_slip_by_output * running.speeds[1];
@@ -57,6 +75,7 @@ void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen
     }
   }
   cup_friction.addTerm(cup_slip, friction);
+  addOutput(friction);
   const Eigen::Vector3d& dashpots = ring_response.viscous;
   friction.viscous << motor.viscousFriction() + dashpots[0], dashpots[1], dashpots[1],
       load.viscousFriction() + dashpots[2];

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 
 #include "elements/bearing_friction.hpp"
+#include "elements/brake.hpp"
+#include "elements/cup_friction.hpp"
 #include "elements/joint_friction.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
@@ -17,7 +19,7 @@ namespace hjt
 /// What acts on the joint from outside, at one instant.
 struct JointInputs
 {
-  double motor_torque{};  ///< at the shaft, after the drive's limits [N.m]
+  double motor_torque{};  ///< of the drive, after its limits [N.m]
   double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
   double temperature{};  ///< of the grease [degC]
@@ -30,28 +32,31 @@ struct JointModel
 
   Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
 
-  /// Stored in ring and gravity [J].
+  /// Stored in ring, gravity and between magnets and slots [J].
   double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
   {
-    return storedEnergy(summary(forces), position.output_angle);
+    return storedEnergy(summary(forces), position);
   }
-  double storedEnergy(const RingResponse& ring_response, double output_angle) const noexcept
+  double storedEnergy(const RingResponse& ring_response, const DrivePosition& position) const noexcept
   {
-    return ring_response.energy + load.gravityEnergy(output_angle);
+    return ring_response.energy + load.gravityEnergy(position.output_angle) +
+           motor.coggingEnergy(position.wave_generator_angle);
   }
 
   /// All torques but friction, on motor and output [N.m].
-  Eigen::Vector2d torque(const RingResponse& ring_response, double output_angle,
+  Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position,
                          const JointInputs& inputs) const noexcept
   {
-    return { inputs.motor_torque + ring_response.wave_generator_torque,
-             ring_response.output_torque + load.gravityTorque(output_angle) - inputs.load_torque };
+    const double angle = position.wave_generator_angle;
+    return { motor.rippled(inputs.motor_torque, angle) + motor.coggingTorque(angle) +
+                 ring_response.wave_generator_torque,
+             ring_response.output_torque + load.gravityTorque(position.output_angle) - inputs.load_torque };
   }
 
   Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
                          const JointInputs& inputs) const noexcept
   {
-    return torque(summary(forces), position.output_angle, inputs);
+    return torque(summary(forces), position, inputs);
   }
 
   static RingResponse summary(const RingForces& forces) noexcept
@@ -67,12 +72,20 @@ struct JointModel
   struct Running
   {
     Eigen::Vector2d speeds;  ///< of motor and output [rad/s]
-    const JointInputs& inputs;
-    double viscosity;  ///< of the bearing's grease [m^2/s]
+    double brake_torque;     ///< that the brake holds with now, motor side [N.m]
+    double viscosity;        ///< of the bearing's grease [m^2/s]
   };
 
-  /// All friction. `forces`: at the shape of the rates; `follow`: output speed over motor speed at constant load, from
-  /// the ring's own stiffness [-].
+  /// What outer race and flexing rim take at the motor shaft [N.m]. `running`: rates of the ring's points by motor
+  /// angle while the output follows [m/rad].
+  double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
+  {
+    return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
+           flexing_loss.torque(shape, forces.of<RimBending>(), running);
+  }
+
+  /// All friction but that of a cup with a state. `forces`: at the shape of the rates; `velocity_ratio`: output speed
+  /// over motor speed at constant load, from the ring's own stiffness [-].
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
@@ -87,10 +100,13 @@ struct JointModel
   MeshFriction mesh_friction;
   CupFriction cup_friction;
   InterfaceFriction interface_friction;
+  FlexingLoss flexing_loss;
   RingDamping damping;
-  double brake_torque;  ///< holding torque of the engaged brake, motor side [N.m]
+  Brake brake;
 
 private:
-  double shaftTorque(const Running& running, double contact_force, double interface_torque) const noexcept;
+  void addShaft(const Running& running, double contact_force, double ring_torque,
+                JointFriction& friction) const noexcept;
+  void addOutput(JointFriction& friction) const noexcept;
 };
 }  // namespace hjt

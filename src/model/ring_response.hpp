@@ -25,7 +25,7 @@ struct RingFrictionResponse
   using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 
   double contact_force{};     ///< sum over all teeth: load of the wave generator's bearing [N]
-  double interface_torque{};  ///< between outer race and rim [N.m]
+  double ring_torque{};       ///< at the motor shaft: outer race in the rim, flexing rim [N.m]
   Eigen::Vector3d viscous;    ///< dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
   Groups flank_by_motor;      ///< sum of force times slip by motor angle [N.m]
   Groups flank_by_output;     ///< by output angle

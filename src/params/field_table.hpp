@@ -90,8 +90,6 @@ void visitFields(P& p, Visitor&& visit)
         "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
         "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
-  visit("manufacture.output_offset", "m", p.manufacture.output_offset, shift,
-        "misalignment: the output's axis from the motor's, at rest with the housing: x, y");
 
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
         ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
@@ -159,8 +157,10 @@ void visitFields(P& p, Visitor&& visit)
   visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
         ofOthers("f0 of Palmgren's law"));
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
-  visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-        "sum of the ball forces beside those that carry the rim");
+  visit(
+      "bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
+      "sum of the ball forces beside those under the rim: the fit of the bearing's outer race, and its bending unless "
+      "race_bending_stiffness has it");
   visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
         "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
@@ -195,8 +195,6 @@ void visitFields(P& p, Visitor&& visit)
         "larger commands are clamped and counted");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
         ofOthers("the drive gives no torque that would speed the motor up beyond this"));
-  visit("motor.acceleration_limit", "rad/s^2", p.motor.acceleration_limit, Range{ 1e-3, 1e7 },
-        ofOthers("larger accelerations are counted, with a warning"));
   visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
         ofOthers("bandwidth of the current loop, first order; 0 = the torque follows the command at once"));
   visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
@@ -419,7 +417,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
         ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        ofOthers("motor angle over which friction builds up after a reversal"));
+        ofOthers("motor angle over which friction builds up after a reversal, torsion and cup included"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
         ofOthers("share of the friction that a small motion does not reverse and that remains at rest"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },

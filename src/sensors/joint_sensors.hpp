@@ -19,9 +19,11 @@ namespace hjt
 {
 /// The sensors of a joint: both encoders and the motor's current, which is read as a torque.
 ///
-/// Law:   a' = a + e sin a + s n     angle that an encoder resolves into counts   [rad]
+/// Law:   a' = a + e sin a + e_2 sin 2 a + e_4 sin 4 a + s n
+///                                   angle that an encoder resolves into counts   [rad]
 ///        T' = T + s_T n, rounded    torque estimated from the current [N.m]
 /// where  e    amplitude that an eccentric disc or magnet brings, once a turn     [rad]
+///        e_2, e_4  those of an oval disc and of a read head's two signals          [rad]
 ///        s    noise, root mean square, s_T of the torque                         [rad], [N.m]
 ///        n standard normal, a new number at every step: of seed, sensor and step      [-]
 /// All readings have the same delay, in whole steps. An effect set to zero costs nothing and changes no bit.
@@ -50,15 +52,9 @@ public:
   /// Once every period. `step`: number of the instant, the same for the same stamp; angles [rad], torque [N.m].
   void update(std::int64_t step, double motor_angle, double output_angle, double motor_torque) noexcept
   {
-    Sensed now{ motor_angle, output_angle, motor_torque };
-    if (parameters_.motor_eccentricity != 0.0)
-    {
-      now.motor_angle += parameters_.motor_eccentricity * std::sin(motor_angle);
-    }
-    if (parameters_.output_eccentricity != 0.0)
-    {
-      now.output_angle += parameters_.output_eccentricity * std::sin(output_angle);
-    }
+    Sensed now{ motor_angle + lines(motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines),
+                output_angle + lines(output_angle, parameters_.output_eccentricity, parameters_.output_lines),
+                motor_torque };
     if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
     {
       const std::array<double, 2> normals = noise_.normals(ENCODERS, step);
@@ -114,6 +110,23 @@ private:
   };
 
   const Sensed& sensed() const noexcept { return line_[oldest_]; }
+
+  /// Error of an encoder that comes back every turn [rad].
+  static double lines(double angle, double eccentricity, const std::array<double, 2>& others) noexcept
+  {
+    double error = 0.0;
+    const auto add = [&](double amplitude, double order)
+    {
+      if (amplitude != 0.0)
+      {
+        error += amplitude * std::sin(order * angle);
+      }
+    };
+    add(eccentricity, 1.0);
+    add(others[0], 2.0);
+    add(others[1], 4.0);
+    return error;
+  }
 
   SensorParameters parameters_;
   CounterNoise noise_;

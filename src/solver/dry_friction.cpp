@@ -139,7 +139,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
 bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
-  constexpr std::size_t MAX_TERMS = 8;
+  constexpr std::size_t MAX_TERMS = 9;
   constexpr double SLIDING = 3e4;      // slip over the regularisation's width
   constexpr double STICK_RANGE = 1e3;  // as in `solve`
   const std::size_t count = friction.terms.size();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "elements/presliding.hpp"
 #include "solver/output_balance.hpp"
 
 namespace hjt
@@ -12,6 +13,7 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
+  , remembers_(model.cup_friction.hasState() || model.motor.preslidingAngle() > 0.0)
   , temperature_(inputs.temperature)
   , viscosity_(model.bearing.viscosity(temperature_))
 {
@@ -41,9 +43,14 @@ SolveStatus JointDynamics::solveAtRest() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
+  pin_ = {};
   viscosity_ = model_.bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
+  accepted_ = {};
+  accepted_.motor_angle = motor_angle_;
+  accepted_.cup = model_.cup_friction.relaxed(now_.cup.rotation);
+  now_ = accepted_;
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
   return result;
 }
@@ -57,6 +64,7 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
     motor_angle_ = motor_angle;
     output_angle_ = output_angle;
     response_ = surface_->response(place_, housing_stiffness_);
+    takeSurface();
     return {};
   }
   if (on_surface_)
@@ -89,6 +97,7 @@ SolveStatus JointDynamics::updateModel() noexcept
   const SolveStatus result = ring_.updateModel();
   viscosity_ = model_.bearing.viscosity(temperature_);
   takeRing();
+  accept();  // what slips meanwhile is part of what the edit sets free
   return result;
 }
 
@@ -108,6 +117,53 @@ void JointDynamics::takeRing() noexcept
   response_.motor_stiffness = k(0, 0);
   motor_angle_ = ring_.position().wave_generator_angle;
   output_angle_ = ring_.position().output_angle;
+  if (model_.cup_friction.hasState())
+  {
+    const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
+    turnCup(ring_.forces().of<CupTorsion>().rotation, rates.meanRotation());
+  }
+  slideShaft();
+}
+
+/// What friction remembers, by the surface's response at the present angles.
+void JointDynamics::takeSurface() noexcept
+{
+  if (model_.cup_friction.hasState())
+  {
+    // The rim turns with the torque that it leans on the housing with.
+    const auto& cup = model_.ring.of<CupTorsion>();
+    const double torque = -(response_.wave_generator_torque + response_.output_torque);
+    turnCup(cup.rotationAtTorque(torque), housing_stiffness_ / cup.stiffnessAtTorque(torque));
+  }
+  slideShaft();
+}
+
+void JointDynamics::turnCup(double rotation, const Eigen::Vector2d& rates) noexcept
+{
+  now_.cup = model_.cup_friction.turned(accepted_.cup, rotation);
+  cup_rates_ = rates;
+}
+
+void JointDynamics::slideShaft() noexcept
+{
+  const double angle = model_.motor.preslidingAngle();
+  if (angle > 0.0)
+  {
+    now_.share = mobilised(accepted_.share, motor_angle_ - accepted_.motor_angle, angle);
+    now_.motor_angle = motor_angle_;
+  }
+}
+
+double JointDynamics::accept() noexcept
+{
+  if (!remembers_)
+  {
+    return 0.0;
+  }
+  const double slipped = now_.cup.slipped;
+  now_.cup.slipped = 0.0;
+  accepted_ = now_;
+  return slipped;
 }
 
 /// Whether the surface gives the full ring's torque at the present angles, well inside its edges. It does not where the
@@ -147,18 +203,24 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
 
 void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
 {
+  const JointModel::Running running{ speeds, brakeTorque(speeds[0]), viscosity() };
   if (on_surface_)
   {
     RingFrictionResponse ring_friction;
     surface_->friction(place_, ring_friction);
-    // The rim turns with the torque that it leans on the housing with.
     const double cup_stiffness =
         model_.ring.of<CupTorsion>().stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
-    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, { speeds, inputs, viscosity() }, friction_);
+    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, running, friction_);
     return;
   }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.forces(), rates, velocityRatio(), { speeds, inputs, viscosity() }, friction_);
+  model_.friction(ring_.forces(), rates, velocityRatio(), running, friction_);
+}
+
+/// That the brake holds the shaft with, at the present angle; its pin goes along.
+double JointDynamics::brakeTorque(double motor_speed) noexcept
+{
+  return model_.brake.hold(inputs.brake_engaged, motor_angle_, motor_speed != 0.0 ? motor_speed : torque()[0], pin_);
 }
 
 /// Of the bearing's grease, at the present temperature.
@@ -184,9 +246,10 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   updateFriction(speeds);
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;
-  rate.segment<2>(MOTOR_SPEED) = (torque() + drag).cwiseQuotient(model_.inertia());
-  rate[MOTOR_WORK] = inputs.motor_torque * speeds[0];
+  const Eigen::Vector2d presliding(preslidingTorque(), 0.0);
+  rate.segment<2>(MOTOR_SPEED) = (torque() + presliding + drag).cwiseQuotient(model_.inertia());
+  rate[MOTOR_WORK] = driveTorque() * speeds[0];
   rate[LOAD_WORK] = inputs.load_torque * speeds[1];
-  rate[DISSIPATED] = -drag.dot(speeds);
+  rate[DISSIPATED] = -(drag + presliding).dot(speeds);
 }
 }  // namespace hjt

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 #include "model/joint_model.hpp"
@@ -41,8 +43,32 @@ public:
   /// Ring in equilibrium at these angles. On failure the last good ring stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
-  /// All torques but friction at the present ring [N.m].
-  Eigen::Vector2d torque() const noexcept { return model_.torque(response_, output_angle_, inputs); }
+  /// The friction that remembers has come to the present ring for good. @returns what the cup's dissipated on the way
+  /// [J].
+  double accept() noexcept;
+
+  /// All torques at the present ring but those of dry and viscous friction [N.m].
+  Eigen::Vector2d torque() const noexcept
+  {
+    return model_.torque(response_, position(), inputs) - now_.cup.torque * cup_rates_;
+  }
+
+  /// That the drive does work with at the present angle of the motor [N.m].
+  double driveTorque() const noexcept { return model_.motor.rippled(inputs.motor_torque, motor_angle_); }
+
+  /// Of friction at the motor shaft that builds up over its presliding angle, at the present ring [N.m].
+  double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
+
+  /// By which friction that remembers stiffens the joint at the present ring [N.m/rad].
+  Eigen::Matrix2d frictionStiffness() const noexcept
+  {
+    Eigen::Matrix2d stiffness = now_.cup.stiffness * cup_rates_ * cup_rates_.transpose();
+    if (friction_.presliding > 0.0)
+    {
+      stiffness(0, 0) += friction_.presliding * (1.0 + std::abs(now_.share)) / model_.motor.preslidingAngle();
+    }
+    return stiffness;
+  }
 
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
@@ -57,7 +83,7 @@ public:
   const DryFriction& dryFriction() const noexcept { return dry_; }
   /// Output speed over motor speed at constant load: from the ring's stiffness, not from the tooth numbers [-].
   double velocityRatio() const noexcept { return response_.velocity_ratio; }
-  double storedEnergy() const noexcept { return model_.storedEnergy(response_, output_angle_); }
+  double storedEnergy() const noexcept { return model_.storedEnergy(response_, position()) + now_.cup.energy; }
 
   JointInputs inputs;
   SolveStatus status;  ///< worst since it was last cleared by its reader
@@ -66,8 +92,20 @@ private:
   SolveStatus bringRing() noexcept;
   SolveStatus placeRing(double motor_angle, double output_angle) noexcept;
   void takeRing() noexcept;
+  void takeSurface() noexcept;
+  void turnCup(double rotation, const Eigen::Vector2d& rates) noexcept;
+  void slideShaft() noexcept;
   bool surfaceAgrees() const noexcept;
   double viscosity() noexcept;
+  double brakeTorque(double motor_speed) noexcept;
+
+  /// What friction remembers of the way to some angles.
+  struct Memory
+  {
+    CupFriction::State cup;
+    double share{};        // of the friction at the motor shaft that is mobilised, -1 ... 1
+    double motor_angle{};  // [rad]
+  };
 
   const JointModel& model_;
   RingEquilibrium ring_;
@@ -79,9 +117,14 @@ private:
   Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output [N.m/rad]
   bool on_surface_{};
   bool surface_agrees_{};  // at the present angles, while on the full ring
+  Brake::Pin pin_;
   DryFriction dry_;
   JointFriction friction_;
-  double temperature_;  // that the viscosity is known for [degC]
-  double viscosity_;    // [m^2/s]
+  bool remembers_;  // friction does
+  Memory accepted_;
+  Memory now_;                             // at the present ring
+  Eigen::Vector2d cup_rates_{ 0.0, 0.0 };  // of the rim's mean rotation by motor and output angle, if that matters
+  double temperature_;                     // that the viscosity is known for [degC]
+  double viscosity_;                       // [m^2/s]
 };
 }  // namespace hjt

@@ -33,15 +33,24 @@ void JointStepper::checkStep(const Parameters& parameters)
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
-  const double stiffness = *std::max_element(slopes.begin(), slopes.end());
+  const double stiffness = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
   const double ratio = nominalRatio(parameters.gear);
-  const double frequency = std::sqrt(stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)));
+  double square = stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)) +
+                  dynamics_.model().motor.coggingStiffness() / inertia[0];
+  if (parameters.motor.presliding_angle > 0.0)
+  {
+    // Just after a reversal, from full friction.
+    dynamics_.updateFriction({ 0.0, 0.0 });
+    square += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / inertia[0];
+  }
+  const double frequency = std::sqrt(square);
   if (frequency * step_ > MAX_PHASE)
   {
     std::ostringstream text;
     text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << inertia[0]
          << " kg.m^2 at the motor and " << inertia[1] << " kg.m^2 at the output the joint can swing at " << frequency
-         << " rad/s, which needs at least " << frequency / MAX_PHASE << " Hz (or a larger output.load_inertia)";
+         << " rad/s, which needs at least " << frequency / MAX_PHASE
+         << " Hz (or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle)";
     throw ParameterError(text.str());
   }
   if (kind_ == StepperKind::RUNGE_KUTTA4)
@@ -139,8 +148,10 @@ bool JointStepper::stepRungeKutta() noexcept
     return false;
   }
   speeds_ = x_.segment<2>(MOTOR_SPEED);
+  x_[DISSIPATED] += dynamics_.accept();
   dynamics_.updateFriction(speeds_);
   friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
+  friction_[0] += dynamics_.preslidingTorque();
   const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
   balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - x_[DISSIPATED] - kinetic;
   return true;
@@ -150,9 +161,11 @@ double JointStepper::phaseAdvance() const noexcept
 {
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
-  const double motor = ring.motor_stiffness / inertia[0];
-  const double output = ring.output_stiffness / inertia[1];
-  const double cross = ring.velocity_ratio * ring.output_stiffness;
+  const Eigen::Matrix2d friction = dynamics_.frictionStiffness();
+  const double motor =
+      (ring.motor_stiffness + friction(0, 0) + dynamics_.model().motor.coggingStiffness()) / inertia[0];
+  const double output = (ring.output_stiffness + friction(1, 1)) / inertia[1];
+  const double cross = ring.velocity_ratio * ring.output_stiffness - friction(0, 1);
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
                                                             cross * cross / (inertia[0] * inertia[1]));
   return step_ * std::sqrt(std::max(fastest, 0.0));

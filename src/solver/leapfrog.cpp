@@ -15,8 +15,11 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
     return;
   }
   const Eigen::Vector2d inertia = system.model().inertia();
-  const Eigen::Vector2d torque = system.torque();
+  const double slipped = system.accept();
   system.updateFriction(before);
+  const double presliding = system.preslidingTorque();
+  Eigen::Vector2d torque = system.torque();
+  torque[0] += presliding;
   const Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
   Eigen::Vector2d after;
   // On the surface the friction is in few terms, and all is done to be quick.
@@ -27,13 +30,15 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   }
   speeds_ = 0.5 * (before + after);
   friction_ = inertia.cwiseProduct(after - free) / dt;
+  friction_[0] += presliding;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
 
   // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
-  const double motor_work = dt * system.inputs.motor_torque * speeds_[0];
+  const double motor_work = dt * system.driveTorque() * speeds_[0];
   const double load_work = dt * system.inputs.load_torque * speeds_[1];
   const double dissipated = -dt * friction_.dot(speeds_);
+  x[DISSIPATED] += slipped;
   const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
   balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic;
   x[MOTOR_WORK] += motor_work;

@@ -239,7 +239,7 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
     x += bilinear(place.deviation);
   }
   friction.contact_force = x[Table::CONTACT_FORCE - FIRST];
-  friction.interface_torque = x[Table::INTERFACE_TORQUE - FIRST];
+  friction.ring_torque = x[Table::RING_TORQUE - FIRST];
   friction.viscous << x[Table::VISCOUS - FIRST], x[Table::VISCOUS - FIRST + 1], x[Table::VISCOUS - FIRST + 2];
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
   constexpr int FLANKS = Table::FLANKS - FIRST;

@@ -25,7 +25,7 @@ struct SurfaceTable
     VELOCITY_RATIO,        // [-]
     OUTPUT_STIFFNESS,      // [N.m/rad]
     CONTACT_FORCE,         // [N]
-    INTERFACE_TORQUE,      // [N.m]
+    RING_TORQUE,           // of outer race and flexing rim at the motor [N.m]
     VISCOUS,               // motor-motor, motor-output, output-output [N.m.s/rad]
     FLANKS = VISCOUS + 3,  // slip (2) and rms slip (2) a group [N.m], [m/rad]
     TEETH_LOADED = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]

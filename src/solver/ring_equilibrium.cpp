@@ -152,6 +152,16 @@ SolveStatus RingEquilibrium::updateModel() noexcept
   return status;
 }
 
+bool RingEquilibrium::refreshSensitivities() noexcept
+{
+  const bool factored = system_.refactor(now_);
+  if (factored)
+  {
+    system_.moveSensitivities(now_);
+  }
+  return factored;
+}
+
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
   if (model_version_ != model_.version())

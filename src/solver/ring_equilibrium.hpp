@@ -40,6 +40,10 @@ public:
   /// `moveTo` does so first if nobody has.
   SolveStatus updateModel() noexcept;
 
+  /// Rates and stiffness of the present shape itself, where one a Newton step away does not do. False: its tangent has
+  /// no inverse; they stay as they are.
+  bool refreshSensitivities() noexcept;
+
   /// From the present equilibrium to another position.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 

@@ -37,14 +37,16 @@ public:
     LossShares shares;
     shares.bearing = model.bearing.torque(speed, contact.force.sum(), temperature_);
     shares.interface = model.interface_friction.torque(ring.shape(), contact, friction_.running);
-    shares.motor = model.motor.coulombTorque() + model.motor.viscousFriction() * std::abs(speed) +
+    shares.flexing = model.flexing_loss.torque(ring.shape(), ring.forces().of<RimBending>(), friction_.running);
+    shares.output = model.load.dryFriction() * std::abs(velocity_ratio);
+    shares.motor = model.motor.dryTorque(speed) + model.motor.viscousFriction() * std::abs(speed) +
                    model.load.viscousFriction() * velocity_ratio * velocity_ratio * std::abs(speed);
     friction_.setZero();
     model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), by_angle, speed * rates,
                                  friction_);
     shares.mesh = friction_.dryPower(rates);
     friction_.setZero();
-    model.cup_friction.addTerm(by_angle, friction_);
+    model.cup_friction.addTerm(by_angle.meanRotation(), friction_);
     shares.cup = friction_.dryPower(rates);
     model.damping.add(contact, by_angle, friction_);
     shares.damping = rates.dot(friction_.viscous * rates) * std::abs(speed);
@@ -92,9 +94,11 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
                            LossShares& mean = rows[i].loss;
                            mean.bearing += part * at.bearing;
                            mean.interface += part * at.interface;
+                           mean.flexing += part * at.flexing;
                            mean.mesh += part * at.mesh;
                            mean.cup += part * at.cup;
                            mean.damping += part * at.damping;
+                           mean.output += part * at.output;
                            mean.motor += part * at.motor;
                            rows[i].load_reduced += part * load * velocity_ratio;
                          }

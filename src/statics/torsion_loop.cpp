@@ -34,8 +34,10 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   TorsionLoop loop;
   loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
-  std::vector<TorsionPoint> up;    // load growing, torque ascending
-  std::vector<TorsionPoint> down;  // load falling
+  const double unloaded_rotation = ring.forces().of<CupTorsion>().rotation;
+  std::vector<TorsionPoint> up;            // load growing, torque ascending
+  std::vector<TorsionPoint> down;          // load falling
+  std::vector<Eigen::Vector2d> rotations;  // of the rim at each angle [rad], and its rate by the output's [-]
   for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {
     const double elastic = amplitude * (2.0 * i / steps - 1.0);
@@ -44,11 +46,31 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     const RingRates rates{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
     model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), rates, { 0.0, 0.0 },
                                  friction);
-    model.cup_friction.addTerm(rates, friction);
+    model.cup_friction.addTerm(rates.meanRotation(), friction);
+    friction.terms.push_back({ model.load.dryFriction(), Eigen::Vector2d::UnitY() });
     const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;
     up.push_back({ elastic + drag, angle });
     down.push_back({ elastic - drag, angle });
+    rotations.push_back({ ring.forces().of<CupTorsion>().rotation, rates.meanRotation()[1] });
+  }
+  if (model.cup_friction.hasState())
+  {
+    // To the first point, along the sweep and back.
+    CupFriction::State cup = model.cup_friction.relaxed(unloaded_rotation);
+    const auto add = [&](std::size_t i, TorsionPoint& point)
+    {
+      cup = model.cup_friction.turned(cup, rotations[i][0]);
+      point.torque -= cup.torque * rotations[i][1];
+    };
+    for (std::size_t i = 0; i < up.size(); ++i)
+    {
+      add(i, up[i]);
+    }
+    for (std::size_t i = down.size(); i-- > 0;)
+    {
+      add(i, down[i]);
+    }
   }
   if (loop.status.ok())
   {

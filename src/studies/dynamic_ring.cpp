@@ -75,7 +75,8 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   const DashpotPower dashpots = model_.damping.addForces(shape_, contact, v, growth_, force_);
   power_.dissipated = dashpots.dissipated + model_.motor.viscousFriction() * motor_speed * motor_speed +
                       model_.load.viscousFriction() * output_speed * output_speed;
-  power_.supplied = dashpots.supplied + contact.force.dot(growth_) + drive_.motor_torque * motor_speed -
+  power_.supplied = dashpots.supplied + contact.force.dot(growth_) +
+                    model_.motor.rippled(drive_.motor_torque, position_.wave_generator_angle) * motor_speed -
                     drive_.load_torque * output_speed;
   // Whatever keeps a driven body at its speed has to balance all that acts on it.
   for (const int k : { waveGenerator(), output() })

@@ -27,7 +27,7 @@ public:
     const Usage usage = use_.until(hours);
     filter_.use(usage - used_);
     used_ = usage;
-    filter_.read({ age.flank_wear + options_.flank_wear_error * normal_(random_), options_.flank_wear_error,
+    filter_.read({ age.worstFlank() + options_.flank_wear_error * normal_(random_), options_.flank_wear_error,
                    spallSize(variation, age.bearing_turns) + options_.spall_error * normal_(random_),
                    options_.spall_error });
     filter_.survive();  // fatigue is not seen before it breaks the flexspline

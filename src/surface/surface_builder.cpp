@@ -108,7 +108,7 @@ private:
     }
     return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
            std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node) &&
-           std::abs(ring_.frictionTorque(interpolated) - ring_.frictionTorque(node)) <= ring_.motorTolerance(node);
+           std::abs(ring_.frictionTorque(interpolated) - ring_.frictionTorque(node)) <= ring_.frictionTolerance(node);
   }
 
   ResponseSurface between(double v_below, const Line& below, double v_above, const Line& above, int columns) const

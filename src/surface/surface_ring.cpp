@@ -128,6 +128,10 @@ bool SurfaceRing::moveTo(double motor_angle, double v)
 
 Node SurfaceRing::measure()
 {
+  if (!model_.ring.of<WaveGeneratorContact>().hasKinks())
+  {
+    ring_.refreshSensitivities();
+  }
   Node node{};
   const RingForces& forces = ring_.forces();
   const auto& contact = forces.of<WaveGeneratorContact>();
@@ -143,7 +147,7 @@ Node SurfaceRing::measure()
   node[SurfaceTable::OUTPUT_STIFFNESS] = k(1, 1);
   node[SurfaceTable::CONTACT_FORCE] = contact.force.sum();
   friction_.running = rates.by_motor + velocity_ratio * rates.by_output;
-  node[SurfaceTable::INTERFACE_TORQUE] = model_.interface_friction.torque(ring_.shape(), contact, friction_.running);
+  node[SurfaceTable::RING_TORQUE] = model_.ringTorque(ring_.shape(), forces, friction_.running);
   friction_.setZero();
   model_.damping.add(contact, rates, friction_);
   node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
@@ -174,6 +178,14 @@ double SurfaceRing::motorTolerance(const Node& node) const noexcept
   return MOTOR_TOLERANCE * motor_limit_ * overload(node);
 }
 
+double SurfaceRing::frictionTolerance(const Node& node) const noexcept
+{
+  constexpr double SHARE = 0.01;
+  return model_.ring.of<WaveGeneratorContact>().hasKinks() ?
+             motorTolerance(node) :
+             std::max(motorTolerance(node), SHARE * frictionTorque(node));
+}
+
 double SurfaceRing::frictionTorque(const Node& node) const noexcept
 {
   double flanks = 0.0;
@@ -181,8 +193,8 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
   {
     flanks += std::abs(node[i] + node[SurfaceTable::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
   }
-  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) +
-         node[SurfaceTable::INTERFACE_TORQUE] + static_friction_ * flanks;
+  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) + node[SurfaceTable::RING_TORQUE] +
+         static_friction_ * flanks;
 }
 
 int SurfaceRing::repetition()

@@ -38,6 +38,7 @@ double largestLoad(const Parameters& parameters)
 
 FrictionMap::FrictionMap(const Parameters& parameters)
   : bearing_(parameters.bearing)
+  , motor_(parameters.motor)
   , race_preload_(parameters.bearing.race_preload)
   , viscous_(parameters.motor.viscous_friction +
              parameters.output.viscous_friction / std::pow(nominalRatio(parameters.gear), 2))
@@ -66,7 +67,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
       const double grease = bearing_.torque(row.motor_speed, -race_preload_, parameters.input.temperature);
       lines_.push_back({ row.load_torque,
                          row.loss.bearing - grease - preload_torque_ + row.loss.interface + row.loss.cup +
-                             parameters.motor.coulomb_torque,
+                             row.loss.flexing + row.loss.output + parameters.motor.coulomb_torque,
                          {} });
     }
     lines_.back().flanks[i % SPEEDS] = row.loss.mesh;
@@ -94,6 +95,7 @@ FrictionShares FrictionMap::at(double motor_speed, double load, double temperatu
   shares.grease = bearing_.torque(speed, -race_preload_, temperature);
   shares.flanks = (1.0 - v) * flanks(low) + v * flanks(high);
   shares.rest = (1.0 - v) * low.rest + v * high.rest;
+  shares.stribeck = motor_.stribeckTorque(speed);
   shares.viscous = viscous_ * speed;
   return shares;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elements/bearing_friction.hpp"
+#include "elements/motor.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -15,10 +16,11 @@ struct FrictionShares
   double preload{};  ///< bearing: balls loaded by their own outer race; proportional to bearing.race_preload
   double grease{};   ///< bearing: by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power of 2/3
   double flanks{};   ///< tooth flanks; proportional to mesh.friction_static and _kinetic together
-  double rest{};     ///< bearing under the wave generator's load, outer race, cup, the motor's Coulomb torque
-  double viscous{};  ///< motor and output, proportional to the speed
+  double rest{};     ///< bearing under the wave generator's load, outer race, rim, cup, Coulomb torque of motor, output
+  double stribeck{};  ///< rise at the motor shaft towards standstill; proportional to motor.stribeck_torque
+  double viscous{};   ///< motor and output, proportional to the speed
 
-  double sum() const noexcept { return preload + grease + flanks + rest + viscous; }
+  double sum() const noexcept { return preload + grease + flanks + rest + stribeck + viscous; }
 };
 
 /// The twin's friction by speed and load, tabled once from the whole ring, so that a motion of hours costs seconds.
@@ -45,6 +47,7 @@ private:
   };
 
   BearingFriction bearing_;
+  Motor motor_;
   double race_preload_;    // [N]
   double viscous_;         // motor side, output's in it [N.m.s/rad]
   double preload_torque_;  // [N.m]

@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "elements/motor.hpp"
+#include "elements/presliding.hpp"
 #include "gear/ratio.hpp"
 
 namespace hjt
@@ -70,6 +71,7 @@ Observer::Observer(const Parameters& parameters)
   , noise_(parameters.observer)
   , ratio_(nominalRatio(parameters.gear))
   , temperature_(parameters.input.temperature)
+  , presliding_angle_(parameters.motor.presliding_angle)
   , curve_(parameters)
 {
   const Eigen::Vector2d inertia(Motor(parameters.motor).inertia(), load_.inertia());
@@ -90,6 +92,7 @@ void Observer::start(const Measurement& measurement) noexcept
   deviation << ratio_ * FIRST_TORSION, ratio_ * FIRST_SPEED, noise_.output_angle_noise, FIRST_SPEED,
       noise_.disturbance_growth * std::sqrt(FIRST_DISTURBANCE_TIME);
   covariance_ = deviation.cwiseAbs2().asDiagonal();
+  mobilised_ = 0.0;
   now_ = measurement.time;
   started_ = true;
 }
@@ -109,8 +112,16 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
 
   const double most = friction_.at(state_[1], gear, temperature).sum();
   const double by_friction = piece.input(1, 0);
-  friction_now_ = std::clamp(free[1] / by_friction, -most, most);
-  sticking_ = std::abs(friction_now_) < most;
+  double taken = 1.0 / by_friction;  // friction by the speed without it, while it holds the motor [N.m.s/rad]
+  if (presliding_angle_ > 0.0)
+  {
+    taken = preslide(most, free[1], by_friction);
+  }
+  else
+  {
+    friction_now_ = std::clamp(free[1] / by_friction, -most, most);
+    sticking_ = std::abs(friction_now_) < most;
+  }
   state_ = free - piece.input.col(0) * friction_now_;
 
   Matrix transition = piece.transition;
@@ -118,7 +129,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   {
     // Friction takes what would move the motor: a linear map too.
     Matrix held = Matrix::Identity();
-    held.col(1) -= piece.input.col(0) / by_friction;
+    held.col(1) -= piece.input.col(0) * taken;
     transition = held * transition;
     covariance_ = (transition * covariance_ * transition.transpose() + held * piece.process * held.transpose()).eval();
   }
@@ -127,6 +138,29 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
     covariance_ = (transition * covariance_ * transition.transpose() + piece.process).eval();
   }
   now_ += STEP;
+}
+
+/// Friction that builds up over the presliding angle, taken at the end of a step that would end with the motor speed
+/// `free` without it [rad/s], of which a unit of it takes `response`. @returns how it grows with that speed
+/// [N.m.s/rad].
+double Observer::preslide(double most, double free, double response) noexcept
+{
+  constexpr int BISECTIONS = 40;
+  constexpr double HELD = 0.95;  // of the friction: beyond it the motor slides
+  const auto turn = [&](double friction) { return 0.5 * STEP * (state_[1] + free - response * friction); };
+  double low = -most;
+  double high = most;
+  for (int i = 0; i < BISECTIONS; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (middle < most * mobilised(mobilised_, turn(middle), presliding_angle_) ? low : high) = middle;
+  }
+  friction_now_ = 0.5 * (low + high);
+  const double moved = turn(friction_now_);
+  mobilised_ = mobilised(mobilised_, moved, presliding_angle_);
+  sticking_ = std::abs(mobilised_) < HELD;
+  const double growth = 0.5 * STEP * most * (1.0 - std::copysign(mobilised_, mobilised_ * moved)) / presliding_angle_;
+  return growth / (1.0 + response * growth);
 }
 
 /// Takes one angle; returns the innovation.

@@ -77,11 +77,11 @@ struct Observation
 /// both: an extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
 ///
 /// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed
-/// to stop the motor, at most what it is. While the motor sticks, the angle measurement does not update the
-/// disturbance, so the estimate does not wind up; its band widens instead. If the robot moves nevertheless, the model's
-/// output follows it until the spring torque exceeds stiction. The remaining torque is the residual: increased
-/// friction, an unknown load. The model's parameters are never adapted, so a fault cannot be adapted away. A step costs
-/// about a microsecond.
+/// to stop the motor, at most what it is; or, with motor.presliding_angle, as built up over that angle. While the motor
+/// sticks, the angle measurement does not update the disturbance, so the estimate does not wind up; its band widens
+/// instead. If the robot moves nevertheless, the model's output follows it until the spring torque exceeds stiction.
+/// The remaining torque is the residual: increased friction, an unknown load. The model's parameters are never adapted,
+/// so a fault cannot be adapted away. A step costs about a microsecond.
 class Observer
 {
 public:
@@ -95,13 +95,15 @@ public:
 private:
   void start(const Measurement& measurement) noexcept;
   void predict(double motor_torque, double load_torque, double temperature) noexcept;
+  double preslide(double most, double free, double response) noexcept;
   double correct(ObserverPiece::State angle, double measured, double noise) noexcept;
 
   FrictionMap friction_;
   Load load_;
   ObserverParameters noise_;
   double ratio_;
-  double temperature_;  // of measurements without one [degC]
+  double temperature_;       // of measurements without one [degC]
+  double presliding_angle_;  // of the motor [rad]
   TorsionCurve curve_;
   std::vector<ObserverPiece> pieces_;  // of the curve
   ObserverPiece::Vector state_;
@@ -111,6 +113,7 @@ private:
   double now_{};           // of the state [s]
   double motor_zero_{};    // of the motor encoder [rad]
   double friction_now_{};  // [N.m]
+  double mobilised_{};     // share of it, where it builds up over an angle
   bool sticking_{};
   double angle_deviation_{};  // expected of the innovation of the angle taken last [rad]
 };

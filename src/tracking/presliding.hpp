@@ -3,17 +3,16 @@
 
 #include <cmath>
 
+#include "elements/presliding.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
-/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle.
-///
-///   ds/dx = (1 - s sgn(dx)) / x_p     (Dahl), x the motor's angle, x_p the presliding angle [rad]
-/// Two of them add up. The contacts' builds up over telemetry.presliding_angle. While the joint stands the motion does
-/// not tell it, and it forgets the last one within RELAXATION, as the current of standing joints does (UR5 CB series,
-/// K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over
-/// LASTING_ANGLE, so that the encoder's noise at standstill hardly changes it, and remains.
+/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle
+/// (`mobilised`, by the motor's angle). Two of them add up. The contacts' builds up over telemetry.presliding_angle.
+/// While the joint stands the motion does not tell it, and it forgets the last one within RELAXATION, as the current of
+/// standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of
+/// the whole, builds up over LASTING_ANGLE, so that the encoder's noise at standstill hardly changes it, and remains.
 class Presliding
 {
 public:
@@ -28,8 +27,8 @@ public:
   /// The motor turned by this much [rad] within [s]
   void move(double motor_step, double duration) noexcept
   {
-    contacts_ = dahl(contacts_ * std::exp(-duration / RELAXATION), motor_step, angle_);
-    lasting_ = dahl(lasting_, motor_step, LASTING_ANGLE);
+    contacts_ = mobilised(contacts_ * std::exp(-duration / RELAXATION), motor_step, angle_);
+    lasting_ = mobilised(lasting_, motor_step, LASTING_ANGLE);
   }
 
   void reset() noexcept { contacts_ = lasting_ = 0.0; }
@@ -39,12 +38,6 @@ public:
   double lasting() const noexcept { return lasting_; }    ///< of the lasting part alone
 
 private:
-  static double dahl(double share, double step, double angle) noexcept
-  {
-    const double end = std::copysign(1.0, step);
-    return end + (share - end) * std::exp(-std::abs(step) / angle);
-  }
-
   double angle_;
   double lasting_share_;
   double contacts_{};

@@ -2,8 +2,10 @@
 #include "twin/twin_impl.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "model/lobe_loads.hpp"
 
@@ -35,6 +37,9 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , assessor(given)
   , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
+  , current_share(given.motor.current_bandwidth > 0.0 ?
+                      -std::expm1(-TWO_PI * given.motor.current_bandwidth / given.solver.rate) :
+                      1.0)
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
 {
@@ -97,7 +102,9 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   load_clamped = false;
   temperature = parameters.input.temperature;
   resetHeat();
+  drive_torque = 0.0;
   brake_engaged = parameters.brake.engaged_at_start;
+  brake_commanded = brake_engaged;
   sensors.reset();
   monitor.reset();
   signals.reset();
@@ -173,7 +180,8 @@ void Twin::Impl::takeInputs() noexcept
         load_clamped = load_torque != input.value;
         break;
       case InputKind::BRAKE:
-        brake_engaged = input.value != 0.0;
+        brake_commanded = input.value != 0.0;
+        brake_moves = input.stamp + toStampLength(parameters.brake.delay);
         break;
       case InputKind::TEMPERATURE:
         temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
@@ -230,17 +238,20 @@ void Twin::Impl::step() noexcept
   simulated_until = now;
   const bool followed = takeFaults();
   takeInputs();
+  moveBrake();
   takeSurface();
   const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  const bool converged = stepper.step({ drive.torque, load_torque, brake_engaged, greaseTemperature() }) && followed;
-  takeHeat(drive.torque);
+  driveCurrent(drive.torque);
+  const double motor_torque = drive_torque * model.motor.torqueFactor(greaseTemperature());
+  const bool converged = stepper.step({ motor_torque, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  takeHeat(drive_torque);
   ++counters.steps;
   counters.torque_clamped += drive.clamped ? 1 : 0;
   counters.speed_limited += drive.held ? 1 : 0;
   counters.load_clamped += load_clamped ? 1 : 0;
   const bool cut = stepper.status().cuts > 0;
   const bool jumped = stepper.status().jumps > 0;
-  fillOutputs(drive.torque, converged);
+  fillOutputs(motor_torque, converged);
   const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE || overshoots(drive);
   counters.overloads += std::abs(outputs.joint_torque) > parameters.output.torque_limit ? 1 : 0;
   counters.solver_failures += converged ? 0 : 1;
@@ -250,6 +261,21 @@ void Twin::Impl::step() noexcept
   last_failed = converged ? last_failed : now;
   last_doubtful = cut || jumped || coarse ? now : last_doubtful;
   observe();
+}
+
+/// The current loop, of first order.
+void Twin::Impl::driveCurrent(double torque) noexcept
+{
+  drive_torque = current_share == 1.0 ? torque : drive_torque + current_share * (torque - drive_torque);
+}
+
+/// Carries out the last command of the brake once its delay is over.
+void Twin::Impl::moveBrake() noexcept
+{
+  if (brake_commanded != brake_engaged && now >= brake_moves)
+  {
+    brake_engaged = brake_commanded;
+  }
 }
 
 double Twin::Impl::greaseTemperature() const noexcept
@@ -316,7 +342,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
 /// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
-  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, outputs.motor_torque);
+  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, drive_torque);
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
   if (watching && now / step_length % steps_per_sample == 0)

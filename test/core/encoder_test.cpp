@@ -228,6 +228,21 @@ TEST(JointSensors, ErrOnceATurnByTheirEccentricity)
   }
 }
 
+TEST(JointSensors, ErrTwoAndFourTimesATurnByTheirLines)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.motor_counts_per_turn = 1 << 30;
+  parameters.motor_lines = { 2e-4, -1e-4 };
+  const std::vector<EncoderReadings> readings = turning(parameters, 2000);
+  constexpr double RESOLUTION = 1e-8;
+  for (int step = 0; step < 2000; ++step)
+  {
+    const double angle = 0.01 * step;
+    ASSERT_NEAR(readings[step].motor_angle - angle, 2e-4 * std::sin(2.0 * angle) - 1e-4 * std::sin(4.0 * angle),
+                RESOLUTION);
+  }
+}
+
 TEST(JointSensors, NoiseHasItsSizeAndDependsOnSeedAndStepAlone)
 {
   SensorParameters parameters = SENSORS;

@@ -63,6 +63,42 @@ TEST(EnergyLedgerOfTheLeapfrog, ClosesToAMillionthWhereStepsResolveTheTeeth)
   EXPECT_LT(energyResidual(shippedParameters({ "solver.rate=50000", "motor.speed_limit=60.0" }), 75, true), 1e-6);
 }
 
+class EnergyLedgerOnBalls : public testing::TestWithParam<const char*>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Supports, EnergyLedgerOnBalls, testing::Values("balls", "single_balls"));
+
+TEST_P(EnergyLedgerOnBalls, ClosesAsOnSprings)
+{
+  const std::vector<std::string> support{ std::string("contact.support=") + GetParam() };
+  EXPECT_LT(energyResidual(shippedParameters(support), 71, true), 1e-3);
+  std::vector<std::string> fine = support;
+  fine.insert(fine.end(), { "solver.rate=50000", "motor.speed_limit=60.0" });
+  EXPECT_LT(energyResidual(shippedParameters(fine), 75, true), 1e-6);
+}
+
+TEST(EnergyLedgerOfTheMotor, ClosesWithCoggingAndRipple)
+{
+  // Cogging stores its energy; the ripple is work of the drive. 120 and 60 periods a turn, 53 steps in one at most.
+  const double residual = energyResidual(shippedParameters({ "solver.rate=50000", "motor.speed_limit=60.0",
+                                                             "motor.cogging_torque=0.03", "motor.torque_ripple=0.05" }),
+                                         75, true);
+  EXPECT_LT(residual, 1e-6);
+}
+
+TEST(MotorTorques, AreDerivativesOfTheirEnergy)
+{
+  const Motor motor(shippedParameters({ "motor.cogging_torque=0.03", "motor.cogging_periods=24" }).motor);
+  constexpr double STEP = 1e-5;
+  for (double angle = -1.0; angle < 1.0; angle += 0.0137)
+  {
+    const double slope = (motor.coggingEnergy(angle + STEP) - motor.coggingEnergy(angle - STEP)) / (2.0 * STEP);
+    ASSERT_NEAR(motor.coggingTorque(angle), -slope, 1e-8);
+    const double curvature = (motor.coggingTorque(angle - STEP) - motor.coggingTorque(angle + STEP)) / (2.0 * STEP);
+    ASSERT_LE(std::abs(curvature), motor.coggingStiffness() * (1.0 + 1e-8));
+  }
+}
+
 TEST(EnergyLedgerOfRungeKutta, ClosesOverAViolentSecond)
 {
   // Friction is explicit here: it must be regularised as widely as the stepper asks for, and there is no brake.
@@ -320,7 +356,8 @@ TEST(FreeOscillation, LosesTwiceTheCupsFrictionEveryHalfSwing)
   // Dry friction beside a spring: every half swing ends a constant nearer to rest, and the swing stops where the spring
   // no longer overcomes the friction.
   constexpr double FRICTION = 1.4;  // [N.m]
-  const Parameters parameters = shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=1.4" });
+  const Parameters parameters =
+      shippedParameters({ "output.load_inertia=0.5", "cup.friction_torque=1.4", "cup.friction_angle=0.0" });
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
   JointInputs inputs;

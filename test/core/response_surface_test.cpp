@@ -45,6 +45,7 @@
 #include "surface/surface_builder.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
+#include "surface/surface_worker.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
@@ -196,10 +197,9 @@ TEST(ResponseSurface, SaysWhereItEnds)
 }
 
 /// At equal angles: torques within a thousandth of the rated ones, and the angle that the torque's error stands for
-/// within a tenth of a second of arc. The bounds are a tenth of that.
-TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
+/// within a tenth of a second of arc. The bounds are a tenth of that. `farthest`: of the output [rad].
+void expectTheFullRing(const Parameters& parameters, const ResponseSurface& table, double farthest, int places)
 {
-  const Parameters parameters = surfaceParameters();
   const JointModel model(parameters);
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
   ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
@@ -208,12 +208,14 @@ TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
   double v = 0.0;
   double motor = 0.0;
   int stiffness_misses = 0;
-  for (int i = 0; i < 3000; ++i)
+  for (int i = 0; i < places; ++i)
   {
-    v = i % 50 == 0 ? 5e-3 * part(random) : v + 1e-5 * part(random);
+    v = i % 50 == 0 ? farthest * part(random) : v + 1e-5 * part(random);
     motor += 0.05 * part(random);
     ASSERT_TRUE(ring.moveTo({ motor, v + motor / 101.0, parameters.gear.wave_amplitude }).ok());
-    const RingResponse response = at(motor, v + motor / 101.0);
+    ResponseSurface::Place place;
+    ASSERT_TRUE(table.locate(motor, v + motor / 101.0, place));
+    const RingResponse response = table.response(place);
     const double miss = response.output_torque - ring.forces().output_torque;
     EXPECT_LT(std::abs(miss), 1e-4 * RATED_TORQUE);
     EXPECT_LT(std::abs(miss) / ring.stiffness()(1, 1), 0.01 * ARC_SECOND);
@@ -225,7 +227,31 @@ TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
   }
   // A second derivative of a table, and it jumps where teeth begin to touch within an interval: it warns of long steps
   // only.
-  EXPECT_LE(stiffness_misses, 3);
+  EXPECT_LE(stiffness_misses, 1 + places / 1500);
+}
+
+TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
+{
+  expectTheFullRing(surfaceParameters(), surface(), 5e-3, 3000);
+}
+
+/// Of the golden gear; a part of the range is enough here.
+TEST(ResponseSurface, AgreesWithTheFullRingOnSprings)
+{
+  const Parameters parameters = goldenParameters({ "output.load_torque_limit=80.0", "motor.torque_limit=0.79" });
+  const SurfaceBuild build = buildSurface(parameters, JointModel(parameters), {});
+  ASSERT_EQ(build.failure_reason, "");
+  expectTheFullRing(parameters, ResponseSurface(build.table), 2e-3, 1000);
+}
+
+TEST(ResponseSurface, IsNotOfSingleBalls)
+{
+  std::string notice;
+  SurfaceSource source = cached();
+  source.notice = [&notice](const std::string& text) { notice = text; };
+  const Parameters parameters = shippedParameters({ "solver.scene=auto", "contact.support=single_balls" });
+  EXPECT_EQ(surfaceWithFaults(parameters, {}, source), nullptr);
+  EXPECT_THAT(notice, testing::HasSubstr("single balls"));
 }
 
 /// Twins side by side, all teeth and the surface, position-controlled as a robot's drive is, over moves, reversals,

@@ -281,6 +281,62 @@ TEST(TwinBrake, HoldsBelowItsTorqueAndSlipsAboveIt)
   EXPECT_FALSE(twin.outputs().brake_engaged);
 }
 
+TEST(TwinBrake, LeavesTheShaftItsPlay)
+{
+  constexpr double PLAY = 0.4;
+  Twin twin(shippedParameters({ "brake.play=0.4", "brake.engaged_at_start=true", "input.command_timeout=10.0" }));
+  Stamp time = 0;
+  for (const double torque : { 0.3, -0.3, 0.3 })
+  {
+    twin.commandMotorTorque(time, torque);
+    time += 500 * MILLISECOND;
+    advance(twin, time);
+    // It stops within the step in which it meets the pin.
+    EXPECT_NEAR(twin.outputs().motor_angle, std::copysign(0.5 * PLAY, torque), 0.02);
+    EXPECT_LT(std::abs(twin.outputs().motor_velocity), 1e-6);
+  }
+}
+
+TEST(TwinBrake, ActsAfterItsDelay)
+{
+  Twin twin(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
+  twin.commandBrake(10 * MILLISECOND, true);
+  advance(twin, 30 * MILLISECOND - MILLISECOND / 10);
+  EXPECT_FALSE(twin.outputs().brake_engaged);
+  advance(twin, 30 * MILLISECOND);
+  EXPECT_TRUE(twin.outputs().brake_engaged);
+  // A command that is taken back before its delay is over changes nothing.
+  twin.commandBrake(40 * MILLISECOND, false);
+  twin.commandBrake(50 * MILLISECOND, true);
+  for (Stamp time = 40; time < 100; ++time)
+  {
+    advance(twin, time * MILLISECOND);
+    ASSERT_TRUE(twin.outputs().brake_engaged) << time;
+  }
+}
+
+TEST(TwinDrive, FollowsItsCommandAsTheCurrentLoopLetsIt)
+{
+  constexpr double BANDWIDTH = 200.0;  // [Hz]
+  Twin twin(shippedParameters({ "motor.current_bandwidth=200.0", "input.command_timeout=10.0" }));
+  twin.commandMotorTorque(0, 1.0);
+  for (int step = 0; step <= 100; ++step)
+  {
+    advance(twin, step * MILLISECOND / 10);
+    const double expected = -std::expm1(-TWO_PI * BANDWIDTH * step * 1e-4);
+    ASSERT_NEAR(twin.outputs().motor_torque, expected, 1e-9) << step;
+  }
+}
+
+TEST(TwinDrive, GivesLessTorqueWithWarmMagnets)
+{
+  Twin twin(shippedParameters(
+      { "motor.torque_temperature_coefficient=-1.1e-3", "input.temperature=65.0", "input.command_timeout=10.0" }));
+  twin.commandMotorTorque(0, 1.0);
+  advance(twin, 10 * MILLISECOND);
+  EXPECT_NEAR(twin.outputs().motor_torque, 1.0 - 40.0 * 1.1e-3, 1e-12);
+}
+
 TEST(TwinConstruction, RefusesWhatItCannotRun)
 {
   EXPECT_THROW(Twin(shippedParameters({ "contact.law=polar" })), ParameterError);

@@ -5,13 +5,16 @@ import tool
 
 class Losses(tool.ToolTest):
     def test_a_row_for_every_load_and_speed(self):
-        document = self.succeed_json("losses", "--speeds", "10,100", "--loads", "0,50", "--positions", 4)
+        document = self.succeed_json("losses", "--speeds", "10,100", "--loads", "0,50", "--positions", 4, "--set",
+                                     "ring.loss_factor=0.003", "--set", "output.coulomb_torque=1.0")
         rows = document["rows"]
         self.assertEqual([(row["load_torque"], row["motor_speed"]) for row in rows],
                          [(0.0, 10.0), (0.0, 100.0), (50.0, 10.0), (50.0, 100.0)])
         for row in rows:
-            shares = [row[key] for key in ("bearing", "interface", "mesh", "cup", "damping")]
+            shares = [row[key] for key in ("bearing", "interface", "flexing", "mesh", "cup", "damping", "output")]
             self.assertGreaterEqual(min(shares), 0.0)
+            self.assertAlmostEqual(row["output"], 1.0 / 101.0, delta=1e-4)
+            self.assertGreater(row["flexing"], 1e-4)
             self.assertAlmostEqual(sum(shares), row["gear_loss"], delta=1e-12)
         self.assertEqual(rows[0]["gear_efficiency"], 0.0)
         self.assertAlmostEqual(rows[3]["gear_efficiency"],

@@ -124,7 +124,6 @@ struct ManufactureParameters
   std::array<double, 2> circular_spline_ellipticity{};
   std::array<double, 2> wave_generator_eccentricity{};
   double wave_generator_ellipticity{};
-  std::array<double, 2> output_offset{};
 };
 
 struct CupParameters
@@ -163,7 +162,6 @@ struct MotorParameters
   double copper_loss{};
   double torque_limit{};
   double speed_limit{};
-  double acceleration_limit{};
   double current_bandwidth{};
   double torque_temperature_coefficient{};
   double torque_ripple{};

@@ -15,12 +15,15 @@ struct LossShares
   double bearing{};  ///< of the wave generator, Palmgren
   double interface {
   };                 ///< outer race in the rim
+  double flexing{};  ///< steel of the rim, bent twice a turn
   double mesh{};     ///< tooth flanks
   double cup{};      ///< dry friction beside the cup's spring
   double damping{};  ///< dashpots of the ring
-  double motor{};    ///< Coulomb and viscous of the motor, and viscous of the output
+  double output{};   ///< dry friction of the output's bearing and seals
+  double motor{};    ///< dry and viscous of the motor, and viscous of the output
 
-  double gear() const { return bearing + interface + mesh + cup + damping; }  ///< what the gear alone loses
+  /// What the gear with its output's bearing and seals loses.
+  double gear() const { return bearing + interface + flexing + mesh + cup + damping + output; }
 };
 
 /// Steady turning at constant motor speed against a constant load.

@@ -82,18 +82,22 @@ Column<AgeRow> fatigueColumn(const char* key, StressPlace place)
 {
   return { key, [place](const AgeRow& row) { return row.age.fatigue[static_cast<std::size_t>(place)]; } };
 }
-const std::vector<Column<AgeRow>> AGE_COLUMNS{ { "hours", &AgeRow::hours },
-                                               ofAge("turns", &DriveAge::turns),
-                                               ofAge("flank_wear", &DriveAge::flank_wear),
-                                               ofAge("interface_wear", &DriveAge::interface_wear),
-                                               ofAge("grease", &DriveAge::grease),
-                                               ofAge("flaw_depth", &DriveAge::flaw_depth),
-                                               ofAge("bearing_turns", &DriveAge::bearing_turns),
-                                               { "bearings_failed", &AgeRow::bearings_failed },
-                                               { "spall", &AgeRow::spall },
-                                               fatigueColumn("fatigue_tooth_space", StressPlace::TOOTH_SPACE),
-                                               fatigueColumn("fatigue_transition", StressPlace::TRANSITION),
-                                               fatigueColumn("fatigue_flange", StressPlace::FLANGE) };
+const std::vector<Column<AgeRow>> AGE_COLUMNS{
+  { "hours", &AgeRow::hours },
+  ofAge("turns", &DriveAge::turns),
+  { "flank_wear", [](const AgeRow& row) { return row.age.worstFlank(); } },
+  { "flank_wear_positive", [](const AgeRow& row) { return row.age.flank_wear[0]; } },
+  { "flank_wear_negative", [](const AgeRow& row) { return row.age.flank_wear[1]; } },
+  ofAge("interface_wear", &DriveAge::interface_wear),
+  ofAge("grease", &DriveAge::grease),
+  ofAge("flaw_depth", &DriveAge::flaw_depth),
+  ofAge("bearing_turns", &DriveAge::bearing_turns),
+  { "bearings_failed", &AgeRow::bearings_failed },
+  { "spall", &AgeRow::spall },
+  fatigueColumn("fatigue_tooth_space", StressPlace::TOOTH_SPACE),
+  fatigueColumn("fatigue_transition", StressPlace::TRANSITION),
+  fatigueColumn("fatigue_flange", StressPlace::FLANGE)
+};
 
 /// One place under one load: what the new flexspline bears in a turn, and for how long.
 struct FatigueRow
@@ -215,7 +219,7 @@ int age(const AgeOptions& options)
     { "hours", "hours of use", life.hours, "h" },
     { "end", "end", nameOf(life.end) },
     { "turns", "turns of the motor", life.age.turns },
-    { "flank_wear", "flank wear", life.age.flank_wear, "m" },
+    { "flank_wear", "flank wear", life.age.worstFlank(), "m" },
     { "interface_wear", "interface wear", life.age.interface_wear, "m" },
     { "flaw_depth", "crack at the tooth root", life.age.flaw_depth, "m" },
     { "fatigue", "fatigue of the flexspline (1: broken)",

@@ -40,9 +40,11 @@ const std::vector<Column<LossRow>> LOSS_COLUMNS{
   { "load_reduced", &LossRow::load_reduced, "reduced [N.m]" },
   { "bearing", [](const LossRow& row) { return row.loss.bearing; }, "bearing [N.m]" },
   { "interface", [](const LossRow& row) { return row.loss.interface; }, "interface [N.m]" },
+  { "flexing", [](const LossRow& row) { return row.loss.flexing; }, "" },
   { "mesh", [](const LossRow& row) { return row.loss.mesh; }, "mesh [N.m]" },
   { "cup", [](const LossRow& row) { return row.loss.cup; }, "cup [N.m]" },
   { "damping", [](const LossRow& row) { return row.loss.damping; }, "damping [N.m]" },
+  { "output", [](const LossRow& row) { return row.loss.output; }, "" },
   { "motor", [](const LossRow& row) { return row.loss.motor; }, "motor [N.m]" },
   { "gear_loss", [](const LossRow& row) { return row.loss.gear(); }, "" },
   { "gear_efficiency", &LossRow::gear_efficiency, "gear efficiency [-]" }

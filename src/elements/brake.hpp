@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// Brake on the motor's shaft: a pin between the teeth of a star that slips above a torque.
+///
+/// While engaged the shaft is free within the play b, and held with the holding torque where it leans on the pin:
+///   |theta - theta_p| <= b/2, theta_p the middle of the play, which moves with a shaft that slips    [rad]
+/// It engages in the middle of the play. Without play it holds at once, in both directions.
+class Brake
+{
+public:
+  explicit Brake(const BrakeParameters& parameters)
+    : holding_torque_(parameters.holding_torque), half_play_(0.5 * parameters.play)
+  {
+  }
+
+  /// Where its pin is.
+  struct Pin
+  {
+    double middle{};  ///< of the play, as an angle of the motor [rad]
+  };
+
+  /// Moves the pin with the shaft. @returns the torque that the shaft is held with against its motion [N.m].
+  /// `push`: sign of the shaft's motion, or of the torque on a shaft at rest.
+  double hold(bool engaged, double angle, double push, Pin& pin) const noexcept
+  {
+    if (!engaged)
+    {
+      pin.middle = angle;
+      return 0.0;
+    }
+    pin.middle = std::clamp(pin.middle, angle - half_play_, angle + half_play_);
+    const double left = half_play_ - (push < 0.0 ? pin.middle - angle : angle - pin.middle);
+    return left <= CONTACT * half_play_ ? holding_torque_ : 0.0;
+  }
+
+private:
+  static constexpr double CONTACT = 1e-9;  // what rounding leaves of the play where the shaft leans on the pin [-]
+
+  double holding_torque_;  // [N.m]
+  double half_play_;       // [rad]
+};
+}  // namespace hjt
