@@ -108,10 +108,10 @@ TEST(OutputBalance, OfTeethThatDoNotReachEachOtherSaysSo)
   EXPECT_EQ(explanationOf(status).find("solver.max_iterations"), std::string::npos);
 }
 
-/// What the user reads about an insertion of the shipped gear with these parameters, which fails.
+/// What the user reads about an insertion of the golden gear with these parameters, which fails.
 std::string failedInsertion(const std::vector<std::string>& assignments)
 {
-  const Parameters parameters = shippedParameters(assignments);
+  const Parameters parameters = goldenParameters(assignments);
   const RingModel model(parameters);
   const SolveStatus status =
       RingEquilibrium(model, parameters.solver).insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
