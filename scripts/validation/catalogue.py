@@ -320,7 +320,7 @@ as the catalogue's curve.
                  "no-load running torque",
                  "base oil of the grease alone: 80 mm²/s (thesis, Table 3.2); thins as that"],
                 ["`bearing.race_preload`", f"{number(bearing['race_preload'])} N", "starting torque",
-                 "500 to 600 N from the section of the race with a fit of zero"],
+                 "0: no interference between the races, whose bending is in the model"],
                 ["`cup.friction_torque`", f"{number(cup['friction_torque'])} N·m",
                  "direction gap of a real 101:1 drive",
                  "at most 4.5 N·m by the catalogue's 1 arcmin"],

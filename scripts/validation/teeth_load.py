@@ -88,6 +88,11 @@ the trailing ones. Wear, pitch errors and the teeth's own bending shape are not 
                    "thesis 7.4 [35, 38]",
                    Between(*CLAIMED_BAND), in_mesh(row_at(rows["double_arc"], load)), "%",
                    "claimed without profile and load")
+    shipped = page.tool("stiffness", "--torques", f"{RATED},{LIMIT},{MOMENTARY}")["rows"]
+    for load in (LIMIT, MOMENTARY):
+        page.check(f"teeth.shipped_in_mesh_{load}", f"as shipped, double arc on balls: teeth in mesh at {load} N·m",
+                   "thesis 7.4 [35, 38]", Between(*CLAIMED_BAND), in_mesh(row_at(shipped, load)), "%",
+                   "claimed without load")
     ratio = row_at(rows["double_arc"], LIMIT)["mesh_force_max"] / row_at(rows["involute"], LIMIT)["mesh_force_max"]
     page.check("teeth.double_arc_relief", f"double arc over involute: largest tooth force at {LIMIT} N·m",
                "thesis 3.2.4: spread on more teeth",

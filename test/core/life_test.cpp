@@ -261,7 +261,7 @@ struct Lived
 // The catalogue: for ever up to the repeated peak torque, 1e4 deflections under momentary peaks.
 TEST(Fatigue, SparesTheFlexsplineUpToTheRepeatedPeakAndTiresItByOverloads)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const LifeParameters& life = parameters.life;
   EXPECT_EQ(Lived(parameters, { { life.rated_torque, 1.0 } }).life.end, EndOfLife::BEARING);
   EXPECT_EQ(Lived(parameters, { { life.repeated_peak_torque, 1.0 } }).life.end, EndOfLife::BEARING);
@@ -279,7 +279,7 @@ TEST(Fatigue, SparesTheFlexsplineUpToTheRepeatedPeakAndTiresItByOverloads)
 
 TEST(Fatigue, OfTheWeakIsKnownToTheFilter)
 {
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   const Lived peak(parameters, { { parameters.life.momentary_peak_torque, 1.0 } });
   const DriveAgeing ageing(peak.parameters, peak.duty, peak.load_map);
   const NominalUse use(ageing, parameters.life, true);

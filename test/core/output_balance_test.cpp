@@ -35,7 +35,7 @@ const std::vector<LoadedGear> GEARS{
 struct UnloadedRing
 {
   explicit UnloadedRing(const LoadedGear& gear)
-    : parameters(shippedParameters(gear.assignments, gear.overlays)), model(parameters), ring(model, solver())
+    : parameters(goldenParameters(gear.assignments, gear.overlays)), model(parameters), ring(model, solver())
   {
     EXPECT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok()) << gear.name;
     EXPECT_TRUE(balanceOutput(ring, 0.0, 0.0).ok()) << gear.name;
@@ -108,10 +108,10 @@ TEST(OutputBalance, OfTeethThatDoNotReachEachOtherSaysSo)
   EXPECT_EQ(explanationOf(status).find("solver.max_iterations"), std::string::npos);
 }
 
-/// What the user reads about an insertion of the shipped gear with these parameters, which fails.
+/// What the user reads about an insertion of the golden gear with these parameters, which fails.
 std::string failedInsertion(const std::vector<std::string>& assignments)
 {
-  const Parameters parameters = shippedParameters(assignments);
+  const Parameters parameters = goldenParameters(assignments);
   const RingModel model(parameters);
   const SolveStatus status =
       RingEquilibrium(model, parameters.solver).insert({ 0.0, 0.0, parameters.gear.wave_amplitude });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -55,7 +56,8 @@ TEST(Ratchet, TheLobesBalanceTheRing)
   {
     const RatchetRow& row = result.rows[i];
     EXPECT_NEAR(row.lobe_force, lobe_stiffness * (parameters.gear.wave_amplitude - row.wave_amplitude), 2e-3) << i;
-    EXPECT_LT(row.lobe_force, rigid.rows[i].lobe_force) << i;  // what gives way is pressed less
+    // What gives way is pressed less, or pulled less where flanks pull the rim on.
+    EXPECT_LT(std::abs(row.lobe_force), std::abs(rigid.rows[i].lobe_force)) << i;
   }
 }
 }  // namespace

@@ -28,7 +28,7 @@ class Ring : public testing::Test
 {
 protected:
   explicit Ring(const std::vector<std::string>& assignments = { TIGHT })
-    : parameters_(shippedParameters(assignments)), model_(parameters_), ring_(model_, parameters_.solver)
+    : parameters_(goldenParameters(assignments)), model_(parameters_), ring_(model_, parameters_.solver)
   {
     EXPECT_TRUE(ring_.insert(at(0.0, 0.0)).ok());
   }
@@ -382,7 +382,7 @@ TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
   SCOPED_TRACE("seed " + std::to_string(SEED));
   std::mt19937 random(SEED);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const RingModel model(parameters);
   const double w = parameters.gear.wave_amplitude;
   RingEquilibrium ring(model, parameters.solver);
@@ -451,7 +451,7 @@ TEST(RingWithoutCircularSpline, TakesTheShapeOfThinRingTheoryForASmallWave)
 {
   // v = -(w/2) sin 2 psi, tilt -(3 w / 2 r) sin 2 psi, to leading order in w: the relative error falls with w. The wave
   // shrinks as far as the rim's own bending leaves it on the wave generator all round.
-  const Parameters parameters = shippedParameters({ TIGHT });
+  const Parameters parameters = goldenParameters({ TIGHT });
   const double r = parameters.gear.flexspline_inner_radius;
   RingModel model(parameters);
   model.setMeshed(false);

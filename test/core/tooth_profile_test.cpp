@@ -72,7 +72,7 @@ TEST_P(Profiles, IsFiniteEverywhere)
 
 TEST(TrapezoidProfile, IsTheStraightFlank)
 {
-  const Parameters parameters = shippedParameters();
+  const Parameters parameters = goldenParameters();
   const ToothProfile profile(parameters.mesh, parameters.gear);
   const double slope = std::tan(parameters.mesh.flank_angle);
   for (double zeta = 31e-3; zeta < 33e-3; zeta += 7e-6)

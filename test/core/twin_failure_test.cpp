@@ -25,7 +25,7 @@ TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
   // Where a tooth jumps there is no equilibrium near; one iteration and no shorter path leave no way across.
   std::vector<std::string> assignments = SOFT_GEAR;
   assignments.insert(assignments.end(), { "solver.max_iterations=1", "solver.max_step_cuts=0" });
-  Twin twin(shippedParameters(assignments));
+  Twin twin(goldenParameters(assignments));
   twin.commandLoadTorque(MILLISECOND, 600.0);
   twin.commandLoadTorque(100 * MILLISECOND, 0.0);
   JointOutputs good = twin.outputs();
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ViolentRun, testing::Values(91U, 92U, 93U));
 TEST_P(ViolentRun, StaysFiniteEverywhere)
 {
   // Loads of up to 1000 N.m and full motor torque to and fro.
-  Twin twin(shippedParameters(SOFT_GEAR));
+  Twin twin(goldenParameters(SOFT_GEAR));
   ToothForces teeth = twin.makeToothForces();
   for (const Input& input : randomInputs(GetParam(), SECOND / 5, 4.0, 1000.0))
   {
@@ -102,7 +102,7 @@ TEST(ViolentRunOfTheShippedJoint, ConvergesInEveryStepAndLosesNoEnergy)
   // Motor torque to and fro between its limits, loads up to the joint's 150 N.m, the brake thrown in at full speed.
   for (const unsigned seed : { 71U, 72U, 73U })
   {
-    Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
+    Twin twin(goldenParameters({ "input.command_timeout=10.0" }));
     for (const Input& input : randomInputs(seed, SECOND / 2, 2.87, 150.0))
     {
       give(twin, input);
@@ -128,11 +128,11 @@ TwinCounters countersAfter(Twin& twin, Stamp until)
 TEST(DoubtfulStep, IsSaidWhenItIsTooLongForTheSwing)
 {
   // The shipped joint swings with 280 rad/s: 0.028 rad of phase in 1e-4 s, 0.28 in 1e-3 s.
-  Twin fine(shippedParameters());
+  Twin fine(goldenParameters());
   EXPECT_EQ(countersAfter(fine, 20 * MILLISECOND).coarse_steps, 0U);
   EXPECT_EQ(fine.health().solver_state, SolverState::OK);
   EXPECT_NEAR(fine.outputs().phase_advance, 0.028, 0.001);
-  Twin coarse(shippedParameters({ "solver.rate=1000" }));
+  Twin coarse(goldenParameters({ "solver.rate=1000" }));
   EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 20U);
   EXPECT_EQ(coarse.health().solver_state, SolverState::DEGRADED);
   EXPECT_NEAR(coarse.outputs().phase_advance, 10.0 * fine.outputs().phase_advance, 0.01);
@@ -143,7 +143,7 @@ TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)
   for (const bool stiff : { false, true })
   {
     Twin twin(
-        shippedParameters({ "motor.torque_limit=12.0", stiff ? "motor.speed_limit=10.0" : "motor.speed_limit=700.0" }));
+        goldenParameters({ "motor.torque_limit=12.0", stiff ? "motor.speed_limit=10.0" : "motor.speed_limit=700.0" }));
     twin.commandMotorTorque(0, 12.0);
     const TwinCounters counters = countersAfter(twin, 80 * MILLISECOND);
     EXPECT_GT(counters.speed_limited, 0U);
@@ -153,11 +153,11 @@ TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)
 
 TEST(DoubtfulStep, IsSaidWhenTeethJump)
 {
-  Twin healthy(shippedParameters());
+  Twin healthy(goldenParameters());
   healthy.commandMotorTorque(0, 2.87);
   EXPECT_EQ(countersAfter(healthy, 90 * MILLISECOND).jumps, 0U);
   EXPECT_GT(healthy.outputs().motor_velocity, 250.0);
-  Twin soft(shippedParameters(SOFT_GEAR));
+  Twin soft(goldenParameters(SOFT_GEAR));
   soft.commandLoadTorque(0, 600.0);
   EXPECT_GT(countersAfter(soft, 90 * MILLISECOND).jumps, 0U);
   EXPECT_NE(soft.health().solver_state, SolverState::OK);
@@ -166,7 +166,7 @@ TEST(DoubtfulStep, IsSaidWhenTeethJump)
 TEST(FreeOutput, WithoutAWaveStaysFinite)
 {
   // Nothing slips in a joint whose ring is round: terms of friction without a slip once divided zero by zero.
-  Twin twin(shippedParameters({ "gear.wave_amplitude=0.0" }));
+  Twin twin(goldenParameters({ "gear.wave_amplitude=0.0" }));
   twin.commandMotorTorque(0, 1.0);
   twin.commandLoadTorque(0, -0.1);
   EXPECT_EQ(countersAfter(twin, 20 * MILLISECOND).solver_failures, 0U);
@@ -176,7 +176,7 @@ TEST(FreeOutput, WithoutAWaveStaysFinite)
 
 TEST(FaultyTeeth, CarryNothingAndTheTwinSaysNothing)
 {
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   for (const int tooth : { 0, 1, 199 })
   {
     parameters.faults.push_back({ FaultKind::TOOTH_ROOT_CRACK, 1.0, tooth, 0.0 });
