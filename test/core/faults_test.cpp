@@ -463,7 +463,7 @@ TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
   gear.rim_thickness = 0.6 * gear.tooth_height_flexspline;
   EXPECT_FALSE(rootCrackRunsThroughTooth(gear));
   // A thin rim hangs by what is left.
-  Parameters parameters = shippedParameters();
+  Parameters parameters = goldenParameters();
   parameters.gear.rim_thickness = gear.rim_thickness;
   JointFaults faults(parameters);
   const JointModel& model = faults.model();
