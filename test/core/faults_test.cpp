@@ -117,7 +117,7 @@ TEST_P(EveryKind, ClearedLeavesTheSoundJointToTheLastBit)
 TEST_P(EveryKind, RingOfAFaultyGearIsTheGradientOfItsEnergy)
 {
   const Parameters parameters =
-      shippedParameters({ "contact.smoothing=20.0e-6", "mesh.smoothing=20.0e-6", "fault_scale.spall_length=5.0e-3" });
+      goldenParameters({ "contact.smoothing=20.0e-6", "mesh.smoothing=20.0e-6", "fault_scale.spall_length=5.0e-3" });
   JointFaults faults(parameters);
   const JointModel& model = faults.model();
   FaultList list;
