@@ -17,15 +17,14 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-SETTINGS = ("contact.support=single_balls", "ring.bending_stiffness=258.0", "bearing.race_bending_stiffness=670.0")
+SUPPORT = "contact.support=single_balls"
 LOADS = (14.0, 67.0, 150.0)
 TURNS = 20
 STEPS = 500  # a turn
 ARCSECOND = np.pi / 180.0 / 3600.0
 
 
-def run(tool, settings, *words):
-    options = [word for setting in settings for word in ("--set", setting)]
+def run(tool, options, *words):
     out = subprocess.run([tool, *words, "--json", *options], check=True, stdout=subprocess.PIPE).stdout
     return json.loads(out)["rows"]
 
@@ -34,21 +33,26 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tool", default=os.path.join(CHECKOUT, "build/devel/lib/harmonic_joint_twin/joint_twin"))
     parser.add_argument("--out", default=os.path.join(CHECKOUT, "docs/images/single_balls.png"))
+    parser.add_argument("--config", action="append", default=[], metavar="FILE", help="overlay")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="further parameters")
     arguments = parser.parse_args()
     tool = arguments.tool
-    settings = [*SETTINGS, *arguments.set]
+    settings = [word for overlay in arguments.config for word in ("--config", overlay)]
+    settings += [word for setting in (SUPPORT, *arguments.set) for word in ("--set", setting)]
 
     figure, axes = plt.subplots(1, 2, figsize=(10, 3.6))
-    for load, colour in zip(LOADS, ("tab:green", "tab:blue", "tab:red")):
+    highest = 0.0
+    for load, colour, front in zip(LOADS, ("tab:green", "tab:blue", "tab:red"), (3, 1, 2)):
         turned = run(tool, settings, "turn", "--load", str(load), "--angle-range", str(2.0 * np.pi * TURNS),
                      "--steps", str(TURNS * STEPS))
         error = np.array([row["kinematic_error"] for row in turned[:-1]]) / ARCSECOND
         window = np.hanning(error.size)
         spectrum = 2.0 * np.abs(np.fft.rfft((error - error.mean()) * window)) / window.sum()
         order = np.arange(spectrum.size) / TURNS
-        axes[0].plot(order, spectrum, color=colour, lw=0.9, label=f"{load:g} N.m")
+        axes[0].plot(order, spectrum, color=colour, lw=1.2, zorder=front,
+                     label=f"{load:g} N.m")
         low = order < 60.0
+        highest = max(highest, spectrum[low].max())
         strongest = np.argmax(np.where(low, spectrum, 0.0))
         print(f"{load:g} N.m: strongest line below order 60 at {order[strongest]:.2f} a motor turn, "
               f"{2.0 * spectrum[strongest]:.3f} arcsec peak to peak; all {np.ptp(error):.3f} arcsec")
@@ -57,6 +61,7 @@ def main():
         print(f"{load:g} N.m: hardest ball {max(force):.0f} N, {sum(f > 0.0 for f in force)} balls carry, "
               f"{sum(force):.0f} N in all")
     axes[0].set_xlim(0.0, 60.0)
+    axes[0].set_ylim(top=1.2 * highest)
     axes[0].set_title("error of the output [arcsec]")
     axes[0].set_xlabel("order [per motor turn]")
     axes[1].set_title("force on a ball [N]")

@@ -13,8 +13,8 @@ namespace hjt
 {
 /// Bending stiffness of the flexspline rim and of the bearing's outer race, which bends with it.
 ///
-/// Energy:  absolute   U = 1/2 sum_i (k_i + k_race) eta_i^2                 (thesis eq. 5.47-5.53; not frame-indifferent)
-///          curvature  U = 1/2 sum_i (k_i + k_race) (eta_i - eta_{i-1})^2   (frame-indifferent)
+/// Energy:  absolute   U = 1/2 sum_i (k_i + k_race) eta_i^2                (thesis eq. 5.47-5.53; grounded)
+///          curvature  U = 1/2 sum_i (k_i + k_race) (eta_i - eta_{i-1})^2  (frame-indifferent)
 /// where    eta_i   rotation of the segment from tooth i to i+1 from rest [rad]
 ///          k_i     stiffness of the rim, >= 0                            [N.m/rad]
 ///          k_race  that of the race, everywhere beside the rim           [N.m/rad]

@@ -46,8 +46,8 @@ public:
     std::vector<Ball> balls;  ///< as many as teeth; of those beyond the bearing's own no force is known
   };
 
-  /// Finds the forces of the balls, and with them those on the teeth; adds the torque on the wave generator by the balls'
-  /// motion along the rim. `depth`: z above. @returns the energy [J].
+  /// Finds the forces of the balls, and with them those on the teeth; adds the torque on the wave generator by the
+  /// motion of the balls along the rim. `depth`: z above. @returns the energy [J].
   double press(const RaceDeflection& bearing, double wave_generator_angle, const Eigen::VectorXd& depth,
                Scratch& scratch, Eigen::VectorXd& force, double& torque) const noexcept;
 

@@ -15,8 +15,8 @@
 namespace hjt
 {
 /// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by
-/// theta. r0 is the rim's inner radius with the fit and its thermal growth. Errors of manufacture add to w (ellipticity)
-/// and move the ellipse's centre off the axis it turns about (eccentricity).
+/// theta. r0 is the rim's inner radius with the fit and its thermal growth. Errors of manufacture add to w
+/// (ellipticity) and move the ellipse's centre off the axis it turns about (eccentricity).
 ///
 /// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal; r the contact ramp
 ///                   where each tooth has a spring, Hertz' point contact where it has its share of the balls

@@ -46,12 +46,12 @@ public:
   /// How far a table's output torque may be off at a node: what 0.002 seconds of arc make [N.m].
   double outputTolerance(const SurfaceTable::Node& node) const noexcept;
 
-  /// Likewise the motor's torque: a share of the motor's torque limit, or without one of what the load's limit is at the
-  /// motor [N.m].
+  /// Likewise the motor's torque: a share of the motor's torque limit, or without one of what the load's limit is at
+  /// the motor [N.m].
   double motorTolerance(const SurfaceTable::Node& node) const noexcept;
 
-  /// Likewise the friction at the motor: as its torque; on balls, where teeth that begin to touch change the rates of all
-  /// by some per cent and no grid resolves that, not below 1 % of the friction [N.m].
+  /// Likewise the friction at the motor: as its torque; on balls, where teeth that begin to touch change the rates of
+  /// all by some per cent and no grid resolves that, not below 1 % of the friction [N.m].
   double frictionTolerance(const SurfaceTable::Node& node) const noexcept;
 
   /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].

@@ -275,8 +275,8 @@ INSTANTIATE_TEST_SUITE_P(Supports, RingOnBalls, testing::Values("balls", "single
 
 TEST_P(RingOnBalls, SensitivitiesAreTheRatesOfTheMovingRing)
 {
-  // A ball that just touches changes its stiffness with the root of its depth: a Newton step away the rates of the points
-  // differ by up to 1 %, the stiffness by 0.1 %.
+  // A ball that just touches changes its stiffness with the root of its depth: a Newton step away the rates of the
+  // points differ by up to 1 %, the stiffness by 0.1 %.
   expectSensitivitiesToBeRates(true);
 }
 
