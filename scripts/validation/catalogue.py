@@ -131,7 +131,7 @@ is set by a real drive, see *Real drives*; the catalogue gives a limit.
 def loops(page):
     page.heading("Torsion loops by amplitude")
     cup = page.tool("parameters")["cup"]
-    widths = [0.5 * cup["friction_angle"] * 0.5 ** j for j in range(6)]
+    widths = [0.5 * cup["friction_angle"] * 3.0 ** -j for j in range(6)]
     spring = cup["friction_torque"] / sum(widths)
     page.text("""
 The friction beside the cup's spring is six springs with sliders (Masing's model): small loops are narrower than large

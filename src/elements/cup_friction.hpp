@@ -21,10 +21,10 @@ namespace hjt
 ///
 ///   torque   sum_j k z_j,   z_j' = Phi' while |z_j| < w_j or Phi' leads back, else 0
 ///   stored   sum_j k z_j^2 / 2;   dissipated where an element slips: k w_j per rad
-/// where      w_j = (a / 2) 2^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
+/// where      w_j = (a / 2) 3^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
 ///
-/// Equal springs over widths that double lose nearly the same share of the stored energy at amplitudes from w_5 to w_0,
-/// a range of 1 to 32, as structural damping does. Rate-independent. After a reversal all of it has turned round when
+/// Equal springs over widths that treble lose about the same share of the stored energy at amplitudes from w_5 to w_0,
+/// a range of 1 to 243, as structural damping does. Rate-independent. After a reversal all of it has turned round when
 /// the rim has turned by a.
 class CupFriction
 {
@@ -82,7 +82,7 @@ public:
       squares += twist * twist;
       slip += width * std::abs(free - twist);
       held += free == twist ? 1.0 : 0.0;
-      width *= 0.5;
+      width *= 1.0 / RATIO;
     }
     state.torque = spring * sum;
     state.energy = 0.5 * spring * squares;
@@ -94,8 +94,12 @@ public:
   /// Of all elements together, before any slips: the largest [N.m/rad].
   double stiffness() const noexcept
   {
-    constexpr double WIDTHS = 2.0 - 1.0 / (1 << (ELEMENTS - 1));  // their sum over the largest
-    return hasState() ? ELEMENTS * torque_ / (WIDTHS * width_) : 0.0;
+    double widths = 0.0;
+    for (int j = 0; j < ELEMENTS; ++j)
+    {
+      widths = widths / RATIO + width_;
+    }
+    return hasState() ? ELEMENTS * torque_ / widths : 0.0;
   }
 
   /// The rigid-plastic element's term, by the mean rotation's rates by motor and output angle [-]; none where there is
@@ -110,6 +114,8 @@ public:
   bool isTerm() const noexcept { return torque_ > 0.0 && !hasState(); }
 
 private:
+  static constexpr double RATIO = 3.0;  // of an element's width to the next
+
   double torque_;  // sum of what the elements slip at [N.m]
   double width_;   // of the widest element [rad]
 };
