@@ -133,7 +133,8 @@ OPTIONS = {
     "motor.cogging_torque": [0.01, 0.1, 1.0],
     "brake.play": [0.1, 6.28],
 }
-WITH = {"output.tilting_moment": {"output.tilting_friction": 1e-3}, "motor.stribeck_torque": {"motor.stribeck_velocity": 1e-3}}
+WITH = {"output.tilting_moment": {"output.tilting_friction": 1e-3},
+        "motor.stribeck_torque": {"motor.stribeck_velocity": 1e-3}}
 
 
 def options():

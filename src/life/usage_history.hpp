@@ -12,8 +12,8 @@ namespace hjt
 {
 /// How a drive has been used: time and turns by load and temperature, in fixed memory however long that was.
 ///
-/// The nodes lie every sixteenth of the rated torque up to four times it either way, and every 10 K. A stretch of use is
-/// shared among the four nodes around it so that time, turns, and mean load and temperature of both stay as they were.
+/// The nodes lie every sixteenth of the rated torque, up to four times it either way, and every 10 K. A stretch of use
+/// is shared among the four nodes around it so that time, turns, mean load and temperature of both stay as they were.
 class UsageHistory
 {
 public:
