@@ -12,26 +12,27 @@ DURATION = 0.06  # s of every run: four swings of the shipped joint
 RPM = 0.10471975511965977  # rad/s
 
 SHIPPED = {
-    "ring.tension_stiffness": 5e9, "ring.bending_stiffness": 400.0, "contact.stiffness": 1e8, "mesh.stiffness": 5e7,
-    "cup.torsion_stiffness": (32.5e3, 56.8e3, 65.4e3), "cup.wall_stiffness": 305e3, "motor.rotor_inertia": 8.8e-5,
-    "motor.wave_generator_inertia": 8.12e-5, "output.load_inertia": 0.5, "ring.tension_damping": 1e-2,
-    "ring.tooth_damping": 1e-2, "contact.damping": 1e-2, "motor.viscous_friction": 6.6e-5,
+    "ring.tension_stiffness": 5e9, "ring.bending_stiffness": 258.0, "bearing.race_bending_stiffness": 670.0,
+    "contact.stiffness": 1e8, "mesh.stiffness": 5e7, "cup.torsion_stiffness": (33.2e3, 56.1e3, 65.2e3),
+    "cup.wall_stiffness": 305e3, "motor.rotor_inertia": 8.8e-5, "motor.wave_generator_inertia": 8.12e-5,
+    "output.load_inertia": 0.5, "ring.tension_damping": 1e-2, "ring.tooth_damping": 1e-2, "contact.damping": 1e-2,
+    "motor.viscous_friction": 6.6e-5,
 }
 # What one factor multiplies.
 FACTORS = {
     "rim tension": ["ring.tension_stiffness"],
-    "rim bending": ["ring.bending_stiffness"],
-    "wave generator contact": ["contact.stiffness"],
+    "rim bending": ["ring.bending_stiffness", "bearing.race_bending_stiffness"],
+    "springs under the rim": ["contact.stiffness"],
     "tooth mesh": ["mesh.stiffness"],
     "cup": ["cup.torsion_stiffness", "cup.wall_stiffness"],
-    "all stiffness": ["ring.tension_stiffness", "ring.bending_stiffness", "contact.stiffness", "mesh.stiffness",
-                      "cup.torsion_stiffness", "cup.wall_stiffness"],
+    "all stiffness": ["ring.tension_stiffness", "ring.bending_stiffness", "bearing.race_bending_stiffness",
+                      "contact.stiffness", "mesh.stiffness", "cup.torsion_stiffness", "cup.wall_stiffness"],
     "motor inertia": ["motor.rotor_inertia", "motor.wave_generator_inertia"],
     "load inertia": ["output.load_inertia"],
     "all inertia": ["motor.rotor_inertia", "motor.wave_generator_inertia", "output.load_inertia"],
     "damping": ["ring.tension_damping", "ring.tooth_damping", "contact.damping", "motor.viscous_friction"],
 }
-STIFFNESSES = ["all stiffness", "rim tension", "rim bending", "wave generator contact", "tooth mesh", "cup"]
+STIFFNESSES = ["all stiffness", "rim tension", "rim bending", "springs under the rim", "tooth mesh", "cup"]
 INERTIAS = ["all inertia", "motor inertia", "load inertia"]
 
 
@@ -43,11 +44,12 @@ def text(value):
 
 
 def scaled(factor, by):
-    """Parameters of one factor times `by`."""
+    """Parameters of one factor times `by`. Balls have no stiffness to multiply: springs are in their place then."""
     def times(value):
         return tuple(by * v for v in value) if isinstance(value, tuple) else by * value
 
-    return {key: times(SHIPPED[key]) for key in FACTORS[factor]}
+    changes = {key: times(SHIPPED[key]) for key in FACTORS[factor]}
+    return changes | {"contact.support": "springs"} if "contact.stiffness" in changes else changes
 
 
 def load_steps(load):
@@ -205,14 +207,14 @@ def maps():
         yield Cell("map: load and stiffness", (load, by), scaled("all stiffness", by), load_steps(load))
     for bending, contact in itertools.product([0.01, 0.1, 1.0, 10.0, 100.0], repeat=2):
         yield Cell("map: bending and contact stiffness", (bending, contact),
-                   {**scaled("rim bending", bending), **scaled("wave generator contact", contact)})
+                   {**scaled("rim bending", bending), **scaled("springs under the rim", contact)})
 
 
 def drawn(seed):
     """A random cell: every factor at once, over its whole range in the logarithm."""
     draw = random.Random(seed)
     changes = {}
-    for factor in ["rim tension", "rim bending", "wave generator contact", "tooth mesh", "cup"]:
+    for factor in ["rim tension", "rim bending", *draw.choice([[], ["springs under the rim"]]), "tooth mesh", "cup"]:
         changes |= scaled(factor, 10.0 ** draw.uniform(-2.0, 2.0))
     for factor in ["motor inertia", "load inertia"]:
         changes |= scaled(factor, 50.0 ** draw.uniform(-1.0, 1.0))

@@ -125,7 +125,7 @@ MAP_AXES = {
     "map: step and stiffness": ("step [s]", "all stiffness times [-]"),
     "map: step and speed, five teeth missing": ("step [s]", "speed limit [rpm], 12 N·m at the motor"),
     "map: load and stiffness": ("load steps, to and fro [N·m]", "all stiffness times [-]"),
-    "map: bending and contact stiffness": ("rim bending times [-]", "wave generator contact times [-]"),
+    "map: bending and contact stiffness": ("rim bending times [-]", "springs under the rim times [-]"),
 }
 
 
