@@ -364,11 +364,11 @@ TEST(Presliding, LetsTheShaftTurnAsDahlsLaw)
 
 TEST(Stribeck, RaisesFrictionTowardsStandstill)
 {
-  const auto motorLoss = [](const std::vector<std::string>& assignments, double speed)
+  const auto motor_loss = [](const std::vector<std::string>& assignments, double speed)
   { return analyseLosses(shippedParameters(assignments), { speed }, { 0.0 }, 2, nullptr).front().loss.motor; };
   const std::vector<std::string> rise{ "motor.stribeck_torque=0.048", "motor.stribeck_velocity=5.0" };
-  EXPECT_NEAR(motorLoss(rise, 0.0) - motorLoss({}, 0.0), 0.048, 1e-15);
-  EXPECT_NEAR(motorLoss(rise, 5.0) - motorLoss({}, 5.0), 0.048 * std::exp(-1.0), 1e-15);
+  EXPECT_NEAR(motor_loss(rise, 0.0) - motor_loss({}, 0.0), 0.048, 1e-15);
+  EXPECT_NEAR(motor_loss(rise, 5.0) - motor_loss({}, 5.0), 0.048 * std::exp(-1.0), 1e-15);
   // The same beside a robot.
   const FrictionMap plain(shippedParameters());
   const FrictionMap raised(shippedParameters(rise));
