@@ -126,25 +126,25 @@ def report(twin, gear, values, title):
 
 def calibrate_joints(twin, measured, names):
     """One viscosity for all joints, a preload for each. `measured`: of each joint its overlays, the joint speeds
-    [rad/s], loads and friction [N.m]."""
+    [rad/s], loads, friction and its tolerance [N.m]."""
     given = [twin.run(measured[name][0], {}, "parameters")["bearing"] for name in names]
 
     def losses(name, values):
-        overlays, speeds, loads, _ = measured[name]
+        overlays, speeds, loads, _, _ = measured[name]
         kinds = sorted(set(map(float, loads)))
         table = twin.losses(overlays, values, [float(RATIO * speed) for speed in speeds], kinds)
         rows = (table[kinds.index(load)][i] for i, load in enumerate(loads))
         return [RATIO * (row["gear_loss"] + row["motor"]) for row in rows]
 
     def errors(x):
-        return numpy.concatenate([numpy.subtract(losses(name, {PRELOAD: preload, VISCOSITY: x[-1]}), measured[name][3])
-                                  for name, preload in zip(names, x)])
+        return numpy.concatenate([(losses(name, {PRELOAD: preload, VISCOSITY: x[-1]}) - numpy.array(measured[name][3]))
+                                  / measured[name][4] for name, preload in zip(names, x)])
 
     found, left = solve(errors, [*(bearing["race_preload"] for bearing in given), given[0]["viscosity"]])
     ends = numpy.cumsum([len(measured[name][3]) for name in names])
     for name, preload, part in zip(names, found, numpy.split(left, ends)):
-        print(f"{name}: race_preload: {preload:.0f}.0, viscosity: {1e6 * found[-1]:.0f}.0e-6; rms error "
-              f"{math.sqrt(numpy.mean(part ** 2)):.2f} N.m")
+        rms = math.sqrt(numpy.mean((part * measured[name][4]) ** 2))
+        print(f"{name}: race_preload: {preload:.0f}.0, viscosity: {1e6 * found[-1]:.0f}.0e-6; rms error {rms:.2f} N.m")
 
 
 def ur5(twin, telemetry):
@@ -155,7 +155,7 @@ def ur5(twin, telemetry):
     measured = {}
     for joint, name in enumerate(JOINTS):
         speed, load, friction, _ = friction_map(data, joint).T
-        measured[name] = (("--config", f"joints/{name}.yaml"), speed, load, friction)
+        measured[name] = (("--config", f"joints/{name}.yaml"), speed, load, friction, numpy.ones_like(friction))
     calibrate_joints(twin, measured, JOINTS)
 
 
@@ -163,8 +163,10 @@ def ur5e(twin, _):
     measured = {}
     for name in JOINTS:
         overlays = ("--config", f"joints/{name}.yaml", "--config", f"joints/ur5e_{name}.yaml")
-        friction = [numpy.mean(band) for band in UR5E_LOSS[name]]
-        measured[name] = (overlays, UR5E_SPEEDS, [0.0] * len(UR5E_SPEEDS), friction)
+        low, high = numpy.array(UR5E_LOSS[name]).T
+        # Two robots, and 2 % that two degrees of the grease make.
+        tolerance = 0.5 * (high - low) + 0.01 * (high + low)
+        measured[name] = (overlays, UR5E_SPEEDS, [0.0] * len(UR5E_SPEEDS), 0.5 * (low + high), tolerance)
     calibrate_joints(twin, measured, JOINTS)
 
 

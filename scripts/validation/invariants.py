@@ -282,7 +282,7 @@ def frame(page, parameters):
                "depths and stretches of some 10 nm and more, known to 1e-17 m, over 200 teeth")
     rows = document["bending"]
     middle = rows[len(rows) // 2]
-    bending = parameters["ring"]["bending_stiffness"]
+    bending = parameters["ring"]["bending_stiffness"] + parameters["bearing"]["race_bending_stiffness"]
     growth = 0.5 * (rows[0]["absolute_energy"] + rows[-1]["absolute_energy"]) - middle["absolute_energy"]
     page.check("invariants.frame_absolute_energy", "law absolute: energy put in by turning the machine by 0.5 rad",
                "½ N k α²",

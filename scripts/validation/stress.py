@@ -45,7 +45,7 @@ Nominal is without the notch.
 
 
 def tooth_space(page, stress):
-    notch = page.tool("parameters")["stress"]["concentration"][0]
+    notch = page.tool("parameters", *golden())["stress"]["concentration"][0]
     thesis = loaded(page, *golden())
     for load, expected in INDEPENDENT.items():
         cycle = thesis[load]["tooth space"]

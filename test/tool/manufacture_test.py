@@ -74,8 +74,8 @@ class Lines(tool.ToolTest):
                 self.assertLess(at[1], 1e-3 * arcsec)
 
     def test_run_out_and_an_eccentric_wave_generator_make_a_line_a_motor_turn_that_load_takes_away(self):
-        generator = ("--set", "manufacture.wave_generator_eccentricity=[5.0e-6, 0.0]")
-        run_out = ("--set", "manufacture.flexspline_eccentricity=[5.0e-6, 0.0]")
+        generator = ("--config", "golden.yaml", "--set", "manufacture.wave_generator_eccentricity=[5.0e-6, 0.0]")
+        run_out = ("--config", "golden.yaml", "--set", "manufacture.flexspline_eccentricity=[5.0e-6, 0.0]")
         for alone in (generator, run_out):
             self.assertLess(self.lines([101], *alone)[0], 0.1e-6)
         light = self.lines([101], *generator, *run_out)[0]

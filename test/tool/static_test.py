@@ -161,7 +161,7 @@ class Stiffness(tool.ToolTest):
         alone = self.succeed_json("stiffness", "--torques", "100", *size_14)["rows"]
         among = self.succeed_json("stiffness", "--torques", "75,-20,100", *size_14)["rows"]
         self.assertEqual(alone[0], among[2])
-        self.assertAlmostEqual(alone[0]["output_angle"], -13.873e-3, delta=1e-6)
+        self.assertAlmostEqual(alone[0]["output_angle"], -14.037e-3, delta=1e-6)
 
     def test_a_gear_that_does_not_fit_is_named(self):
         done = self.fail_with(1, ["no equilibrium found for the row of torque 5 N.m: no output angle balances the load "
@@ -222,7 +222,7 @@ class Profile(tool.ToolTest):
         self.fail_with(1, ["mesh.profile needs teeth that reach into the circular spline"],
                        "profile", "--set", "mesh.profile=cycloid", "--set", "gear.tip_radius_circular_spline=33.0e-3")
         self.fail_with(1, ["do not reach into the circular spline"],
-                       "profile", "--set", "gear.tip_radius_circular_spline=33.0e-3")
+                       "profile", "--config", "golden.yaml", "--set", "gear.tip_radius_circular_spline=33.0e-3")
 
     def test_table_names_units(self):
         self.assertIn("half clearance [m]", self.succeed("profile").stdout)
@@ -243,7 +243,7 @@ class Ratchet(tool.ToolTest):
         self.assertEqual(stiff["peak"]["wave_amplitude"], 0.35e-3)
 
     def test_lobes_give_way(self):
-        result = self.succeed_json("ratchet", "--torque-limit", 300, "--lobe-stiffness", 1e7)
+        result = self.succeed_json("ratchet", "--torque-limit", 300, "--lobe-stiffness", 1e7, "--config", "golden.yaml")
         self.assertLess(result["peak"]["wave_amplitude"], 0.35e-3)
         self.assertRegex(self.succeed("ratchet", "--torque-limit", 100).stdout, r"largest torque +\d+\.\d+ N\.m")
 
