@@ -127,12 +127,12 @@ TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
   EXPECT_NEAR(stiffness[0], by_motor, 1e-3 * std::abs(by_motor));
 }
 
-/// The table of the shipped gear with these parameters.
+/// The table of the golden gear with these parameters.
 SurfaceBuild buildWith(const std::vector<std::string>& assignments, std::size_t max_points = MAX_SURFACE_POINTS)
 {
   std::vector<std::string> all{ "solver.scene=auto" };
   all.insert(all.end(), assignments.begin(), assignments.end());
-  const Parameters parameters = shippedParameters(all);
+  const Parameters parameters = goldenParameters(all);
   return buildSurface(parameters, JointModel(parameters), {}, max_points);
 }
 
@@ -140,8 +140,7 @@ SurfaceBuild buildWith(const std::vector<std::string>& assignments, std::size_t 
 TEST(ResponseSurface, IsNotBuiltBeyondABoundedNumberOfPoints)
 {
   constexpr std::size_t MOST = 10000;
-  const SurfaceBuild build =
-      buildWith({ "gear.wave_amplitude=2.0e-3", "mesh.profile=trapezoid", "contact.support=springs" }, MOST);
+  const SurfaceBuild build = buildWith({ "gear.wave_amplitude=2.0e-3" }, MOST);
   EXPECT_THAT(build.failure_reason, testing::HasSubstr("more than 10000 points"));
   EXPECT_THAT(build.failure_reason, testing::HasSubstr("gear.wave_amplitude = 0.002"));
   EXPECT_THAT(build.failure_reason, testing::HasSubstr("motor.torque_limit = 2.87"));
@@ -197,9 +196,18 @@ TEST(ResponseSurface, SaysWhereItEnds)
   EXPECT_FALSE(surface().locate(1e300, 1e300 / 101.0, place));
 }
 
+/// How well a table has to agree with the full ring.
+struct Bounds
+{
+  double motor_torque;      // of the rated one [-]
+  double stiffness;         // at the motor, beyond 15 %: of the mixed one [-]
+  double stiffness_misses;  // places where it may be off by more [-]
+};
+
 /// At equal angles: torques within a thousandth of the rated ones, and the angle that the torque's error stands for
 /// within a tenth of a second of arc. The bounds are a tenth of that. `farthest`: of the output [rad].
-void expectTheFullRing(const Parameters& parameters, const ResponseSurface& table, double farthest, int places)
+void expectTheFullRing(const Parameters& parameters, const ResponseSurface& table, double farthest, int places,
+                       const Bounds& bounds)
 {
   const JointModel model(parameters);
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
@@ -221,19 +229,21 @@ void expectTheFullRing(const Parameters& parameters, const ResponseSurface& tabl
     EXPECT_LT(std::abs(miss), 1e-4 * RATED_TORQUE);
     EXPECT_LT(std::abs(miss) / ring.stiffness()(1, 1), 0.01 * ARC_SECOND);
     EXPECT_LT(std::abs(response.wave_generator_torque - ring.forces().wave_generator_torque),
-              1e-4 * RATED_MOTOR_TORQUE);
+              bounds.motor_torque * RATED_MOTOR_TORQUE);
     EXPECT_NEAR(response.energy, ring.forces().energy, 1e-7);
+    const Eigen::Matrix2d& k = ring.stiffness();
     stiffness_misses +=
-        std::abs(response.motor_stiffness - ring.stiffness()(0, 0)) > 0.15 * ring.stiffness()(0, 0) ? 1 : 0;
+        std::abs(response.motor_stiffness - k(0, 0)) > 0.15 * k(0, 0) + bounds.stiffness * std::abs(k(0, 1)) ? 1 : 0;
   }
   // A second derivative of a table, and it jumps where teeth begin to touch within an interval: it warns of long steps
   // only.
-  EXPECT_LE(stiffness_misses, 1 + places / 1500);
+  EXPECT_LE(stiffness_misses, bounds.stiffness_misses * places);
 }
 
+/// On balls the table's own tolerance, 1e-4 of the motor's torque limit, is used up.
 TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
 {
-  expectTheFullRing(surfaceParameters(), surface(), 5e-3, 3000);
+  expectTheFullRing(surfaceParameters(), surface(), 5e-3, 3000, { 4e-4, 5e-3, 0.01 });
 }
 
 /// Of the golden gear; a part of the range is enough here.
@@ -242,7 +252,7 @@ TEST(ResponseSurface, AgreesWithTheFullRingOnSprings)
   const Parameters parameters = goldenParameters({ "output.load_torque_limit=80.0", "motor.torque_limit=0.79" });
   const SurfaceBuild build = buildSurface(parameters, JointModel(parameters), {});
   ASSERT_EQ(build.failure_reason, "");
-  expectTheFullRing(parameters, ResponseSurface(build.table), 2e-3, 1000);
+  expectTheFullRing(parameters, ResponseSurface(build.table), 1.3e-3, 1000, { 1e-4, 0.0, 0.001 });
 }
 
 TEST(ResponseSurface, IsNotOfSingleBalls)
@@ -614,7 +624,7 @@ TEST(SceneAuto, FaultsOfARunningTwinGetASurfaceBuiltBeside)
   beside.background = true;
   Twin twin(surfaceParameters(), beside);
   ASSERT_TRUE(comesOntoTheSurface(twin));
-  const Fault soft{ FaultKind::FLANGE_CRACK, 0.5 };
+  const Fault soft{ FaultKind::FLANGE_CRACK, 1.0 };
   twin.injectFault(twin.stamp(), soft);
   twin.step(twin.stamp() + twin.stepLength());
   EXPECT_FALSE(twin.onSurface()) << "the full ring at once";
@@ -624,12 +634,12 @@ TEST(SceneAuto, FaultsOfARunningTwinGetASurfaceBuiltBeside)
   parameters.faults.push_back(soft);
   Twin configured(parameters, cached());
   ASSERT_TRUE(comesOntoTheSurface(configured));
-  EXPECT_NEAR(on_surface, configured.outputs().torsional_stiffness, 0.05 * on_surface);
+  EXPECT_NEAR(on_surface, configured.outputs().torsional_stiffness, 0.01 * on_surface);
   twin.injectFault(twin.stamp(), { FaultKind::FLANGE_CRACK, 0.0 });
   twin.step(twin.stamp() + twin.stepLength());
   EXPECT_FALSE(twin.onSurface());
   ASSERT_TRUE(comesOntoTheSurface(twin));
-  EXPECT_GT(twin.outputs().torsional_stiffness, 1.05 * on_surface);
+  EXPECT_GT(twin.outputs().torsional_stiffness, 1.02 * on_surface);
 }
 
 /// A twin that goes before its surface is built does not wait for it.
