@@ -102,7 +102,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("ring.bending_law", p.ring.bending_law,
         "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
-        "of the rim in bending: energy lost in a cycle over 2 pi times the largest that it stores; 0 = elastic");
+        "of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest that they store; 0 = "
+        "elastic");
 
   visit(
       "contact.support", p.contact.support,
