@@ -6,6 +6,10 @@
 #include <vector>
 
 #include "base/number_text.hpp"
+#include "elements/cup_friction.hpp"
+#include "elements/cup_torsion.hpp"
+#include "gear/ratio.hpp"
+#include "gear/tooth_ring.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/solve_status.hpp"
@@ -104,5 +108,50 @@ private:
   }
 
   std::vector<Piece> pieces_;
+};
+
+/// Torsion of the gear along a course of loads, wave generator locked: the curve's, less what the friction of the cup
+/// carries that has a state (CupFriction). From rest without load on.
+class TorsionCourse
+{
+public:
+  /// @throws ParameterError if the ring finds no equilibrium under load.
+  explicit TorsionCourse(const Parameters& parameters)
+    : curve_(parameters)
+    , cup_(parameters, ToothRing(parameters.gear))
+    , friction_(parameters.cup)
+    , cup_share_(1.0 - 1.0 / nominalRatio(parameters.gear))
+    , friction_torque_(parameters.cup.friction_torque)
+  {
+  }
+
+  /// @returns the torsion [rad] under the next load, reached from the last one without a reversal [N.m].
+  double to(double torque)
+  {
+    if (!friction_.hasState())
+    {
+      return curve_.torsion(torque);
+    }
+    const double cup_torque = cup_share_ * torque;
+    double low = cup_.rotationAtTorque(cup_torque - friction_torque_);
+    double high = cup_.rotationAtTorque(cup_torque + friction_torque_);
+    constexpr int BISECTIONS = 50;
+    for (int i = 0; i < BISECTIONS; ++i)
+    {
+      const double rotation = 0.5 * (low + high);
+      const bool beyond = cup_.torque(rotation) + friction_.turned(state_, rotation).torque > cup_torque;
+      (beyond ? high : low) = rotation;
+    }
+    state_ = friction_.turned(state_, 0.5 * (low + high));
+    return curve_.torsion(torque - state_.torque / cup_share_);
+  }
+
+private:
+  TorsionCurve curve_;
+  CupTorsion cup_;
+  CupFriction friction_;
+  double cup_share_;  // of a load at the output that the cup carries, the wave generator the rest [-]
+  double friction_torque_;
+  CupFriction::State state_;
 };
 }  // namespace hjt

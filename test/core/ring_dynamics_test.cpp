@@ -342,8 +342,8 @@ struct SoftRing : Bench
 {
   SoftRing()
     : Bench(goldenParameters({ "gear.teeth_flexspline=16", "gear.teeth_circular_spline=18",
-                                "ring.tension_stiffness=1.0e+6", "ring.bending_stiffness=4.0", "ring.tooth_damping=0.2",
-                                "solver.force_tolerance=1.0e-9" }),
+                               "ring.tension_stiffness=1.0e+6", "ring.bending_stiffness=4.0", "ring.tooth_damping=0.2",
+                               "solver.force_tolerance=1.0e-9" }),
             held(), false)
     , start(ring->coordinates())
   {

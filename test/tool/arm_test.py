@@ -103,12 +103,13 @@ class Arm(tool.ToolTest):
                                               self.columns(f"rows/{name}.csv")["current_predicted"])
                 forces = [m.message for m in bag.read_messages(f"/{name}/joint_twin/contact_forces")]
                 self.assertEqual((len(forces), {len(m.mesh_force) for m in forces}), (50, {200}))
-                # Flank forces carry the joint's torque, on radii of 31 and 17 mm, some 10 degrees off the tangent.
+                # Flank forces carry the joint's torque, on radii of 32 and 18 mm, the arcs a few degrees off the
+                # tangent, where they touch by the load.
                 torques = {m.header.stamp: m.joint_torque for m in comparisons}
                 self.assertGreater(abs(torques[forces[0].header.stamp]), 1.0)
                 np.testing.assert_allclose([abs(sum(m.mesh_force)) for m in forces],
-                                           [(32.6 if name in SHORT_NAMES[:3] else 58.3) * abs(torques[m.header.stamp])
-                                            for m in forces], rtol=0.01, atol=5.0)
+                                           [(31.6 if name in SHORT_NAMES[:3] else 57.0) * abs(torques[m.header.stamp])
+                                            for m in forces], rtol=0.015, atol=5.0)
                 for topic in ("encoders", "health", "stress"):
                     self.assertEqual(bag.get_message_count(f"/{name}/joint_twin/{topic}"), 50)
         self.succeed("follow", "arm.bag", "--joint", "elbow", "--bag", "elbow.bag")

@@ -64,6 +64,11 @@ void RecordingComparison::update(const MotionSample& sample)
   reach_.least_angle = std::min(reach_.least_angle, sample.position);
   reach_.most_angle = std::max(reach_.most_angle, sample.position);
 
+  const bool both_encoders = std::isfinite(sample.motor_angle);
+  if (both_encoders)
+  {
+    torsion_.follow(sample.load);
+  }
   if (std::abs(sample.velocity) > MOVING)
   {
     const double gain = parameters_.telemetry.torque_per_current;
@@ -74,12 +79,12 @@ void RecordingComparison::update(const MotionSample& sample)
       friction_.add(sample.velocity, way * (friction + gain * row.residual()), way * friction);
       spectrum_.add(sample.position, sample.velocity, row.residual());
     }
-    if (std::isfinite(sample.motor_angle))
+    if (both_encoders)
     {
       torsion_.add(sample.load, sample.motor_angle / ratio_ - sample.position, sample.position, sample.velocity);
     }
   }
-  reach_.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
+  reach_.motor_rows += both_encoders ? 1 : 0;
   reach_.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
   temperatures_ += sample.temperatureOr(parameters_.input.temperature);
   watchSignals(sample);

@@ -22,21 +22,24 @@ struct TorsionMean
   double backward{};  ///< [rad]
 };
 
-/// Torsion of a joint with two encoders, compared with the twin's curve. Memory is limited by the range of torques.
+/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads. Memory is limited by the range of torques.
 class TorsionPoints
 {
 public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit TorsionPoints(const Parameters& parameters)
-    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), curve_(parameters), regression_(3, 1)
+    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), course_(parameters), regression_(3, 1)
   {
   }
 
-  /// `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position`
+  /// The load of the next row, judged or not: the cup's friction remembers it [N.m].
+  void follow(double torque) { twin_ = course_.to(torque); }
+
+  /// Of the row that was followed last. `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position`
   /// of the joint [rad], `speed` [rad/s].
   void add(double torque, double torsion, double position, double speed)
   {
-    const double twin = curve_.torsion(torque);
+    const double twin = twin_;
     const double way = speed < 0.0 ? -1.0 : 1.0;
     regression_.add(Eigen::Vector3d(1.0, way, twin), Eigen::Matrix<double, 1, 1>(torsion));
     ++rows_;
@@ -119,7 +122,8 @@ private:
   }
 
   double step_;  // of the torque [N.m]
-  TorsionCurve curve_;
+  TorsionCourse course_;
+  double twin_{};                 // torsion under the load followed last [rad]
   RunningRegression regression_;  // of the torsion over: one, way of turning, the twin's torsion
   std::map<int, Bin> bins_[2];
   std::uint64_t rows_{};
