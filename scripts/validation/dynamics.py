@@ -13,6 +13,9 @@ FULL_SPEED, HALF_SPEED = 317.0, 60.0  # of the motor [rad/s]
 # Dashpots of rim and contact in proportion to their stiffness, 1 % of critical at 1.2e5 rad/s.
 DAMPED = ("--set", "ring.tension_damping=800.0", "--set", "contact.damping=16.0")
 CLAIM = "model.md §7: the ring is quasi-static to well below 1 %"
+# On the bearing's balls, a seventeenth as stiff as the springs of Table 6.1, modes of the rim come into reach of the
+# tooth frequency: the forces and places of single teeth ring at full speed under load.
+RINGING = {"317rad_100Nm_contact_force", "317rad_100Nm_mesh_force", "sweep_position"}
 LABELS = {"rk4": "Runge-Kutta 4, explicit", "esdirk4": "ESDIRK 4, structured", "tr_bdf2": "TR-BDF2, structured",
           "implicit_euler": "implicit Euler"}
 
@@ -246,7 +249,8 @@ def check_errors(page, name, where, run):
     for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion"),
                              ("contact_force", 1.0, "F_WG per tooth"), ("mesh_force", 1.0, "flank force per tooth")):
         page.check(f"dynamics.{name}_{key}", f"{what} {where}: dynamic against quasi-static, rms", CLAIM, AtMost(limit),
-                   100.0 * run[key]["relative_rms"], "%", "the claim" if limit == 1.0 else "well below it")
+                   100.0 * run[key]["relative_rms"], "%", "the claim" if limit == 1.0 else "well below it",
+                   known=f"{name}_{key}" in RINGING)
 
 
 def percent(run, key, kind="rms"):
@@ -262,7 +266,8 @@ def sweep(page):
     where = f"worst of {len(speeds)} speeds from 5 to 317 rad/s, 20 and 100 N·m"
     for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion")):
         page.check(f"dynamics.sweep_{key}", f"{what}, {where}, rms", CLAIM, AtMost(limit),
-                   100.0 * max(run[key]["relative_rms"] for run in every), "%", "well below it")
+                   100.0 * max(run[key]["relative_rms"] for run in every), "%", "well below it",
+                   known=f"sweep_{key}" in RINGING)
     page.check("dynamics.sweep_mean_torque", "mean wave generator torque over 5 ms, of the same speeds", CLAIM,
                AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it")
     page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM,
@@ -282,10 +287,11 @@ worst here is {worst['speed']:.0f} rad/s with {worst['load']:.0f} N·m: the flan
 the wave generator by {percent(worst, 'wave_generator_torque')} %; twice the tooth frequency is then
 {400 * worst['speed']:.3g} rad/s, where the rim swings round as a whole against teeth and cup. Speeds [rad/s] with
 more than 1 % on the flanks, {above}. This ripple is far beyond what motor, output or any sensor of the joint follows;
-positions, torsion and mean torque keep to the claim at every speed. Dashpots of rim and contact with 1 % of critical
+torsion and mean torque keep to the claim at every speed. Dashpots of rim and contact with 1 % of critical
 (those of Table 6.1 have less than 0.1 %) hardly change it ({percent(damped, 'mesh_force')} %): more than half of that
 mode's energy is in teeth and cup, which have no dashpot here. So at such speeds a single tooth's force is known to
-some per cent and no better; the joint's outputs are not affected.
+some per cent and no better; the joint's outputs are not affected. The springs of Table 6.1 under the rim kept all of
+this below a per cent but at those speeds; the balls of the real bearing are a seventeenth as stiff and do not.
 """)
     page.figure("quasi_static_error",
                 "Error of the quasi-static ring over the speed of the motor, real masses, rms. Left: 20 N·m. "
