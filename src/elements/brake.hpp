@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 
@@ -24,20 +25,29 @@ public:
   struct Pin
   {
     double middle{};  ///< of the play, as an angle of the motor [rad]
+    double angle{};   ///< of the motor when it was looked at last [rad]
+    bool touches{};   ///< the shaft leaned on it then
   };
 
-  /// Moves the pin with the shaft. @returns the torque that the shaft is held with against its motion [N.m].
-  /// `push`: sign of the shaft's motion, or of the torque on a shaft at rest.
+  /// Moves the pin with the shaft. @returns the torque that the shaft is held with against its motion over the step
+  /// around this instant [N.m]. `push`: sign of the shaft's motion, or of the torque on a shaft at rest.
   double hold(bool engaged, double angle, double push, Pin& pin) const noexcept
   {
     if (!engaged)
     {
-      pin.middle = angle;
+      pin = { angle, angle, true };
       return 0.0;
     }
+    const auto play_left = [&] { return half_play_ - (push < 0.0 ? pin.middle - angle : angle - pin.middle); };
+    const double moved = std::abs(angle - pin.angle);
+    const double beyond = std::max(-play_left(), 0.0);
+    pin.angle = angle;
     pin.middle = std::clamp(pin.middle, angle - half_play_, angle + half_play_);
-    const double left = half_play_ - (push < 0.0 ? pin.middle - angle : angle - pin.middle);
-    return left <= CONTACT * half_play_ ? holding_torque_ : 0.0;
+    const bool met = !pin.touches;
+    pin.touches = play_left() <= CONTACT * half_play_;
+    // A shaft that has met the pin since the last step is held from then on, and half a step from now.
+    const double share = met && half_play_ > 0.0 && moved > beyond ? 0.5 + beyond / moved : 1.0;
+    return pin.touches ? share * holding_torque_ : 0.0;
   }
 
 private:
