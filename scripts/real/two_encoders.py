@@ -167,7 +167,7 @@ UR5's current, the circular spline's line is the larger one.
 """, *table(["lines a turn [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
 The twin here has no line once a motor turn (101), because only pitch errors were fitted: two lobes share the load, and
 the lead of one cancels the lag of the other. A wave generator off its axis and run-out of the flexspline together make
-one: 2.2 and 2 µm make 10 µrad (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`), 1.3
+one: 10 µm each make 10 µrad (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`), 7
 µrad at 67 N·m. An eccentric motor encoder makes one too, 11 µrad at the output for 1.1 mrad at the motor, and does not
 fall with load; without load the recording cannot tell the two apart. Once and twice a turn of the output it has 0.6 and
 0.35 mrad, more than the total allowed for such a gear (1 minute of arc): an eccentric output encoder, not fitted.
