@@ -167,9 +167,8 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::VISCOUS, "viscous friction", "motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction,
       found(FrictionFit::VISCOUS), width(FrictionFit::VISCOUS));
   p.motor.viscous_friction = found(FrictionFit::VISCOUS);
-  add(FrictionFit::STRIBECK, "Stribeck rise at the motor", "motor.stribeck_torque", "N.m", p.motor.stribeck_torque,
+  add(FrictionFit::STRIBECK, "Stribeck rise at the motor", "", "N.m", p.motor.stribeck_torque,
       found(FrictionFit::STRIBECK), width(FrictionFit::STRIBECK));
-  p.motor.stribeck_torque = found(FrictionFit::STRIBECK);
 }
 
 Parameters withoutRipple(Parameters parameters)
