@@ -22,7 +22,8 @@ struct TorsionMean
   double backward{};  ///< [rad]
 };
 
-/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads. Memory is limited by the range of torques.
+/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads. Memory is limited by
+/// the range of torques.
 class TorsionPoints
 {
 public:
@@ -35,8 +36,8 @@ public:
   /// The load of the next row, judged or not: the cup's friction remembers it [N.m].
   void follow(double torque) { twin_ = course_.to(torque); }
 
-  /// Of the row that was followed last. `torque` at the output [N.m], `torsion` motor angle over ratio less joint angle, from any zero [rad], `position`
-  /// of the joint [rad], `speed` [rad/s].
+  /// Of the row that was followed last. `torque` at the output [N.m], `torsion` motor angle over ratio less joint
+  /// angle, from any zero [rad], `position` of the joint [rad], `speed` [rad/s].
   void add(double torque, double torsion, double position, double speed)
   {
     const double twin = twin_;
