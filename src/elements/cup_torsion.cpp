@@ -36,7 +36,7 @@ void CupTorsion::placeBreakpoints() noexcept
 
 HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ rest = rest_radial_.data();
   const double* __restrict__ point = shape.points.data();
   const auto along = [&](int i) { return rest[2 * i] * point[2 * i] + rest[2 * i + 1] * point[2 * i + 1]; };
@@ -62,7 +62,7 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const 
 
 HJT_VECTOR_CLONES double CupTorsion::meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ speed = speeds.data();
   double sum = 0.0;
@@ -134,8 +134,8 @@ HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, const Drive
 {
   const double rotation = meanRotation(shape);
   scratch.rotation = rotation;
-  const int n = shape.teeth();
-  const double share = torque(rotation) / n;
+  const int n = shape.solved;
+  const double share = torque(rotation) / shape.teeth();
   const double* __restrict__ point = shape.points.data();
   double* __restrict__ force = sum.teeth.data();
 #pragma omp simd
@@ -147,16 +147,16 @@ HJT_VECTOR_CLONES void CupTorsion::addForces(const RingShape& shape, const Drive
     force[2 * i] += scale * y;
     force[2 * i + 1] -= scale * x;
   }
-  sum.energy += storedEnergy(rotation);
+  sum.energy += storedEnergy(rotation) / shape.copies();
 }
 
 HJT_VECTOR_CLONES void CupTorsion::addTangent(const RingShape& shape, const Scratch& scratch,
                                               RingTangent& tangent) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double rotation = scratch.rotation;
-  const double share = torque(rotation) / n;
-  const double part = 1.0 / n;
+  const double share = torque(rotation) / shape.teeth();
+  const double part = 1.0 / shape.teeth();
   const double* __restrict__ point = shape.points.data();
   double* __restrict__ cup = tangent.cup_direction.data();
   double* __restrict__ xx = tangent.diagonal.xx.data();

@@ -49,11 +49,13 @@ public:
   {
     explicit Scratch(int /*teeth*/) {}
     void setZero() noexcept {}
+    void repeat() noexcept {}
 
     double rotation{};  ///< mean rotation of the tooth points [rad]
   };
   void addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
+  static bool repeats() noexcept { return true; }
 
 private:
   void placeBreakpoints() noexcept;

@@ -22,7 +22,7 @@ RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
 /// Moments at the teeth: the angles that stiffness_[i] resists, times it. Adds the energy.
 HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
   const double* __restrict__ natural_angle = natural_angle_.data();
@@ -38,8 +38,9 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
     // Where each segment would point if the rim were bent there as at rest: the one before, turned by a pitch.
     const double c = rest_cos_;
     const double s = rest_sin_;
-    reference[0] = c * direction[2 * n - 2] - s * direction[2 * n - 1];
-    reference[1] = s * direction[2 * n - 2] + c * direction[2 * n - 1];
+    const int before = 2 * shape.previous(0);
+    reference[0] = c * direction[before] - s * direction[before + 1];
+    reference[1] = s * direction[before] + c * direction[before + 1];
 #pragma omp simd
     for (int i = 1; i < n; ++i)
     {
@@ -80,7 +81,7 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, const Drive
                                              ForceSum& sum) const noexcept
 {
   addMoments(shape, scratch, sum);
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
   const double* moment = scratch.moment.data();
@@ -98,7 +99,7 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, const Drive
     turn_back(i, i + 1);
   }
   turn_back(n - 1, 0);
-  sum.addSegmentForces();
+  sum.addSegmentForces(n);
 }
 
 void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept
@@ -114,7 +115,7 @@ void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, Ring
 HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const Scratch& scratch,
                                                   RingTangent& tangent) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
   const double* moment = scratch.moment.data();
@@ -141,14 +142,14 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
     turn(i, i + 1);
   }
   turn(n - 1, 0);
-  tangent.addSegments();
+  tangent.addSegments(n);
 }
 
 /// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is
 /// g_i at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
 HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
   const double* __restrict__ rim = stiffness_.data();
@@ -161,6 +162,15 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
     const double inverse = 1.0 / length[i];
     gx[i] = -direction[2 * i + 1] * inverse;
     gy[i] = direction[2 * i] * inverse;
+  }
+  const int before = shape.previous(0);
+  const int after = shape.next(n - 1);
+  if (shape.copies() > 1)
+  {
+    gx[before] = -gx[n - 1];
+    gy[before] = -gy[n - 1];
+    gx[after] = -gx[0];
+    gy[after] = -gy[0];
   }
   double* __restrict__ d_xx = tangent.diagonal.xx.data();
   double* __restrict__ d_xy = tangent.diagonal.xy.data();
@@ -194,12 +204,12 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
     s_yx[i] += k_j * gy[i] * gx[j];
     s_yy[i] += k_j * gy[i] * gy[j];
   };
-  row(n - 1, 0, 1);
+  row(before, 0, 1);
 #pragma omp simd
   for (int i = 1; i < n - 1; ++i)
   {
     row(i - 1, i, i + 1);
   }
-  row(n - 2, n - 1, 0);
+  row(n - 2, n - 1, after);
 }
 }  // namespace hjt

@@ -29,11 +29,13 @@ public:
   {
     explicit Scratch(int teeth) : moment(teeth) {}
     void setZero() noexcept {}  // `addForces` writes every entry
+    void repeat() noexcept { repeatHalf(moment); }
 
     Eigen::VectorXd moment;  ///< N, at each tooth (absolute law: on each segment) [N.m]
   };
   void addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
+  bool repeats() const noexcept { return halvesAgree(stiffness_) && halvesAgree(natural_angle_); }
 
   /// Force of the couple that turns segment i back, at its ends (thesis eq. 5.52) [N].
   double bendingForce(const RingShape& shape, const Scratch& scratch, int i) const noexcept

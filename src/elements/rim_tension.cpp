@@ -14,7 +14,7 @@ RimTension::RimTension(const Parameters& parameters, const ToothRing& rest)
 HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, const DrivePosition&, Scratch&,
                                              ForceSum& sum) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ length = shape.lengths.data();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
@@ -31,13 +31,13 @@ HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, const Drive
     energy += 0.5 * pull * stretch;
   }
   sum.energy += energy;
-  sum.addSegmentForces();
+  sum.addSegmentForces(n);
 }
 
 HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scratch&,
                                               RingTangent& tangent) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ length = shape.lengths.data();
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ stiffness = stiffness_.data();
@@ -57,6 +57,6 @@ HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scra
     xy[i] = along * x * y;
     yy[i] = across + along * y * y;
   }
-  tangent.addSegments();
+  tangent.addSegments(n);
 }
 }  // namespace hjt

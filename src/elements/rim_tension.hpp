@@ -26,9 +26,11 @@ public:
   {
     explicit Scratch(int /*teeth*/) {}
     void setZero() noexcept {}
+    void repeat() noexcept {}
   };
   void addForces(const RingShape& shape, const DrivePosition&, Scratch&, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch&, RingTangent& tangent) const noexcept;
+  bool repeats() const noexcept { return halvesAgree(stiffness_); }
 
   /// Tension of segment i, pull > 0 [N].
   double tension(const RingShape& shape, int i) const noexcept

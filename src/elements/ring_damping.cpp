@@ -25,7 +25,7 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
                                         JointFriction& friction) const noexcept
 {
   const RingShape& shape = rates.shape;
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* m = rates.by_motor.data();
   const double* o = rates.by_output.data();
   const double* direction = shape.directions.data();
@@ -38,8 +38,8 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
   };
   const auto inward = [&](const double* rate, int i)
   { return normal[2 * i] * rate[2 * i] + normal[2 * i + 1] * rate[2 * i + 1]; };
-  const double last_m = stretch(m, n - 1, 0);
-  const double last_o = stretch(o, n - 1, 0);
+  const double last_m = stretch(m, n - 1, shape.next(n - 1));
+  const double last_o = stretch(o, n - 1, shape.next(n - 1));
   double mm = tension_ * last_m * last_m;
   double mo = tension_ * last_m * last_o;
   double oo = tension_ * last_o * last_o;
@@ -63,10 +63,11 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
     mo += dashpot * depth_m * depth_o + tooth_ * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
     oo += dashpot * depth_o * depth_o + tooth_ * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
   }
-  friction.viscous(0, 0) += mm;
-  friction.viscous(0, 1) += mo;
-  friction.viscous(1, 0) += mo;
-  friction.viscous(1, 1) += oo;
+  const double copies = shape.copies();
+  friction.viscous(0, 0) += copies * mm;
+  friction.viscous(0, 1) += copies * mo;
+  friction.viscous(1, 0) += copies * mo;
+  friction.viscous(1, 1) += copies * oo;
 }
 
 HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, const Contact& contact,

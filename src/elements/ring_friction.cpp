@@ -20,14 +20,19 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& fou
     }
     const Eigen::Vector2d slip(mesh.slidingSpeed(rates.shape, contact, rates.by_motor, 0.0),
                                mesh.slidingSpeed(rates.shape, contact, rates.by_output, 1.0));
-    friction.terms.push_back({ tooth_factor_[contact.tooth] * coefficient(slip.dot(speeds)) * std::abs(force), slip });
+    double factor = tooth_factor_[contact.tooth];
+    if (rates.shape.copies() > 1)
+    {
+      factor += tooth_factor_[contact.tooth + rates.shape.solved];  // it slides alike
+    }
+    friction.terms.push_back({ factor * coefficient(slip.dot(speeds)) * std::abs(force), slip });
   }
 }
 
 HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                                                    const Eigen::VectorXd& rates) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* point = shape.points.data();
   const double* force = found.force.data();
   const double* rate = rates.data();
@@ -38,13 +43,13 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
     const double across = y * (rate[2 * j] - rate[2 * h]) - x * (rate[2 * j + 1] - rate[2 * h + 1]);
     return force[i] * std::abs(across) / (x * x + y * y);  // by the rate at which the chord tilts
   };
-  double sum = lost(n - 1, 0, 1) + lost(n - 2, n - 1, 0);
+  double sum = lost(shape.previous(0), 0, 1) + lost(n - 2, n - 1, shape.next(n - 1));
 #pragma omp simd reduction(+ : sum)
   for (int i = 1; i < n - 1; ++i)
   {
     sum += lost(i - 1, i, i + 1);
   }
-  return coefficient_ * slip_lever_ * sum;
+  return coefficient_ * slip_lever_ * shape.copies() * sum;
 }
 
 /// (pi / 2) sum_i |M_i dkappa_i/dtheta| [N.m].

@@ -5,9 +5,9 @@
 
 namespace hjt
 {
-HJT_VECTOR_CLONES void RingTangent::addSegments() noexcept
+HJT_VECTOR_CLONES void RingTangent::addSegments(int solved) noexcept
 {
-  const int n = teeth();
+  const int n = solved;
   const double* __restrict__ s_xx = segment.xx.data();
   const double* __restrict__ s_xy = segment.xy.data();
   const double* __restrict__ s_yy = segment.yy.data();
@@ -34,5 +34,36 @@ HJT_VECTOR_CLONES void RingTangent::addSegments() noexcept
   {
     add(i - 1, i);
   }
+}
+
+void RingTangent::closeHalf() noexcept
+{
+  const int half = teeth() / 2;
+  const int last = half - 1;
+  // What the end teeth added at their neighbours beyond the half: tooth `half` is the first one again, the last tooth
+  // of the ring that of the half.
+  const int beyond = teeth() - 1;
+  for (Eigen::VectorXd* entry : { &diagonal.xx, &diagonal.xy, &diagonal.yy })
+  {
+    (*entry)[0] += (*entry)[half];
+    (*entry)[last] += (*entry)[beyond];
+  }
+  for (Eigen::VectorXd* entry : { &next.xx, &next.xy, &next.yx, &next.yy })
+  {
+    (*entry)[last] = -((*entry)[last] + (*entry)[beyond]);
+  }
+  for (Eigen::VectorXd* entry : { &second.xx, &second.xy, &second.yx, &second.yy })
+  {
+    (*entry)[last] = -((*entry)[last] + (*entry)[beyond]);
+    (*entry)[last - 1] = -(*entry)[last - 1];
+  }
+  for (Eigen::VectorXd* mixed : { &wave_generator, &output })
+  {
+    mixed->head<2>() -= mixed->segment<2>(2 * half);
+    mixed->segment<2>(2 * last) -= mixed->tail<2>();
+  }
+  cup_stiffness *= 2.0;
+  wave_generator_stiffness *= 2.0;
+  output_stiffness *= 2.0;
 }
 }  // namespace hjt

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include <Eigen/Core>
 
 namespace hjt
@@ -11,14 +13,6 @@ using Block2 = Eigen::Matrix2d;
 struct ToothBlocks
 {
   explicit ToothBlocks(int teeth) : xx(teeth), xy(teeth), yx(teeth), yy(teeth) {}
-
-  void setZero() noexcept
-  {
-    xx.setZero();
-    xy.setZero();
-    yx.setZero();
-    yy.setZero();
-  }
 
   void add(int i, const Block2& block) noexcept
   {
@@ -45,13 +39,6 @@ struct ToothBlocks
 struct SymmetricBlocks
 {
   explicit SymmetricBlocks(int teeth) : xx(teeth), xy(teeth), yy(teeth) {}
-
-  void setZero() noexcept
-  {
-    xx.setZero();
-    xy.setZero();
-    yy.setZero();
-  }
 
   /// Of a symmetric block.
   void add(int i, const Block2& block) noexcept
@@ -92,15 +79,26 @@ struct RingTangent
 
   int teeth() const noexcept { return static_cast<int>(diagonal.xx.size()); }
 
-  void setZero() noexcept
+  void setZero() noexcept { setZero(teeth()); }
+
+  /// What the solved teeth and their neighbours have.
+  void setZero(int solved_teeth) noexcept
   {
-    diagonal.setZero();
-    next.setZero();
-    second.setZero();
-    cup_direction.setZero();
+    solved = solved_teeth;
+    const int last = teeth() - 1;
+    const int count = std::min(solved + 1, teeth());
+    for (Eigen::VectorXd* entry : { &diagonal.xx, &diagonal.xy, &diagonal.yy, &next.xx, &next.xy, &next.yx, &next.yy,
+                                    &second.xx, &second.xy, &second.yx, &second.yy })
+    {
+      entry->head(count).setZero();
+      (*entry)[last] = 0.0;
+    }
+    for (Eigen::VectorXd* vector : { &cup_direction, &wave_generator, &output })
+    {
+      vector->head(2 * count).setZero();
+      vector->tail<2>().setZero();
+    }
     cup_stiffness = 0.0;
-    wave_generator.setZero();
-    output.setZero();
     wave_generator_stiffness = 0.0;
     output_stiffness = 0.0;
   }
@@ -113,8 +111,12 @@ struct RingTangent
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  /// Adds the blocks of `segment`: springs between teeth i and i+1.
-  void addSegments() noexcept;
+  /// Adds the blocks of `segment`: springs between teeth i and i+1, i all solved teeth.
+  void addSegments(int solved) noexcept;
+
+  /// Of the sum over the first half of the ring, the tangent that this half has as a ring of its own: its last teeth
+  /// are coupled to the first, which stand half a turn on at the points reversed.
+  void closeHalf() noexcept;
 
   SymmetricBlocks diagonal;           ///< at (i, i)
   ToothBlocks next;                   ///< at (i, i+1), cyclic
@@ -124,6 +126,7 @@ struct RingTangent
   Eigen::VectorXd wave_generator;     ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
   Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
+  int solved{};                       ///< teeth of the ring that it is of: all, or the first half
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
   SymmetricBlocks segment;            ///< what an element does between teeth i and i+1, before `addSegments`
 };

@@ -34,7 +34,11 @@ inline ToothPose poseOf(const double* point, double mid_height, int h, int i, in
 }  // namespace
 
 ToothMesh::Scratch::Scratch(int teeth)
-  : flank_force(Eigen::VectorXd::Zero(teeth)), meshed(static_cast<std::size_t>(teeth)), flanks(teeth), pressed(teeth)
+  : flank_force(Eigen::VectorXd::Zero(teeth))
+  , meshed(static_cast<std::size_t>(teeth))
+  , flanks(teeth)
+  , pressed(teeth)
+  , along(teeth)
 {
 }
 
@@ -135,45 +139,50 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 
 /// Depth of every tooth in the nearer flank; most that reach the circular spline do not touch.
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
-                                              Eigen::VectorXd& pressed) const noexcept
+                                              Scratch& scratch) const noexcept
 {
-  const int n = shape.teeth();
-  double* __restrict__ depth = pressed.data();
-  if (!profile_.straight())
-  {
-    for (int i = 0; i < n; ++i)
-    {
-      depth[i] = pressedBy(engage(shape, cos_output, sin_output, i), i);
-    }
-    return;
-  }
+  const int n = shape.solved;
+  double* __restrict__ depth = scratch.pressed.data();
+  double* __restrict__ along = scratch.along.data();
   const double* __restrict__ point = shape.points.data();
   const int* __restrict__ space = shape.space.data();
   const Space* __restrict__ spaces = space_.data();
   const double* __restrict__ ahead = tooth_across_.data();
   const double* __restrict__ out = tooth_along_.data();
   const double* __restrict__ clearance = clearance_.data();
-  const double* __restrict__ lost = tip_loss_.data();
   const double mid_height = mid_height_;
-  const double tip_offset = tip_offset_;
-  const ToothProfile& profile = profile_;
   const auto find = [&](int h, int i, int j)
   {
     const Space& own = spaces[space[i]];
     const double rx = cos_output * own.axis_x - sin_output * own.axis_y;
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
-    const double zeta = stand.zeta + out[i] - own.along;
-    const double into = std::abs(stand.xi + ahead[i] - own.across) - profile.straightAt(zeta) - clearance[i];
-    depth[i] = zeta + tip_offset > lost[i] ? into : OUTSIDE;
+    along[i] = stand.zeta + out[i] - own.along;
+    depth[i] = std::abs(stand.xi + ahead[i] - own.across) - clearance[i];
   };
-  find(n - 1, 0, 1);
+  find(shape.previous(0), 0, 1);
 #pragma omp simd
   for (int i = 1; i < n - 1; ++i)
   {
     find(i - 1, i, i + 1);
   }
-  find(n - 2, n - 1, 0);
+  find(n - 2, n - 1, shape.next(n - 1));
+  const double* __restrict__ lost = tip_loss_.data();
+  const double tip_offset = tip_offset_;
+  const ToothProfile& profile = profile_;
+  if (profile.straight())
+  {
+#pragma omp simd
+    for (int i = 0; i < n; ++i)
+    {
+      depth[i] = along[i] + tip_offset > lost[i] ? depth[i] - profile.straightAt(along[i]) : OUTSIDE;
+    }
+    return;
+  }
+  for (int i = 0; i < n; ++i)
+  {
+    depth[i] = along[i] + tip_offset > lost[i] ? depth[i] - profile.value(along[i]) : OUTSIDE;
+  }
 }
 
 /// Depth in the nearer flank, across.
@@ -181,8 +190,22 @@ double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
 {
   const double zeta = tooth.zeta - tooth.space_out;
   return zeta + tip_offset_ > tip_loss_[i] ?
-             std::abs(tooth.xi + tooth.tooth_ahead) - profile_.at(zeta).value - clearance_[i] :
+             std::abs(tooth.xi + tooth.tooth_ahead) - profile_.value(zeta) - clearance_[i] :
              OUTSIDE;
+}
+
+bool ToothMesh::repeats() const noexcept
+{
+  const std::size_t half = space_.size() / 2;
+  for (std::size_t k = 0; k < half; ++k)
+  {
+    if (space_[k].across != space_[k + half].across || space_[k].along != space_[k + half].along)
+    {
+      return false;
+    }
+  }
+  return space_.size() == 2 * half && halvesAgree(tooth_across_) && halvesAgree(tooth_along_) &&
+         halvesAgree(stiffness_) && halvesAgree(clearance_) && halvesAgree(tip_loss_);
 }
 
 void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch,
@@ -190,8 +213,8 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  findPressed(shape, cos_output, sin_output, scratch.pressed);
-  for (int i = 0; i < shape.teeth(); ++i)
+  findPressed(shape, cos_output, sin_output, scratch);
+  for (int i = 0; i < shape.solved; ++i)
   {
     if (!(scratch.pressed[i] > 0.0))
     {
@@ -288,10 +311,10 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
 {
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const int spaces = spaces_;
   const double first = firstSpace(position.output_angle);
-  const double spaces_a_tooth = static_cast<double>(spaces) / n;
+  const double spaces_a_tooth = static_cast<double>(spaces) / shape.teeth();
   const double mid_height = mid_height_;
   const double reach = reach_ * reach_;
   const double half_space = half_space_;
@@ -311,7 +334,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     space[i] = reaches ? space[i] : rest;
     return reaches && !(std::abs(stand.xi) <= half_space * stand.zeta) ? 1.0 : 0.0;
   };
-  double sum = outside(n - 1, 0, 1) + outside(n - 2, n - 1, 0);
+  double sum = outside(shape.previous(0), 0, 1) + outside(n - 2, n - 1, shape.next(n - 1));
 #pragma omp simd reduction(+ : sum)
   for (int i = 1; i < n - 1; ++i)
   {
@@ -322,14 +345,22 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
 
 int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) const noexcept
 {
-  if (pairOutOfReach(position, shape) == 0.0)
+  int jumps = 0;
+  if (pairOutOfReach(position, shape) != 0.0)
   {
-    return 0;
+    jumps = pairInReach(position, shape);
   }
+  shape.repeatSpaces(spaces_);
+  return jumps * shape.copies();
+}
+
+/// Pairs every tooth that is out of contact and not within its space. @returns as `pairNearest`, of the solved teeth.
+int ToothMesh::pairInReach(const DrivePosition& position, RingShape& shape) const noexcept
+{
   int jumps = 0;
   const double cos_output = std::cos(position.output_angle);
   const double sin_output = std::sin(position.output_angle);
-  for (int i = 0; i < shape.teeth(); ++i)
+  for (int i = 0; i < shape.solved; ++i)
   {
     const ToothEngagement tooth = engage(shape, cos_output, sin_output, i);
     if (shape.points.segment<2>(2 * i).squaredNorm() < reach_ * reach_ ||
@@ -351,7 +382,7 @@ ToothPlace ToothMesh::place(const RingShape& shape, const DrivePosition& positio
   const double xi = tooth.xi + tooth.tooth_ahead;
   const double zeta = tooth.zeta - tooth.space_out;
   return { xi, zeta + tip_offset_ - tip_loss_[i], std::asin(tooth.across.dot(tooth.chord.normal)),
-           profile_.at(zeta).value + clearance_[i] - std::abs(xi) };
+           profile_.value(zeta) + clearance_[i] - std::abs(xi) };
 }
 
 double ToothMesh::slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,

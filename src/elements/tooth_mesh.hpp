@@ -55,15 +55,23 @@ public:
       std::fill(meshed.begin(), meshed.end(), 0);
       flanks.clear();
     }
+    void repeat() noexcept
+    {
+      repeatHalf(flank_force);
+      repeatHalf(meshed);
+      repeatHalf(pressed);
+    }
 
     Eigen::VectorXd flank_force;  ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
     std::vector<char> meshed;     ///< N, tooth touches a flank [-]
-    FlankContacts flanks;         ///< the teeth that touch
+    FlankContacts flanks;         ///< the solved teeth that touch
     Eigen::VectorXd pressed;      ///< N, depth of each tooth in the nearer flank, across; touching if > 0 [m]
+    Eigen::VectorXd along;        ///< N, of the solved teeth: zeta [m]
   };
   /// `scratch`: set to zero before.
   void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
+  bool repeats() const noexcept;
 
   /// Pairs every tooth with the space nearest to its angle at rest.
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
@@ -99,9 +107,9 @@ private:
   ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
   double pressedBy(const ToothEngagement& tooth, int i) const noexcept;
   FlankLaw law(const ToothEngagement& tooth, int i) const noexcept;
-  void findPressed(const RingShape& shape, double cos_output, double sin_output,
-                   Eigen::VectorXd& pressed) const noexcept;
+  void findPressed(const RingShape& shape, double cos_output, double sin_output, Scratch& scratch) const noexcept;
   double pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept;
+  int pairInReach(const DrivePosition& position, RingShape& shape) const noexcept;
   double firstSpace(double output_angle) const noexcept;
 
   int spaces_;

@@ -44,6 +44,15 @@ double supportStiffness(const Parameters& parameters) noexcept
 }
 }  // namespace
 
+void WaveGeneratorContact::Scratch::repeat() noexcept
+{
+  for (Eigen::VectorXd* values : { &force, &depth, &slope, &curvature })
+  {
+    repeatHalf(*values);
+  }
+  repeatHalfTurned(normal);
+}
+
 WaveGeneratorContact::Scratch::Scratch(int teeth)
   : SingleBalls::Scratch(teeth)
   , force(Eigen::VectorXd::Zero(teeth))
@@ -98,7 +107,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   const double b = mean_radius_ - amplitude;
   const double centre_x = centre_x_;
   const double centre_y = centre_y_;
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ point = shape.points.data();
   double* __restrict__ normal = scratch.normal.data();
   double* __restrict__ depth = scratch.depth.data();
@@ -145,50 +154,32 @@ void WaveGeneratorContact::addSag(const DrivePosition& position, Scratch& scratc
   scratch.gap += gap_;
 }
 
-/// Each tooth on its spring. @returns the energy [J].
-HJT_VECTOR_CLONES double WaveGeneratorContact::pressSprings(Scratch& scratch) const noexcept
+/// Each solved tooth on its spring or on its share of the balls. @returns the energy [J].
+HJT_VECTOR_CLONES double WaveGeneratorContact::press(int solved, Scratch& scratch) const noexcept
 {
-  const auto n = static_cast<int>(scratch.force.size());
-  const double* __restrict__ stiffness = stiffness_.data();
-  const double* __restrict__ gap = gapOf(scratch);
-  double* __restrict__ depth = scratch.depth.data();
-  double* __restrict__ force = scratch.force.data();
-  double* __restrict__ slope = scratch.slope.data();
   const double smoothing = smoothing_;
-  double energy = 0.0;
-#pragma omp simd reduction(+ : energy)
-  for (int i = 0; i < n; ++i)
+  const auto press_by = [&](const auto& law)
   {
-    const double pressed = depth[i] - gap[i];
-    depth[i] = pressed;
-    const ContactRamp ramp(pressed, smoothing);
-    force[i] = stiffness[i] * ramp.force;
-    slope[i] = stiffness[i] * ramp.tangent;
-    energy += stiffness[i] * ramp.energy;
-  }
-  return energy;
-}
-
-/// Each tooth on its share of the balls. @returns the energy [J].
-HJT_VECTOR_CLONES double WaveGeneratorContact::pressBalls(Scratch& scratch) const noexcept
-{
-  const auto n = static_cast<int>(scratch.force.size());
-  const double* __restrict__ stiffness = stiffness_.data();
-  const double* __restrict__ gap = gapOf(scratch);
-  double* __restrict__ depth = scratch.depth.data();
-  double* __restrict__ force = scratch.force.data();
-  double* __restrict__ slope = scratch.slope.data();
-  double energy = 0.0;
+    const double* __restrict__ stiffness = stiffness_.data();
+    const double* __restrict__ gap = gapOf(scratch);
+    double* __restrict__ depth = scratch.depth.data();
+    double* __restrict__ force = scratch.force.data();
+    double* __restrict__ slope = scratch.slope.data();
+    double energy = 0.0;
 #pragma omp simd reduction(+ : energy)
-  for (int i = 0; i < n; ++i)
-  {
-    depth[i] -= gap[i];
-    const HertzContact contact(depth[i]);
-    force[i] = stiffness[i] * contact.force;
-    slope[i] = stiffness[i] * contact.tangent;
-    energy += stiffness[i] * contact.energy;
-  }
-  return energy;
+    for (int i = 0; i < solved; ++i)
+    {
+      const double pressed = depth[i] - gap[i];
+      const auto contact = law(pressed);
+      depth[i] = pressed;
+      force[i] = stiffness[i] * contact.force;
+      slope[i] = stiffness[i] * contact.tangent;
+      energy += stiffness[i] * contact.energy;
+    }
+    return energy;
+  };
+  return support_ == SupportKind::SPRINGS ? press_by([=](double depth) { return ContactRamp(depth, smoothing); }) :
+                                            press_by([](double depth) { return HertzContact(depth); });
 }
 
 HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, const DrivePosition& position,
@@ -200,22 +191,18 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
     addSag(position, scratch);
   }
   double torque = 0.0;
-  switch (support_)
+  if (isOnSingleBalls())
   {
-    case SupportKind::SPRINGS:
-      sum.energy += pressSprings(scratch);
-      break;
-    case SupportKind::BALLS:
-      sum.energy += pressBalls(scratch);
-      break;
-    case SupportKind::SINGLE_BALLS:
-      scratch.depth -= gap_;
-      scratch.slope.setZero();
-      sum.energy +=
-          single_balls_.press(bearing_, position.wave_generator_angle, scratch.depth, scratch, scratch.force, torque);
-      break;
+    scratch.depth -= gap_;
+    scratch.slope.setZero();
+    sum.energy +=
+        single_balls_.press(bearing_, position.wave_generator_angle, scratch.depth, scratch, scratch.force, torque);
   }
-  const int n = shape.teeth();
+  else
+  {
+    sum.energy += press(shape.solved, scratch);
+  }
+  const int n = shape.solved;
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ normal = scratch.normal.data();
   const double* __restrict__ contact_force = scratch.force.data();
@@ -241,7 +228,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
 HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const Scratch& scratch,
                                                         RingTangent& tangent) const noexcept
 {
-  const int n = shape.teeth();
+  const int n = shape.solved;
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ slope = scratch.slope.data();
   const double* __restrict__ gap = gapOf(scratch);

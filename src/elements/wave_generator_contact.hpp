@@ -36,6 +36,7 @@ public:
   {
     explicit Scratch(int teeth);
     void setZero() noexcept {}  // `addForces` writes every entry
+    void repeat() noexcept;
 
     Eigen::VectorXd force;       ///< N, normal force of the wave generator on each tooth, >= 0 [N]
     Eigen::VectorXd depth;       ///< N, depth of each tooth point inside the wave generator, less the gap [m]
@@ -48,6 +49,11 @@ public:
   };
   void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
+  bool repeats() const noexcept
+  {
+    return centre_x_ == 0.0 && centre_y_ == 0.0 && bearing_.sound() && !isOnSingleBalls() && halvesAgree(stiffness_) &&
+           halvesAgree(gap_);
+  }
 
   /// Of the ellipse, in the housing's axes [m].
   Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
@@ -73,8 +79,7 @@ private:
   const double* gapOf(const Scratch& scratch) const noexcept { return hasSag() ? scratch.gap.data() : gap_.data(); }
   bool isOnSingleBalls() const noexcept { return support_ == SupportKind::SINGLE_BALLS; }
   bool hasSag() const noexcept { return !bearing_.sound() && !isOnSingleBalls(); }
-  double pressSprings(Scratch& scratch) const noexcept;
-  double pressBalls(Scratch& scratch) const noexcept;
+  double press(int solved, Scratch& scratch) const noexcept;
   void findFeet(const RingShape& shape, const DrivePosition& position, Scratch& scratch) const noexcept;
 
   ContactLaw law_;

@@ -7,7 +7,11 @@ namespace hjt
 {
 HJT_VECTOR_CLONES void RingShape::updateGeometry() noexcept
 {
-  const int last = teeth() - 1;
+  if (copies() > 1)
+  {
+    repeatHalfTurned(points);
+  }
+  const int last = solved - 1;
   const double* __restrict__ p = points.data();
   double* __restrict__ direction = directions.data();
   double* __restrict__ length = lengths.data();
@@ -26,6 +30,25 @@ HJT_VECTOR_CLONES void RingShape::updateGeometry() noexcept
   {
     update(i, i + 1);
   }
-  update(last, 0);
+  update(last, next(last));
+  if (copies() > 1)
+  {
+    repeatHalfTurned(directions);
+    repeatHalf(lengths);
+  }
+}
+
+HJT_VECTOR_CLONES void RingShape::repeatSpaces(int spaces) noexcept
+{
+  const int half = spaces / 2;
+  const int others = teeth() - solved;
+  const int* __restrict__ from = space.data();
+  int* __restrict__ to = space.data() + solved;
+#pragma omp simd
+  for (int i = 0; i < others; ++i)
+  {
+    const int opposite = from[i] + half;
+    to[i] = opposite < spaces ? opposite : opposite - spaces;
+  }
 }
 }  // namespace hjt

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,17 +31,56 @@ struct Chord
   double length;           ///< [m]
 };
 
+/// Copies the values of the first half of the teeth to the second.
+template <class Values>
+void repeatHalf(Values& values) noexcept
+{
+  const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::copy(values.data(), values.data() + half, values.data() + half);
+}
+
+/// Whether both halves have the same values.
+inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
+{
+  const Eigen::Index half = values.size() / 2;
+  return values.size() == 2 * half && values.head(half) == values.tail(half);
+}
+
+/// `repeatHalf` for vectors in the plane, x and y a tooth: half a turn reverses them.
+inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
+{
+  const Eigen::Index half = vectors.size() / 2;
+  vectors.tail(half) = -vectors.head(half);
+}
+
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
+///
+/// Where the drive is the same again after half a turn, so is the ring: `solved` teeth are then the first half of them.
+/// All elements loop over these alone; the other half stands at the same points reversed.
 struct RingShape
 {
-  explicit RingShape(int teeth) : points(2 * teeth), directions(2 * teeth), lengths(teeth), space(teeth, 0) {}
+  explicit RingShape(int teeth)
+    : points(2 * teeth), directions(2 * teeth), lengths(teeth), space(teeth, 0), solved(teeth)
+  {
+  }
 
   int teeth() const noexcept { return static_cast<int>(lengths.size()); }
+  int copies() const noexcept { return solved < teeth() ? 2 : 1; }  ///< of the solved teeth in the ring
+  /// The same ring with all of its teeth solved.
+  RingShape whole() const
+  {
+    RingShape shape = *this;
+    shape.solved = teeth();
+    return shape;
+  }
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Brings directions and lengths up to date with the points.
+  /// Brings directions and lengths up to date with the points of the solved teeth, and the other half with these.
   void updateGeometry() noexcept;
+
+  /// The spaces of the other half after those of the solved teeth; `spaces`: of the circular spline.
+  void repeatSpaces(int spaces) noexcept;
 
   Chord chord(int i) const noexcept
   {
@@ -56,5 +97,6 @@ struct RingShape
   Eigen::VectorXd directions;  ///< 2 N, unit vectors from tooth i to i+1 [-]
   Eigen::VectorXd lengths;     ///< N, distance from tooth i to i+1 [m]
   std::vector<int> space;      ///< N, circular-spline space each tooth is paired with [-]
+  int solved;                  ///< teeth, N or N/2 [-]
 };
 }  // namespace hjt

@@ -71,18 +71,14 @@ ToothProfile::ToothProfile(const MeshParameters& mesh, const GearParameters& gea
     const double rise = (values[i + 1] - values[i]) / interval_ - interval_ * (2.0 * bend[i] + bend[i + 1]) / 6.0;
     cubics_.push_back({ values[i] - zero, rise, 0.5 * bend[i], (bend[i + 1] - bend[i]) / (6.0 * interval_) });
   }
+  end_ = interval_ * static_cast<double>(cubics_.size());
+  intervals_per_metre_ = 1.0 / interval_;
 }
 
 HalfClearance ToothProfile::tabled(double zeta) const noexcept
 {
-  const double end = interval_ * static_cast<double>(cubics_.size());
-  const double along = zeta - start_;
-  const double inside = along > 0.0 ? std::min(along, end) : 0.0;  // a number that is none has no interval either
-  const std::size_t i = std::min(static_cast<std::size_t>(inside / interval_), cubics_.size() - 1);
-  const double u = inside - interval_ * static_cast<double>(i);
-  const std::array<double, 4>& c = cubics_[i];
-  const double rise = c[1] + u * (2.0 * c[2] + 3.0 * u * c[3]);
-  const double value = c[0] + u * (c[1] + u * (c[2] + u * c[3])) + (along - inside) * rise;
-  return { value, -rise, -(2.0 * c[2] + 6.0 * u * c[3]), 1.0 / std::sqrt(1.0 + rise * rise) };
+  const Place at = place(zeta);
+  const double rise = at.rise();
+  return { at.value(), -rise, -(2.0 * at.cubic[2] + 6.0 * at.u * at.cubic[3]), 1.0 / std::sqrt(1.0 + rise * rise) };
 }
 }  // namespace hjt

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
@@ -38,19 +39,44 @@ public:
     return straight() ? HalfClearance{ straightAt(zeta), slope_, 0.0, cosine_ } : tabled(zeta);
   }
 
+  /// The half clearance alone.
+  double value(double zeta) const noexcept { return straight() ? straightAt(zeta) : place(zeta).value(); }
+
   /// Closed form: the half clearance is `straightAt`.
   bool straight() const noexcept { return cubics_.empty(); }
   double straightAt(double zeta) const noexcept { return clearance_ + (full_engagement_ - zeta) * slope_; }
 
 private:
+  /// Where zeta lies on the table.
+  struct Place
+  {
+    const std::array<double, 4>& cubic;
+    double u;       // from the start of its interval [m]
+    double beyond;  // the table's ends, > 0 or < 0 [m]
+
+    double rise() const noexcept { return cubic[1] + u * (2.0 * cubic[2] + 3.0 * u * cubic[3]); }
+    double value() const noexcept
+    {
+      return cubic[0] + u * (cubic[1] + u * (cubic[2] + u * cubic[3])) + beyond * rise();
+    }
+  };
+  Place place(double zeta) const noexcept
+  {
+    const double along = zeta - start_;
+    const double inside = along > 0.0 ? std::min(along, end_) : 0.0;  // a number that is none has no interval either
+    const std::size_t i = std::min(static_cast<std::size_t>(inside * intervals_per_metre_), cubics_.size() - 1);
+    return { cubics_[i], inside - interval_ * static_cast<double>(i), along - inside };
+  }
   HalfClearance tabled(double zeta) const noexcept;
 
   double clearance_;
   double full_engagement_;
   double slope_;
   double cosine_;
-  double start_{};                             // of the table [m]
-  double interval_{};                          // [m]
+  double start_{};     // of the table [m]
+  double end_{};       // distance from there [m]
+  double interval_{};  // [m]
+  double intervals_per_metre_{};
   std::vector<std::array<double, 4>> cubics_;  // of the half clearance, over the distance from each interval's start
 };
 }  // namespace hjt

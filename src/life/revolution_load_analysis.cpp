@@ -44,36 +44,36 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
   revolution_load.stress.fill({ NONE, -NONE, 0.0 });
   Range bending{ NONE, -NONE };
   Range tension{ NONE, -NONE };
-  walk_.under(
-      load_torque,
-      [&](double velocity_ratio)
-      {
-        const JointModel& model = walk_.model();
-        const RingEquilibrium& ring = walk_.ring();
-        running_ = ring.byWaveGenerator() + velocity_ratio * ring.byOutput();
-        for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
-        {
-          revolution_load.flank_sliding +=
-              step * std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
-                              model.ring.of<ToothMesh>().slidingSpeed(ring.shape(), contact, running_, velocity_ratio));
-        }
-        flexspline_stress_.at(ring, 0, tooth_stress_);
-        for (std::size_t place = 0; place < STRESS_PLACES; ++place)
-        {
-          StressCycle& cycle = revolution_load.stress[place];
-          const StressCycle now = tooth_stress_.cycle(place);
-          cycle = { std::min(cycle.lowest, now.lowest), std::max(cycle.highest, now.highest),
-                    std::max(cycle.shear, now.shear) };
-        }
-        for (int i = 0; i < teeth; ++i)
-        {
-          const FlexsplineStress::Parts parts = flexspline_stress_.inToothSpace(ring, i);
-          widen(bending, parts.bending);
-          widen(tension, parts.tension);
-        }
-        revolution_load.interface_sliding +=
-            step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
-      });
+  walk_.under(load_torque,
+              [&](double velocity_ratio)
+              {
+                const JointModel& model = walk_.model();
+                const RingEquilibrium& ring = walk_.ring();
+                running_ = ring.byWaveGenerator() + velocity_ratio * ring.byOutput();
+                for (const FlankContact& contact : ring.forces().of<ToothMesh>().flanks)
+                {
+                  revolution_load.flank_sliding += step * ring.shape().copies() *
+                                                   std::abs(ring.forces().of<ToothMesh>().flank_force[contact.tooth] *
+                                                            model.ring.of<ToothMesh>().slidingSpeed(
+                                                                ring.shape(), contact, running_, velocity_ratio));
+                }
+                flexspline_stress_.at(ring, 0, tooth_stress_);
+                for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+                {
+                  StressCycle& cycle = revolution_load.stress[place];
+                  const StressCycle now = tooth_stress_.cycle(place);
+                  cycle = { std::min(cycle.lowest, now.lowest), std::max(cycle.highest, now.highest),
+                            std::max(cycle.shear, now.shear) };
+                }
+                for (int i = 0; i < teeth; ++i)
+                {
+                  const FlexsplineStress::Parts parts = flexspline_stress_.inToothSpace(ring, i);
+                  widen(bending, parts.bending);
+                  widen(tension, parts.tension);
+                }
+                revolution_load.interface_sliding +=
+                    step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
+              });
   if (!walk_.status().ok())
   {
     throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +

@@ -19,10 +19,12 @@ namespace hjt
 /// All conservative elements of the ring, in the order in which they are summed. One is a class that has
 ///
 ///   constructor (const Parameters&, const ToothRing& rest)
-///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; }
+///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; void repeat() noexcept; }
 ///   void addForces(const RingShape&, const DrivePosition&, Scratch&, ForceSum&) const noexcept
 ///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the forces' shape
+///   bool repeats() const noexcept: it is the same again after half a turn, and adds what the solved teeth alone do
 ///
+/// An element that does not repeat has the whole ring solved. `repeat` copies what it found to the other half.
 /// where the scratch carries what the forces found over to the tangent, to friction and to outputs. docs/extending.md
 /// adds one.
 using RingElements = std::tuple<RimTension, RimBending, WaveGeneratorContact, CupTorsion, ToothMesh>;
@@ -32,10 +34,17 @@ struct RingForces : ForceSum
 {
   explicit RingForces(int count) : ForceSum(count), scratch_(Scratches<RingElements>::make(count)) {}
 
-  void setZero() noexcept
+  void setZero(int solved) noexcept
   {
-    ForceSum::setZero();
+    ForceSum::setZero(solved);
     std::apply([](auto&... scratch) { (scratch.setZero(), ...); }, scratch_);
+  }
+
+  /// The whole ring's from those of its first half.
+  void repeat() noexcept
+  {
+    ForceSum::repeat();
+    std::apply([](auto&... scratch) { (scratch.repeat(), ...); }, scratch_);
   }
 
   /// What an element found.

@@ -39,7 +39,7 @@ RingModel::RingModel(const Parameters& parameters)
 void RingModel::forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
                        bool circular_spline_in) const noexcept
 {
-  forces.setZero();
+  forces.setZero(shape.solved);
   forces.stamp(shape);
   forEach(elements_, meshed_ && circular_spline_in,
           [&](const auto& element)
@@ -47,18 +47,34 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
             using Element = std::decay_t<decltype(element)>;
             element.addForces(shape, position, forces.of<Element>(), forces);
           });
+  if (shape.copies() > 1)
+  {
+    forces.repeat();
+  }
 }
 
 void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
   assert(forces.areOf(shape) && "forces computed last for the same shape");
-  tangent.setZero();
+  tangent.setZero(shape.solved);
   forEach(elements_, meshed_,
           [&](const auto& element)
           {
             using Element = std::decay_t<decltype(element)>;
             element.addTangent(shape, forces.of<Element>(), tangent);
           });
+  if (shape.copies() > 1)
+  {
+    tangent.closeHalf();
+  }
+}
+
+int RingModel::solvedTeeth() const noexcept
+{
+  constexpr int FEWEST = 16;  // that a half has enough of for CyclicSolver
+  const bool repeats = std::apply([](const auto&... element) { return (element.repeats() && ...); }, elements_) &&
+                       rest.teeth() >= FEWEST;
+  return repeats ? rest.teeth() / 2 : rest.teeth();
 }
 
 RingShape RingModel::restShape(const DrivePosition& position) const

@@ -48,8 +48,11 @@ public:
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 
-  /// Hessian of the stored energy; `forces` of the same shape.
+  /// Hessian of the stored energy, over the solved teeth; `forces` of the same shape.
   void tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
+
+  /// Teeth after which the drive repeats, turned by half a turn: N/2; or all N where it does not.
+  int solvedTeeth() const noexcept;
 
   /// The ring at rest, every tooth paired with its nearest space.
   RingShape restShape(const DrivePosition& position) const;

@@ -76,7 +76,7 @@ bool NewtonSolver::searchLine(double residual, RingLinearisation& system, RingSt
   double length = 1.0;
   for (int i = 0; i < MAX_HALVINGS; ++i, length *= 0.5)
   {
-    ring_vectors::addScaled(start_points_, length, step, state.shape.points);
+    ring_vectors::addScaled(start_points_, length, step, state.shape.points, state.shape.solved);
     state.shape.updateGeometry();
     system.updateForces(state);
     const double trial = system.residual();

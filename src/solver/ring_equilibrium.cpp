@@ -105,15 +105,23 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
 {
   now_.position = position;
   now_.shape.points = points;
-  now_.shape.updateGeometry();
   prediction_.forget();
-  model_version_ = model_.version();
+  followModel();
   model_.of<ToothMesh>().pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
   system_.updateForces(now_);
   now_.residual = system_.residual();
+}
+
+/// Notes the model's version, and how much of the ring there is to solve.
+void RingEquilibrium::followModel() noexcept
+{
+  model_version_ = model_.version();
+  now_.shape.solved = model_.solvedTeeth();
+  now_.shape.updateGeometry();
+  now_.shape.repeatSpaces(model_.gear.teeth_circular_spline);
 }
 
 /// Back to an equilibrium of before.
@@ -137,7 +145,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::updateModel() noexcept
 {
-  model_version_ = model_.version();
+  followModel();
   system_.forgetFactors();
   prediction_.forget();
   system_.updateForces(now_);

@@ -78,6 +78,7 @@ private:
   SolveStatus insertWedged(const DrivePosition& target) noexcept;
   void beginRound(const DrivePosition& target) noexcept;
   void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
+  void followModel() noexcept;
   void restore(const RingState& state) noexcept;
   SolveStatus approach(const DrivePosition& target) noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;

@@ -10,6 +10,7 @@ namespace hjt
 RingLinearisation::RingLinearisation(const RingModel& model)
   : model_(model)
   , solver_(model.rest.teeth())
+  , half_solver_(std::max(model.rest.teeth() / 2, 8))
   , tangent_(model.rest.teeth())
   , forces_(model.rest.teeth())
   , factored_meshed_(forces_.of<ToothMesh>().meshed)
@@ -48,19 +49,25 @@ bool RingLinearisation::refactor(const RingState& state) noexcept
 
 bool RingLinearisation::slopesChanged() const noexcept
 {
-  if (!factored_ || model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) != tangent_.cup_stiffness)
+  const double copies = tangent_.solved < tangent_.teeth() ? 2.0 : 1.0;
+  if (!factored_ ||
+      copies * model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) != tangent_.cup_stiffness)
   {
     return true;
   }
   return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
          (model_.of<WaveGeneratorContact>().hasKinks() &&
-          ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_) != 0);
+          ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_, tangent_.solved) != 0);
 }
 
 void RingLinearisation::solve(Eigen::VectorXd& step) noexcept
 {
   step = forces_.teeth;
-  solver_.solve<1>(step);
+  solver().solve<1>(step);
+  if (tangent_.solved < tangent_.teeth())
+  {
+    repeatHalfTurned(step);
+  }
 }
 
 const Eigen::VectorXd& RingLinearisation::newtonStep() noexcept
@@ -73,7 +80,7 @@ const Eigen::VectorXd& RingLinearisation::newtonStep() noexcept
   step_ = forces_.teeth;
   by_wave_generator_ = -tangent_.wave_generator;
   by_output_ = -tangent_.output;
-  solver_.solve(step_, by_wave_generator_, by_output_);
+  solver().solve(step_, by_wave_generator_, by_output_);
   rates_known_ = true;
   return step_;
 }
@@ -84,19 +91,27 @@ void RingLinearisation::moveSensitivities(RingState& state) noexcept
   {
     newtonStep();
   }
+  if (tangent_.solved < tangent_.teeth())
+  {
+    repeatHalfTurned(by_wave_generator_);
+    repeatHalfTurned(by_output_);
+    repeatHalfTurned(tangent_.wave_generator);
+    repeatHalfTurned(tangent_.output);
+  }
   state.by_wave_generator.swap(by_wave_generator_);
   state.by_output.swap(by_output_);
   rates_known_ = false;
-  const double cross = ring_vectors::dot(tangent_.wave_generator, state.by_output);
-  state.stiffness(0, 0) =
-      tangent_.wave_generator_stiffness + ring_vectors::dot(tangent_.wave_generator, state.by_wave_generator);
-  state.stiffness(1, 1) = tangent_.output_stiffness + ring_vectors::dot(tangent_.output, state.by_output);
+  const double cross = ring_vectors::dot(tangent_.wave_generator, state.by_output, model_.rest.teeth());
+  state.stiffness(0, 0) = tangent_.wave_generator_stiffness +
+                          ring_vectors::dot(tangent_.wave_generator, state.by_wave_generator, model_.rest.teeth());
+  state.stiffness(1, 1) =
+      tangent_.output_stiffness + ring_vectors::dot(tangent_.output, state.by_output, model_.rest.teeth());
   state.stiffness(0, 1) = state.stiffness(1, 0) = cross;
 }
 
 double RingLinearisation::residual() const noexcept
 {
-  return ring_vectors::largest(forces_.teeth);
+  return ring_vectors::largest(forces_.teeth, model_.rest.teeth());
 }
 
 double RingLinearisation::stiffest() const noexcept

@@ -20,7 +20,7 @@ public:
   void updateForces(const RingState& state) noexcept;
   void updateTangent(const RingState& state) noexcept;  ///< with the forces of the same state
   void shift(double stiffness) noexcept;                ///< adds to every tooth's own stiffness [N/m]
-  bool factor() noexcept { return solver_.factor(tangent_); }
+  bool factor() noexcept { return solver().factor(tangent_); }
 
   /// Tangent and factors of a state whose forces are the present ones. False: it has no inverse.
   bool refactor(const RingState& state) noexcept;
@@ -48,8 +48,11 @@ public:
   bool circular_spline_in{ true };
 
 private:
+  CyclicSolver& solver() noexcept { return tangent_.solved < tangent_.teeth() ? half_solver_ : solver_; }
+
   const RingModel& model_;
   CyclicSolver solver_;
+  CyclicSolver half_solver_;  // of a ring that repeats after half a turn
   RingTangent tangent_;
   RingForces forces_;
   // When the tangent was factored.

@@ -20,6 +20,8 @@ int wrapped(int number, int size) noexcept
 
 RingPrediction::RingPrediction(const RingModel& model)
   : model_(model)
+  , pitch_cos_(std::cos(model.rest.pitchAngle()))
+  , pitch_sin_(std::sin(model.rest.pitchAngle()))
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
   , guess_(model.rest.points())
   , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
@@ -31,12 +33,13 @@ RingPrediction::RingPrediction(const RingModel& model)
 void RingPrediction::predict(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double ALIKE = 0.8;  // smaller similarities are chance
+  const int teeth = state.shape.solved;
   double share = 0.0;
   if (guessed_)
   {
-    ring_vectors::addScaled(state.shape.points, -1.0, guess_, scratch_);
-    const double size = ring_vectors::dot(guess_error_, guess_error_);
-    share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_) / size) : 0.0;
+    ring_vectors::addScaled(state.shape.points, -1.0, guess_, scratch_, teeth);
+    const double size = ring_vectors::dot(guess_error_, guess_error_, teeth);
+    share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_, teeth) / size) : 0.0;
     guess_error_.swap(scratch_);
   }
   guess(target, state);
@@ -44,7 +47,7 @@ void RingPrediction::predict(const DrivePosition& target, RingState& state) noex
   guessed_ = true;
   if (share > ALIKE)
   {
-    ring_vectors::addScaled(guess_, share, guess_error_, state.shape.points);
+    ring_vectors::addScaled(guess_, share, guess_error_, state.shape.points, teeth);
   }
   state.shape.updateGeometry();
   state.position = target;
@@ -78,7 +81,8 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
     ring_vectors::addTurned({ state.shape.points, state.by_wave_generator, state.by_output },
                             { 1.0 - blend, start_slope * pitch, start_slope * pitch_output_angle_ + rest },
                             { blend, end_slope * pitch, end_slope * pitch_output_angle_ },
-                            wrapped(sense, state.shape.teeth()), std::cos(pitch), sense * std::sin(pitch), scratch_);
+                            wrapped(sense, state.shape.teeth()), pitch_cos_, sense * pitch_sin_, scratch_,
+                            state.shape.solved);
     state.shape.points.swap(scratch_);
     if (u > 0.5)
     {

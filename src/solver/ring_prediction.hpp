@@ -33,6 +33,8 @@ private:
   void turnSpaces(int pitches, RingShape& shape) noexcept;
 
   const RingModel& model_;
+  double pitch_cos_;
+  double pitch_sin_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool guessed_{ false };
   Eigen::VectorXd guess_;        // the last, not corrected

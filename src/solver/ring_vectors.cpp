@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/ring_vectors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,14 +11,14 @@ namespace hjt
 {
 namespace ring_vectors
 {
-HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values) noexcept
+HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values, int teeth) noexcept
 {
-  const Eigen::Index n = values.size();
+  const int n = 2 * teeth;
   const double* __restrict__ value = values.data();
   double most = 0.0;
   double sum = 0.0;  // a comparison does not see what is not a number
 #pragma omp simd reduction(max : most) reduction(+ : sum)
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i)
   {
     const double size = std::abs(value[i]);
     most = size > most ? size : most;
@@ -27,41 +28,41 @@ HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values) noexcept
 }
 
 HJT_VECTOR_CLONES void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step,
-                                 Eigen::VectorXd& result) noexcept
+                                 Eigen::VectorXd& result, int teeth) noexcept
 {
-  const Eigen::Index n = result.size();
+  const int n = 2 * teeth;
   const double* __restrict__ from = start.data();
   const double* __restrict__ along = step.data();
   double* __restrict__ to = result.data();
 #pragma omp simd
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i)
   {
     to[i] = from[i] + length * along[i];
   }
 }
 
-HJT_VECTOR_CLONES double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
+HJT_VECTOR_CLONES double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept
 {
-  const Eigen::Index n = a.size();
+  const int n = 2 * teeth;
   const double* first = a.data();
   const double* second = b.data();
   double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i)
   {
     sum += first[i] * second[i];
   }
   return sum;
 }
 
-HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept
+HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept
 {
-  const Eigen::Index n = a.size();
+  const int n = teeth;
   const double* __restrict__ first = a.data();
   const double* __restrict__ second = b.data();
   double changed = 0.0;  // as wide as the other numbers, for the vectors
 #pragma omp simd reduction(+ : changed)
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i)
   {
     changed += std::abs((first[i] > 0.0 ? 1.0 : 0.0) - (second[i] > 0.0 ? 1.0 : 0.0));
   }
@@ -89,7 +90,7 @@ HJT_VECTOR_CLONES void turn(const Eigen::VectorXd& values, int places, double c,
 
 HJT_VECTOR_CLONES void addTurned(const Combination& vectors, const Combination::Factors& here,
                                  const Combination::Factors& turned, int places, double c, double s,
-                                 Eigen::VectorXd& result) noexcept
+                                 Eigen::VectorXd& result, int teeth) noexcept
 {
   const Eigen::Index n = result.size() / 2;
   const auto part = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index shift)
@@ -114,8 +115,8 @@ HJT_VECTOR_CLONES void addTurned(const Combination& vectors, const Combination::
       to[k + 1] = ha * va[k + 1] + hb * vb[k + 1] + hc * vc[k + 1] + s * x + c * y;
     }
   };
-  part(0, n - places, places);
-  part(n - places, n, places - n);
+  part(0, std::max<Eigen::Index>(teeth - places, 0), places);
+  part(n - places, n - places + std::min(places, teeth), places - n);
 }
 }  // namespace ring_vectors
 }  // namespace hjt

@@ -5,23 +5,23 @@
 
 namespace hjt
 {
-/// Loops over the coordinates of all teeth that the solver goes through at every step, for the compiler to vectorise.
-/// Vectors of one call have one size and are not the same, unless stated.
+/// Loops over the coordinates of the first `teeth` teeth, which the solver goes through at every step, for the compiler
+/// to vectorise. Vectors of one call have one size and are not the same, unless stated.
 namespace ring_vectors
 {
 /// Largest absolute value; NaN if one is not finite.
-double largest(const Eigen::VectorXd& values) noexcept;
+double largest(const Eigen::VectorXd& values, int teeth) noexcept;
 
 /// result = start + length * step.
-void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step,
-               Eigen::VectorXd& result) noexcept;
+void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorXd& step, Eigen::VectorXd& result,
+               int teeth) noexcept;
 
-double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
+double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// How many signs differ: positive in one, not in the other.
-int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b) noexcept;
+/// How many signs of one value a tooth differ: positive in one, not in the other.
+int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// x and y of every tooth, turned by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
+/// x and y of all teeth, turned by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
 void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::VectorXd& turned) noexcept;
 
 /// A sum of three vectors with a factor each.
@@ -40,7 +40,8 @@ struct Combination
 };
 
 /// result = sum with the first factors + the sum with the others, turned to the tooth `places` further as by `turn`.
+/// The vectors are whole, of the result its first `teeth` teeth.
 void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
-               int places, double c, double s, Eigen::VectorXd& result) noexcept;
+               int places, double c, double s, Eigen::VectorXd& result, int teeth) noexcept;
 }  // namespace ring_vectors
 }  // namespace hjt

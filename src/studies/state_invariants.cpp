@@ -40,9 +40,12 @@ RingDifference renumberedDifference(const RingEquilibrium& here, const RingEquil
 double softestStiffness(const RingEquilibrium& ring)
 {
   constexpr int ITERATIONS = 100;
-  const int teeth = ring.shape().teeth();
+  const RingShape shape = ring.shape().whole();
+  const int teeth = shape.teeth();
+  RingForces forces(teeth);
+  ring.model().forces(shape, ring.position(), forces);
   RingTangent tangent(teeth);
-  ring.model().tangent(ring.shape(), ring.forces(), tangent);
+  ring.model().tangent(shape, forces, tangent);
   CyclicSolver solver(teeth);
   if (!solver.factor(tangent))
   {

@@ -49,7 +49,7 @@ using AddForces = std::function<void(const State&, RingForces&)>;
 RingForces forcesOf(const AddForces& add, const State& state)
 {
   RingForces forces(state.shape.teeth());
-  forces.setZero();
+  forces.setZero(state.shape.teeth());
   add(state, forces);
   return forces;
 }
@@ -106,7 +106,7 @@ TurnedMachine analyseTurnedMachine(const Parameters& parameters, double load, un
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   TurnedMachine result;
   result.status = insertUnderLoad(ring, 0.0, load);
-  const State state{ ring.shape(), ring.position() };
+  const State state{ ring.shape().whole(), ring.position() };
   const RimBending curvature = bendingOf(parameters, BendingLaw::CURVATURE, model.rest);
   const RimBending absolute = bendingOf(parameters, BendingLaw::ABSOLUTE, model.rest);
 

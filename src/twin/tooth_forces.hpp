@@ -18,9 +18,9 @@ inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces&
   const double angle = shift * model.rest.pitchAngle();
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
-  for (int i = 0; i < shape.teeth(); ++i)
+  auto place = static_cast<std::size_t>(shift % shape.teeth());
+  for (int i = 0; i < shape.teeth(); ++i, place = place + 1 < out.mesh_force.size() ? place + 1 : 0)
   {
-    const auto place = static_cast<std::size_t>((i + shift) % shape.teeth());
     const double x = shape.points[2 * i];
     const double y = shape.points[2 * i + 1];
     out.wave_generator_force[place] = forces.of<WaveGeneratorContact>().force[i];

@@ -23,7 +23,7 @@ struct ElementUnderTest
   RingForces forces(Shape shape, Position position) const
   {
     RingForces forces(shape.teeth());
-    forces.setZero();
+    forces.setZero(shape.teeth());
     add_forces(shape, position, forces);
     return forces;
   }

@@ -9,6 +9,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "model/joint_model.hpp"
 #include "ring_fixture.hpp"
 #include "solver/output_balance.hpp"
 #include "test_parameters.hpp"
@@ -374,6 +375,72 @@ TEST(RingOnSingleBalls, HasTheForcesOfAnIndependentSolution)
   }
 }
 
+struct HalfRing : testing::TestWithParam<const char*>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Gears, HalfRing, testing::Values("shipped", "golden"));
+
+TEST_P(HalfRing, IsTheWholeRing)
+{
+  constexpr unsigned SEED = 52;
+  constexpr double NEXT_TO_NOTHING = 1e-30;  // m, of one tooth's clearance: the halves differ, and no force does
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  const Parameters parameters = std::string(GetParam()) == "golden" ? goldenParameters() : shippedParameters();
+  const RingModel model(parameters);
+  RingModel different(parameters);
+  different.edit<ToothMesh>().clearance()[7] = NEXT_TO_NOTHING;
+  ASSERT_EQ(model.solvedTeeth(), 100);
+  ASSERT_EQ(different.solvedTeeth(), 200);
+  const double w = parameters.gear.wave_amplitude;
+  RingEquilibrium half(model, parameters.solver);
+  RingEquilibrium whole(different, parameters.solver);
+  ASSERT_TRUE(half.insert({ 0.0, 0.0, w }).ok());
+  ASSERT_TRUE(whole.insert({ 0.0, 0.0, w }).ok());
+  ASSERT_EQ(half.shape().solved, 100);
+  ASSERT_EQ(whole.shape().solved, 200);
+  const double rate_size = whole.byWaveGenerator().norm();
+  double angle = 0.0;
+  double twist = 0.0;
+  for (int k = 0; k < 200; ++k)
+  {
+    angle += 0.03 * part(random);
+    twist = 0.99 * twist + 2e-4 * part(random);
+    const DrivePosition position{ angle, angle / nominalRatio(parameters.gear) + twist, w };
+    ASSERT_TRUE(half.moveTo(position).ok());
+    ASSERT_TRUE(whole.moveTo(position).ok());
+    // Each is within the tolerance of its own forces; the rates are of the shape a Newton step before.
+    ASSERT_TRUE(half.refreshSensitivities() && whole.refreshSensitivities());
+    const auto near = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b, double tolerance)
+    { EXPECT_LT((a - b).lpNorm<Eigen::Infinity>(), tolerance) << "step " << k; };
+    near(half.shape().points, whole.shape().points, 1e-10);
+    near(half.forces().of<WaveGeneratorContact>().force, whole.forces().of<WaveGeneratorContact>().force, 1e-3);
+    near(half.forces().of<ToothMesh>().flank_force, whole.forces().of<ToothMesh>().flank_force, 1e-3);
+    near(half.forces().of<RimBending>().moment, whole.forces().of<RimBending>().moment, 1e-6);
+    EXPECT_EQ(half.forces().of<ToothMesh>().meshed, whole.forces().of<ToothMesh>().meshed) << k;
+    EXPECT_EQ(half.shape().space, whole.shape().space) << k;
+    EXPECT_NEAR(half.forces().output_torque, whole.forces().output_torque, 1e-3);
+    EXPECT_NEAR(half.forces().wave_generator_torque, whole.forces().wave_generator_torque, 1e-5);
+    EXPECT_NEAR(half.forces().energy, whole.forces().energy, 1e-6);
+    near(half.byWaveGenerator(), whole.byWaveGenerator(), 1e-5 * rate_size);
+    near(half.byOutput(), whole.byOutput(), 1e-5 * rate_size);
+    EXPECT_LT((half.stiffness() - whole.stiffness()).norm(), 1e-5 * whole.stiffness().norm());
+
+    JointFriction friction(200);
+    JointFriction whole_friction(200);
+    const JointModel joint(parameters);
+    const JointModel::Running running{ { 100.0, 1.0 }, 0.0, 1e-4 };
+    joint.friction(half.forces(), { half.shape(), half.byWaveGenerator(), half.byOutput() }, half.velocityRatio(),
+                   running, friction);
+    joint.friction(whole.forces(), { whole.shape(), whole.byWaveGenerator(), whole.byOutput() }, whole.velocityRatio(),
+                   running, whole_friction);
+    const double power = whole_friction.dryPower(running.speeds);
+    EXPECT_NEAR(friction.dryPower(running.speeds), power, 1e-5 * power);
+    EXPECT_LT((friction.viscous - whole_friction.viscous).norm(), 1e-5 * whole_friction.viscous.norm());
+  }
+}
+
 TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
 {
   // Steps as at full motor speed, 317 rad/s at 10 kHz. Newton may keep old factors, but not across a change of
@@ -388,7 +455,6 @@ TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
   RingEquilibrium ring(model, parameters.solver);
   ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
   CyclicSolver solver(model.rest.teeth());
-  RingTangent tangent(model.rest.teeth());
   double angle = 0.0;
   double twist = 0.0;
   double worst = 0.0;
@@ -397,7 +463,7 @@ TEST(RingSensitivities, BelongToTheShapeAlsoAfterLongSteps)
     angle += 0.0317 * part(random);
     twist = 0.999 * (twist + 1e-4 * part(random));
     ASSERT_TRUE(ring.moveTo({ angle, angle / nominalRatio(parameters.gear) + twist, w }).ok());
-    model.tangent(ring.shape(), ring.forces(), tangent);
+    const RingTangent tangent = wholeTangent(ring);
     ASSERT_TRUE(solver.factor(tangent));
     Eigen::VectorXd by_output = -tangent.output;
     solver.solve<1>(by_output);

@@ -10,6 +10,7 @@
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_ring.hpp"
 #include "model/ring_forces.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 namespace hjt
 {
@@ -57,6 +58,17 @@ inline Eigen::MatrixXd denseTangent(const RingTangent& tangent)
     couple(i, (i + 2) % teeth, tangent.second.at(i));
   }
   return dense;
+}
+
+/// The tangent over all teeth at a ring's equilibrium.
+inline RingTangent wholeTangent(const RingEquilibrium& ring)
+{
+  const RingShape shape = ring.shape().whole();
+  RingForces forces(shape.teeth());
+  ring.model().forces(shape, ring.position(), forces);
+  RingTangent tangent(shape.teeth());
+  ring.model().tangent(shape, forces, tangent);
+  return tangent;
 }
 
 inline bool allFinite(const RingForces& forces)
