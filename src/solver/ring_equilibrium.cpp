@@ -128,6 +128,7 @@ void RingEquilibrium::followModel() noexcept
 void RingEquilibrium::restore(const RingState& state) noexcept
 {
   now_ = state;
+  now_.shape.updateGeometry();
   prediction_.forget();
   system_.updateForces(now_);
 }
@@ -150,7 +151,7 @@ SolveStatus RingEquilibrium::updateModel() noexcept
   prediction_.forget();
   system_.updateForces(now_);
   const DrivePosition target = now_.position;
-  start_ = now_;
+  start_.keep(now_);
   SolveStatus status = approach(target);
   if (!status.ok())
   {
@@ -183,7 +184,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
     unmoved.residual = now_.residual;
     return unmoved;
   }
-  start_ = now_;
+  start_.keep(now_);
   SolveStatus status = approach(target);
   if (!status.ok())
   {
@@ -195,7 +196,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
 {
-  start_ = now_;
+  start_.keep(now_);
   prediction_.forget();
   now_.position = target;
   const SolveStatus status = descent_.descend(system_, now_);
@@ -250,8 +251,16 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   prediction_.predict(target, now_);
   const int jumps = model_.meshed() ? model_.of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
   system_.updateForces(now_);
+  if (prediction_.fromKept())
+  {
+    system_.forgetFactors();  // the rates are to be those of the present teeth
+  }
   SolveStatus status = newton_.solve(system_, now_, descending_ ? &descent_ : nullptr);
   status.jumps = jumps;
+  if (status.ok())
+  {
+    prediction_.keep(now_);
+  }
   return status;
 }
 }  // namespace hjt

@@ -87,7 +87,7 @@ private:
   const RingModel& model_;
   std::uint64_t model_version_;  // that the present state is of
   RingState now_;
-  RingState start_;    // of the present move
+  RingState start_;    // of the present move; its directions and lengths are not known
   RingState halfway_;  // the farthest point of the present move
   RingState kept_;     // before the insertion was repeated
   RingLinearisation system_;

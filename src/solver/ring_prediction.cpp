@@ -11,6 +11,9 @@ namespace hjt
 {
 namespace
 {
+constexpr std::size_t KEPT = 32;     // states over a pitch
+constexpr double MAX_PITCHES = 1e9;  // counted as an int
+
 /// `number` less a multiple of `size`: 0 ... size - 1.
 int wrapped(int number, int size) noexcept
 {
@@ -18,11 +21,20 @@ int wrapped(int number, int size) noexcept
 }
 }  // namespace
 
+RingPrediction::Kept::Kept(const RingModel& model)
+  : points(model.rest.teeth())
+  , by_wave_generator(points)
+  , by_output(points)
+  , space(static_cast<std::size_t>(model.rest.teeth()))
+{
+}
+
 RingPrediction::RingPrediction(const RingModel& model)
   : model_(model)
   , pitch_cos_(std::cos(model.rest.pitchAngle()))
   , pitch_sin_(std::sin(model.rest.pitchAngle()))
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
+  , kept_(KEPT, Kept(model))
   , guess_(model.rest.points())
   , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , scratch_(guess_)
@@ -42,7 +54,11 @@ void RingPrediction::predict(const DrivePosition& target, RingState& state) noex
     share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_, teeth) / size) : 0.0;
     guess_error_.swap(scratch_);
   }
-  guess(target, state);
+  from_kept_ = guessFromKept(target, state);
+  if (!from_kept_)
+  {
+    guess(target, state);
+  }
   guess_ = state.shape.points;
   guessed_ = true;
   if (share > ALIKE)
@@ -57,12 +73,83 @@ void RingPrediction::forget() noexcept
 {
   guessed_ = false;
   guess_error_.setZero();
+  for (Kept& kept : kept_)
+  {
+    kept.known = false;
+  }
+}
+
+RingPrediction::Kept& RingPrediction::keptAt(double pitches) noexcept
+{
+  const double part = pitches - std::floor(pitches);
+  return kept_[std::min(static_cast<std::size_t>(part * KEPT), KEPT - 1)];
+}
+
+void RingPrediction::keep(const RingState& state) noexcept
+{
+  const double pitches = state.position.wave_generator_angle / model_.rest.pitchAngle();
+  if (state.shape.copies() == 1 || !model_.meshed() || !(std::abs(pitches) < MAX_PITCHES))
+  {
+    return;
+  }
+  constexpr double SAME_TWIST = 1e-7;  // rad
+  Kept& kept = keptAt(pitches);
+  if (kept.known && std::abs(state.position.wave_generator_angle - kept.position.wave_generator_angle) * KEPT <
+                        model_.rest.pitchAngle() &&
+      std::abs(twistSince(kept, state.position)) < SAME_TWIST)
+  {
+    return;  // hardly moved
+  }
+  const Eigen::Index half = kept.points.size();
+  kept.known = true;
+  kept.position = state.position;
+  kept.points = state.shape.points.head(half);
+  kept.by_wave_generator = state.by_wave_generator.head(half);
+  kept.by_output = state.by_output.head(half);
+  kept.space = state.shape.space;
+}
+
+/// Of the output against the wave generator at the nominal ratio [rad].
+double RingPrediction::twistSince(const Kept& kept, const DrivePosition& position) const noexcept
+{
+  return position.output_angle - kept.position.output_angle -
+         (position.wave_generator_angle - kept.position.wave_generator_angle) * pitch_output_angle_ /
+             model_.rest.pitchAngle();
+}
+
+/// False: none is near enough, and nothing is done.
+bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
+{
+  constexpr double NEAR_TWIST = 2e-5;  // rad
+  const double pitch = model_.rest.pitchAngle();
+  const double pitches = target.wave_generator_angle / pitch;
+  const double moved = std::abs(target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
+  if (state.shape.copies() == 1 || !model_.meshed() || !(std::abs(pitches) < MAX_PITCHES) || moved < 0.5 / KEPT)
+  {
+    return false;
+  }
+  const Kept& kept = keptAt(pitches);
+  if (!kept.known || !(std::abs(twistSince(kept, target)) < NEAR_TWIST))
+  {
+    return false;
+  }
+  const double away = (target.wave_generator_angle - kept.position.wave_generator_angle) / pitch;
+  const int whole = static_cast<int>(std::lround(away));
+  const double rest = target.output_angle - kept.position.output_angle - whole * pitch_output_angle_;
+  const int half = state.shape.solved;
+  const int places = wrapped(whole, 2 * half);
+  const double sign = places < half ? 1.0 : -1.0;
+  const double angle = whole * pitch;
+  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output },
+                         { 1.0, (away - whole) * pitch, rest }, places % half, sign * std::cos(angle),
+                         sign * std::sin(angle), state.shape.points, half);
+  turnSpaces(kept.space, whole, state.shape.space);
+  return true;
 }
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double SMALL = 0.02;       // of a pitch; below it the tangent alone is as good
-  constexpr double MAX_PITCHES = 1e9;  // counted as an int
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
   if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
@@ -86,7 +173,8 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
     state.shape.points.swap(scratch_);
     if (u > 0.5)
     {
-      turnSpaces(sense, state.shape);  // the copy is the nearer one
+      turnSpaces(state.shape.space, sense, old_space_);  // the copy is the nearer one
+      state.shape.space.swap(old_space_);
     }
   }
   else
@@ -106,7 +194,8 @@ void RingPrediction::shift(int pitches, RingState& state) noexcept
     turn(*values, pitches, scratch_);
     values->swap(scratch_);
   }
-  turnSpaces(pitches, state.shape);
+  turnSpaces(state.shape.space, pitches, old_space_);
+  state.shape.space.swap(old_space_);
   state.position.wave_generator_angle += pitches * model_.rest.pitchAngle();
   state.position.output_angle += pitches * pitch_output_angle_;
 }
@@ -119,18 +208,15 @@ void RingPrediction::turn(const Eigen::VectorXd& values, int pitches, Eigen::Vec
 }
 
 /// The spaces turned likewise.
-void RingPrediction::turnSpaces(int pitches, RingShape& shape) noexcept
+void RingPrediction::turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept
 {
-  const int n = shape.teeth();
   const int spaces = model_.gear.teeth_circular_spline;
-  const int places = wrapped(pitches, n);
+  const int places = wrapped(pitches, model_.rest.teeth());
   const int further = wrapped(pitches, spaces);
-  const std::vector<int>& space = shape.space;
-  std::rotate_copy(space.begin(), space.end() - places, space.end(), old_space_.begin());
-  for (int& turned : old_space_)
+  std::rotate_copy(space.begin(), space.end() - places, space.end(), turned.begin());
+  for (int& one : turned)
   {
-    turned += turned + further < spaces ? further : further - spaces;
+    one += one + further < spaces ? further : further - spaces;
   }
-  shape.space.swap(old_space_);
 }
 }  // namespace hjt

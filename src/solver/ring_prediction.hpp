@@ -13,7 +13,8 @@ namespace hjt
 ///
 /// Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is a cubic between the
 /// state and its copy one pitch on, forwards or back, with the tangents at both ends; the rest of the output's angle
-/// goes along its own tangent. The error of the last guess corrects the next one, as far as the last two errors were
+/// goes along its own tangent. Where the ring repeats after half a turn the states of the last pitches are kept by their
+/// place in the pitch: the guess goes along the tangents of the nearest one. The error of the last guess corrects the next one, as far as the last two errors were
 /// similar: errors of single teeth stay where they are, while the guess takes them for turning with the wave generator.
 class RingPrediction
 {
@@ -26,17 +27,40 @@ public:
   /// The state has come about otherwise.
   void forget() noexcept;
 
+  /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.
+  bool fromKept() const noexcept { return from_kept_; }
+
+  /// Keeps a solved state for guesses to come.
+  void keep(const RingState& state) noexcept;
+
 private:
+  /// A solved state.
+  struct Kept
+  {
+    explicit Kept(const RingModel& model);
+
+    bool known{ false };
+    DrivePosition position;
+    Eigen::VectorXd points;  // of the first half of the teeth
+    Eigen::VectorXd by_wave_generator;
+    Eigen::VectorXd by_output;
+    std::vector<int> space;  // of all
+  };
+  Kept& keptAt(double pitches) noexcept;
+  double twistSince(const Kept& kept, const DrivePosition& position) const noexcept;
+  bool guessFromKept(const DrivePosition& target, RingState& state) noexcept;
   void guess(const DrivePosition& target, RingState& state) noexcept;
   void shift(int pitches, RingState& state) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
-  void turnSpaces(int pitches, RingShape& shape) noexcept;
+  void turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept;
 
   const RingModel& model_;
   double pitch_cos_;
   double pitch_sin_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool guessed_{ false };
+  bool from_kept_{ false };
+  std::vector<Kept> kept_;       // over one pitch
   Eigen::VectorXd guess_;        // the last, not corrected
   Eigen::VectorXd guess_error_;  // of the one before
   // Scratch, sized once.

@@ -16,6 +16,19 @@ struct RingState
   {
   }
 
+  /// Takes over another state but for the directions and lengths of its shape (RingShape::updateGeometry).
+  void keep(const RingState& other) noexcept
+  {
+    shape.points = other.shape.points;
+    shape.space = other.shape.space;
+    shape.solved = other.shape.solved;
+    position = other.position;
+    by_wave_generator = other.by_wave_generator;
+    by_output = other.by_output;
+    stiffness = other.stiffness;
+    residual = other.residual;
+  }
+
   RingShape shape;
   DrivePosition position;
   Eigen::VectorXd by_wave_generator;  ///< rates of the tooth points in equilibrium [m/rad]

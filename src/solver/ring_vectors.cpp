@@ -88,6 +88,33 @@ HJT_VECTOR_CLONES void turn(const Eigen::VectorXd& values, int places, double c,
   part(n - places, n, places - n);
 }
 
+HJT_VECTOR_CLONES void turnHalf(const Combination& vectors, const Combination::Factors& factors, int places, double c,
+                                double s, Eigen::VectorXd& result, int teeth) noexcept
+{
+  const auto part = [&](int begin, int end, int shift, double sign)
+  {
+    const double* __restrict__ va = vectors.a.data();
+    const double* __restrict__ vb = vectors.b.data();
+    const double* __restrict__ vc = vectors.c.data();
+    double* __restrict__ to = result.data() + 2 * static_cast<Eigen::Index>(shift);
+    const double fa = factors.a;
+    const double fb = factors.b;
+    const double fc = factors.c;
+    const double cosine = sign * c;
+    const double sine = sign * s;
+#pragma omp simd
+    for (int i = begin; i < end; ++i)
+    {
+      const double x = fa * va[2 * i] + fb * vb[2 * i] + fc * vc[2 * i];
+      const double y = fa * va[2 * i + 1] + fb * vb[2 * i + 1] + fc * vc[2 * i + 1];
+      to[2 * i] = cosine * x - sine * y;
+      to[2 * i + 1] = sine * x + cosine * y;
+    }
+  };
+  part(0, teeth - places, places, 1.0);
+  part(teeth - places, teeth, places - teeth, -1.0);
+}
+
 HJT_VECTOR_CLONES void addTurned(const Combination& vectors, const Combination::Factors& here,
                                  const Combination::Factors& turned, int places, double c, double s,
                                  Eigen::VectorXd& result, int teeth) noexcept

@@ -39,6 +39,11 @@ struct Combination
   };
 };
 
+/// result = sum with these factors, turned to the tooth `places` further (0 ... teeth - 1), on half a ring of `teeth`
+/// teeth: those that leave it at its end come in at its start reversed.
+void turnHalf(const Combination& vectors, const Combination::Factors& factors, int places, double c, double s,
+              Eigen::VectorXd& result, int teeth) noexcept;
+
 /// result = sum with the first factors + the sum with the others, turned to the tooth `places` further as by `turn`.
 /// The vectors are whole, of the result its first `teeth` teeth.
 void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
