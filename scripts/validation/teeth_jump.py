@@ -75,8 +75,8 @@ would divide the radial force by {friction_relief(mesh):.1f}, and so raise a jum
 
 **On the springs of the thesis nothing jumps** below {rigid["peak"]["torque"] / 1e3:.0f} kN·m. The simple estimate:
 at 500 N·m each lobe carries {500 / radius / 2e3:.1f} kN, flanks of {math.degrees(mesh["flank_angle"]):.0f}° push it in
-with {radial / 1e3:.2f} kN, and to lose the depth of {1e3 * depth:.2f} mm to that force its radial stiffness would have to
-be {radial / depth:.1e} N/m. This is **not** the cause of the jump. With the wave amplitude as an unknown on
+with {radial / 1e3:.2f} kN, and to lose the depth of {1e3 * depth:.2f} mm to that force its radial stiffness would have
+to be {radial / depth:.1e} N/m. This is **not** the cause of the jump. With the wave amplitude as an unknown on
 springs of that size, or of almost none ({softest['torque']:.0f} N·m at 1e5 N/m a lobe), no tooth jumps: the amplitude
 ends at {1e3 * softest['wave_amplitude']:.2f} mm. The ring is inextensible, so a smaller wave also moves the teeth
 around by −(w/2) sin 2ψ. At 500 N·m the flanks press on the amplitude with {parts['radial'] / 1e3:.2f} kN a lobe

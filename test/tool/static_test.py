@@ -243,7 +243,7 @@ class Ratchet(tool.ToolTest):
         self.assertEqual(stiff["peak"]["wave_amplitude"], 0.35e-3)
 
     def test_steep_flanks_push_the_lobes_in_and_the_double_arcs_pull_them_out(self):
-        # A smaller wave also moves the teeth around, which the load resists: below 11 degrees of the flank that is more.
+        # A smaller wave also moves the teeth around, which the load resists: more than it pushes, below 11 degrees.
         for options, factor in [(["--config", "golden.yaml"], 1.0), (["--set", "mesh.tangent_angle=0.22"], 1.0),
                                 ([], -1.0)]:
             with self.subTest(options):
