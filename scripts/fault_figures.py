@@ -17,24 +17,28 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 ARCSEC = math.pi / 180.0 / 3600.0
 RATE = 1000.0
 TURNS = 8                # of the motor in a spectrum
+SWING_TIME = 12.0        # [s]
 
+# What is shown, time of the run and of the begin of its record [s], speed, load. The step of the load at the start
+# rings for seconds, at 66 Hz: beyond the orders shown at 10 degrees a second.
 DUTIES = {
-    "swing": ("30°/s, ±130 N·m once a turn of the joint", 12.6, f"{{constant: {math.radians(30.0):.6f}}}",
-              f"{{sinus: {{mean: 0.0, amplitude: 130.0, frequency: {1.0 / 12.0:.9f}, phase: 0.0}}}}"),
-    "steady": ("15°/s, 60 N·m", 2.5, f"{{constant: {math.radians(15.0):.6f}}}", "{constant: 60.0}"),
-    "speeds": ("no load", 22.0, f"{{trapezoid: {{peak: {math.radians(150.0):.6f}, slope: {math.radians(15.0):.6f}, "
+    "swing": ("30°/s, ±130 N·m once a turn of the joint", 14.1, 2.0, f"{{constant: {math.radians(30.0):.6f}}}",
+              f"{{sinus: {{mean: 0.0, amplitude: 130.0, frequency: {1.0 / SWING_TIME:.9f}, phase: 0.0}}}}"),
+    "steady": ("10°/s, 60 N·m", 10.0, 7.0, f"{{constant: {math.radians(10.0):.6f}}}", "{constant: 60.0}"),
+    "speeds": ("no load", 22.0, 0.4,
+               f"{{trapezoid: {{peak: {math.radians(150.0):.6f}, slope: {math.radians(15.0):.6f}, "
                f"hold: 1.0, pause: 1.0}}}}",
                "{constant: 0.0}"),
 }
 
 
 def plan(duty, classes):
-    _, duration, speed, load = DUTIES[duty]
+    _, duration, start, speed, load = DUTIES[duty]
     return "\n".join([
         f"name: {duty}", "seed: 1", f"duration: {duration}", "set:", "  solver.scene: auto", "repeats: 1", "duty:",
         f"  - name: {duty}", f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {load}", "classes:",
         "  healthy: []",
-        *classes, "record:", "  format: hdf5", "  start: 0.4", "  deflate: 0", "  groups:",
+        *classes, "record:", "  format: hdf5", f"  start: {start}", "  deflate: 0", "  groups:",
         f"    signals: {{rate: {RATE}, type: float64, columns: [motor_angle, output_angle, motor_velocity, "
         f"motor_torque, "
         "load_torque]}"]) + "\n"
@@ -63,12 +67,17 @@ def torsion(run):
     return (run["motor_angle"] / RATIO - run["output_angle"]) / ARCSEC
 
 
+def friction_torque(run):
+    """At the motor [mN.m], with what speeds it up."""
+    return 1e3 * (run["motor_torque"] - run["load_torque"] / RATIO)
+
+
 def draw_loop(axis, run, **style):
     axis.plot(torsion(run), run["load_torque"], **style)
 
 
 def draw_friction(axis, run, **style):
-    axis.plot(run["motor_velocity"], 1e3 * (run["motor_torque"] - run["load_torque"] / RATIO), **style)
+    axis.plot(run["motor_velocity"], friction_torque(run), **style)
 
 
 def spectrum(run):
@@ -92,6 +101,34 @@ def draw_turn(axis, run, **style):
     axis.plot(turns[shown], torsion(run)[shown] - torsion(run)[shown].mean(), **style)
 
 
+def loop_figures(run):
+    """As the indicators have them (docs/indicators.md), of the first whole swing."""
+    shown = slice(0, int(SWING_TIME * RATE) + 1)
+    twist, torque = ARCSEC * torsion(run)[shown], run["load_torque"][shown]
+    straight, rising = numpy.abs(torque) < 14.0, numpy.gradient(torque) > 0.0
+    slope = numpy.polyfit(torque[straight], twist[straight], 1)[0]
+    offset = [numpy.mean((twist - slope * torque)[(numpy.abs(torque) < 2.7) & branch]) for branch in (rising, ~rising)]
+    return (f"K1 {1e-3 / slope:.1f} kN.m/rad, lost motion {(offset[1] - offset[0]) / ARCSEC:.1f} arcsec, "
+            f"loop {1e3 * abs(numpy.trapz(torque, twist)):.1f} mJ, twist {numpy.ptp(twist) / ARCSEC:.0f} arcsec, "
+            f"friction {friction_torque(run)[shown].mean():.0f} mN.m")
+
+
+def friction_figures(run):
+    speeds, friction = run["motor_velocity"], friction_torque(run)
+    near = {degrees: numpy.abs(speeds - RATIO * math.radians(degrees)) < 1.0 for degrees in (15, 45, 90, 150)}
+    return ", ".join(f"{friction[rows].mean():.0f} mN.m at {degrees} deg/s" for degrees, rows in near.items())
+
+
+def line_figures(run):
+    orders, amplitudes = spectrum(run)
+    peaks = [i for i in range(1, len(orders) - 1) if orders[i] <= 16.0 and
+             amplitudes[i] == amplitudes[i - 1:i + 2].max()]
+    highest = sorted(sorted(peaks, key=lambda i: -amplitudes[i])[:6])
+    return (", ".join(f"{amplitudes[i]:.3f} arcsec at {orders[i]:g}" for i in highest)
+            + f"; peak to peak {numpy.ptp(torsion(run)):.1f} arcsec, friction {friction_torque(run).mean():.0f} mN.m")
+
+
+FIGURES = {"swing": loop_figures, "speeds": friction_figures, "steady": line_figures}
 VIEWS = {draw_loop: ("swing", "torsion [″]", "torque [N·m]"),
          draw_friction: ("speeds", "motor speed [rad/s]", "motor torque less load [mN·m]"),
          draw_spectrum: ("steady", "cycles a turn of the motor", "kinematic error [″]"),
@@ -109,6 +146,8 @@ def draw_all(tool, work, kinds, images):
         by_duty.setdefault(VIEWS[view][0], []).append((kind, view))
     for duty, shown in by_duty.items():
         runs = record(tool, work, duty, [kind for kind, _ in shown])
+        for name, run in runs.items():
+            print(f"fault_figures: {duty}: {name}: {FIGURES[duty](run)}", file=sys.stderr)
         for kind, view in shown:
             name = kind["kind"]
             figure, axis = plt.subplots(figsize=(5.0, 2.9), constrained_layout=True)

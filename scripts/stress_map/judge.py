@@ -118,7 +118,7 @@ def _judge(runner, cell):
     if not document["finite"]:
         judged.verdict = NOT_FINITE
         return judged
-    finer, fine = converged_steps(cell.step, judged.phase)
+    finer, fine = converged_steps(cell.step, judged.phase * document["substeps"])
     runs = []
     for step in (finer, fine):
         _, run, why = runner.run(cell, step, max(0.0, 0.5 * (cell.step - step)))

@@ -48,12 +48,12 @@ The solver's messages on a step:
 
 | message | condition | reason |
 |---|---|---|
-| steps too long | the joint's fastest natural mode (motor against output on the ring's present stiffness) advances more than 0.1 rad of phase in a step | the leapfrog's phase error is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
+| steps too long | the joint's fastest natural mode (motor against output on the ring's present stiffness) advances more than 0.1 rad of phase in a substep (the twin divides a step by itself, by its parameters) | the leapfrog's phase error is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
 | steps too long | the speed limit's slope times the step exceeds the motor's inertia | the drive sees the speed once a step and overshoots |
 | with teeth jumping | a tooth changes its space below the tip circle | no tooth can pass a tip unnoticed: ratcheting, or a gear whose teeth do not fit |
 | cut | the ring's equilibrium was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
 | failed | no equilibrium was found | the last good state is held |
-| refused | the natural mode advances more than 1.5 rad a step, or the insertion finds no equilibrium | the leapfrog is unstable from 2 rad on |
+| refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
 """  # noqa: E501
 
 
@@ -123,7 +123,7 @@ def bare(axes):
 KEY = "blue: accurate; orange: degraded, reported; grey: refused with a reason; red: none of these"
 MAP_AXES = {
     "map: step and stiffness": ("step [s]", "all stiffness times [-]"),
-    "map: step and speed, five teeth missing": ("step [s]", "speed limit [rpm], 12 N·m at the motor"),
+    "map: step and speed, five teeth missing": ("step [s]", "speed limit [rpm],\n12 N·m at the motor"),
     "map: load and stiffness": ("load steps, to and fro [N·m]", "all stiffness times [-]"),
     "map: bending and contact stiffness": ("rim bending times [-]", "springs under the rim times [-]"),
 }

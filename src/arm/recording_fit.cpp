@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
 #include "params/choices.hpp"
@@ -35,13 +36,6 @@ bool differs(const FittedFactor& factor, double from)
 std::string rounded(double value)
 {
   return roundedText(value, 3);
-}
-
-double median(std::vector<double> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// What is wrong between angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
@@ -216,7 +210,7 @@ FittedFactor RecordingFit::stampFactor() const
   {
     return {};
   }
-  FittedFactor middle{ median(likely), 0.0 };
+  FittedFactor middle{ upperMedian(likely.begin(), likely.end()), 0.0 };
   std::size_t agree = 0;
   double weights = 0.0;
   for (const FittedFactor& factor : timeFactors())

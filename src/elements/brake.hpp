@@ -21,6 +21,8 @@ public:
   {
   }
 
+  bool hasPlay() const noexcept { return half_play_ > 0.0; }
+
   /// Where its pin is.
   struct Pin
   {

@@ -5,6 +5,9 @@
 
 namespace hjt
 {
+/// Share of a dry friction from which on what it holds is taken to slide [-].
+constexpr double SLIDING_SHARE = 0.95;
+
 /// Share of a dry friction that is mobilised, between -1 and 1, after a further turn (Dahl, exact):
 ///
 ///   ds/dx = (1 - s sgn(dx)) / angle

@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/median.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
 #include "identification/friction_fit.hpp"
@@ -186,9 +187,7 @@ double rowPeriod(const std::vector<MotionSample>& samples)
   {
     steps.push_back(samples[i].time - samples[i - 1].time);
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upperMedian(steps.begin(), steps.end());
 }
 
 /// What the motion-driven twin's torque lacks without ripple in the rows that move.

@@ -10,6 +10,8 @@
 #include <ceres/solver.h>
 #include <Eigen/Cholesky>
 
+#include "base/median.hpp"
+
 namespace hjt
 {
 double correlationRows(const Eigen::VectorXd& residuals)
@@ -33,10 +35,8 @@ double robustDeviation(const Eigen::VectorXd& residuals)
 {
   const Eigen::VectorXd sizes = residuals.cwiseAbs();
   std::vector<double> sorted(sizes.data(), sizes.data() + sizes.size());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
   constexpr double NORMAL_MEDIAN = 0.6745;
-  return *middle / NORMAL_MEDIAN;
+  return upperMedian(sorted.begin(), sorted.end()) / NORMAL_MEDIAN;
 }
 
 Eigen::VectorXd solve(ceres::Problem& problem, const std::vector<double*>& parameters, int most_iterations)

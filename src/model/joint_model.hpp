@@ -93,6 +93,9 @@ struct JointModel
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
 
+  /// Dry friction of the output's bearing and seals.
+  void addOutput(JointFriction& friction) const noexcept;
+
   RingModel ring;
   Motor motor;
   Load load;
@@ -107,6 +110,5 @@ struct JointModel
 private:
   void addShaft(const Running& running, double contact_force, double ring_torque,
                 JointFriction& friction) const noexcept;
-  void addOutput(JointFriction& friction) const noexcept;
 };
 }  // namespace hjt

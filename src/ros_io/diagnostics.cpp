@@ -202,6 +202,7 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
   status.add("Solver residual [N]", outputs.residual);
   status.add("Solver iterations", outputs.iterations);
   status.add("Steps", counters.steps);
+  status.add("Substeps a step", outputs.substeps);
   status.add("Steps cut", counters.step_cuts);
   status.add("Steps in which teeth jumped", counters.jumps);
   status.add("Steps too long", counters.coarse_steps);

@@ -13,7 +13,7 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
-  , remembers_(model.cup_friction.hasState() || model.motor.preslidingAngle() > 0.0)
+  , remembers_(model.cup_friction.hasState() || model.motor.preslidingAngle() > 0.0 || model.brake.hasPlay())
   , temperature_(inputs.temperature)
   , viscosity_(model.bearing.viscosity(temperature_))
 {
@@ -43,7 +43,6 @@ SolveStatus JointDynamics::solveAtRest() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
-  pin_ = {};
   viscosity_ = model_.bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
@@ -226,10 +225,12 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
   model_.friction(ring_.forces(), rates, velocityRatio(), running, friction_);
 }
 
-/// That the brake holds the shaft with, at the present angle; its pin goes along.
+/// That the brake holds the shaft with, at the present angle.
 double JointDynamics::brakeTorque(double motor_speed) noexcept
 {
-  return model_.brake.hold(inputs.brake_engaged, motor_angle_, motor_speed != 0.0 ? motor_speed : torque()[0], pin_);
+  now_.pin = accepted_.pin;
+  const double push = motor_speed != 0.0 ? motor_speed : torque()[0];
+  return model_.brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
 }
 
 /// Of the bearing's grease, at the present temperature.

@@ -105,6 +105,7 @@ private:
     CupFriction::State cup;
     double share{};        // of the friction at the motor shaft that is mobilised, -1 ... 1
     double motor_angle{};  // [rad]
+    Brake::Pin pin;
   };
 
   const JointModel& model_;
@@ -117,7 +118,6 @@ private:
   Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output [N.m/rad]
   bool on_surface_{};
   bool surface_agrees_{};  // at the present angles, while on the full ring
-  Brake::Pin pin_;
   DryFriction dry_;
   JointFriction friction_;
   bool remembers_;  // friction does

@@ -15,7 +15,10 @@ namespace hjt
 using namespace joint_state;
 
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
-  : kind_(parameters.solver.stepper), step_(1.0 / parameters.solver.rate), dynamics_(model, parameters.solver)
+  : kind_(parameters.solver.stepper)
+  , step_(1.0 / parameters.solver.rate)
+  , substep_(step_)
+  , dynamics_(model, parameters.solver)
 {
   if (!reset())
   {
@@ -24,12 +27,13 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
         std::to_string(dynamics_.status.residual) + " N)");
   }
-  checkStep(parameters);
+  divideStep(parameters);
 }
 
-void JointStepper::checkStep(const Parameters& parameters)
+void JointStepper::divideStep(const Parameters& parameters)
 {
-  constexpr double MAX_PHASE = 1.5;  // rad a step; the leapfrog is stable below 2
+  constexpr double AIM = 0.8 * MAX_PHASE_ADVANCE;  // of a substep: under load friction stiffens the joint further [rad]
+  constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
@@ -44,7 +48,8 @@ void JointStepper::checkStep(const Parameters& parameters)
     square += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / inertia[0];
   }
   const double frequency = std::sqrt(square);
-  if (frequency * step_ > MAX_PHASE)
+  const double phase = frequency * step_;
+  if (phase > MAX_PHASE)
   {
     std::ostringstream text;
     text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << inertia[0]
@@ -53,11 +58,17 @@ void JointStepper::checkStep(const Parameters& parameters)
          << " Hz (or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle)";
     throw ParameterError(text.str());
   }
+  if (phase > MAX_PHASE_ADVANCE)
+  {
+    const int least = static_cast<int>(std::ceil(phase / AIM * (1.0 - 1e-12)));
+    substeps_ = least + (least % 2 == 0 ? 1 : 0);
+    substep_ = step_ / substeps_;
+  }
   if (kind_ == StepperKind::RUNGE_KUTTA4)
   {
     constexpr double MARGIN = 0.5;  // friction's slope times the step over the inertia; 2.78 is the stability limit
     const double needed =
-        step_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
+        substep_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
     if (parameters.solver.stiction_velocity < needed)
     {
       std::ostringstream text;
@@ -102,7 +113,7 @@ bool JointStepper::updateModel() noexcept
   if (kind_ == StepperKind::LEAPFROG)
   {
     // The last kick, half of which belongs after this instant, was still by the old torque.
-    released_ -= 0.5 * step_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
+    released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
   }
   return good;
 }
@@ -114,13 +125,29 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
     dynamics_.status.iterations = 0;
     return true;
   }
-  dynamics_.inputs = inputs;
   dynamics_.status = {};
+  bool good = true;
+  for (int i = 0; good && i < substeps_; ++i)
+  {
+    if (i == substeps_ / 2)
+    {
+      dynamics_.inputs = inputs;
+    }
+    good = substep();
+  }
+  dynamics_.inputs = inputs;
+  const bool rests = good && x_[MOTOR_SPEED] == 0.0 && std::abs(x_[OUTPUT_SPEED]) <= REST_SPEED;
+  rest_steps_ = rests ? rest_steps_ + 1 : 0;
+  return good;
+}
+
+bool JointStepper::substep() noexcept
+{
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
   bool good = true;
   if (kind_ == StepperKind::LEAPFROG)
   {
-    leapfrog_.do_step(dynamics_, x_, 0.0, step_);
+    leapfrog_.do_step(dynamics_, x_, 0.0, substep_);
     good = dynamics_.status.ok();
     speeds_ = leapfrog_.speeds();
     friction_ = leapfrog_.frictionTorque();
@@ -131,15 +158,13 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
     good = stepRungeKutta();
   }
   throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
-  const bool rests = good && x_[MOTOR_SPEED] == 0.0 && std::abs(x_[OUTPUT_SPEED]) <= REST_SPEED;
-  rest_steps_ = rests ? rest_steps_ + 1 : 0;
   return good;
 }
 
 bool JointStepper::stepRungeKutta() noexcept
 {
   const JointState start = x_;
-  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, step_);
+  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, substep_);
   if (!dynamics_.status.ok() || !dynamics_.place(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]).ok())
   {
     x_ = start;
@@ -148,8 +173,8 @@ bool JointStepper::stepRungeKutta() noexcept
     return false;
   }
   speeds_ = x_.segment<2>(MOTOR_SPEED);
-  x_[DISSIPATED] += dynamics_.accept();
   dynamics_.updateFriction(speeds_);
+  x_[DISSIPATED] += dynamics_.accept();
   friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
   friction_[0] += dynamics_.preslidingTorque();
   const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
@@ -168,7 +193,7 @@ double JointStepper::phaseAdvance() const noexcept
   const double cross = ring.velocity_ratio * ring.output_stiffness - friction(0, 1);
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
                                                             cross * cross / (inertia[0] * inertia[1]));
-  return step_ * std::sqrt(std::max(fastest, 0.0));
+  return substep_ * std::sqrt(std::max(fastest, 0.0));
 }
 
 double JointStepper::energyResidual() const noexcept

@@ -16,6 +16,7 @@ public:
   /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
   /// after four swings [rad].
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
+  static constexpr int MAX_SUBSTEPS = 31;
   static constexpr double REST_SPEED = 1e-7;  ///< of the output, 0.02 seconds of arc a second [rad/s]
   static constexpr double REST_TIME = 0.1;    ///< [s]
 
@@ -26,6 +27,10 @@ public:
   bool reset() noexcept;
 
   /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
+  ///
+  /// Where it would be too long for the joint's fastest swing it is done in `substeps()` equal ones. Their number is
+  /// fixed by the parameters, so that live equals offline, and odd: inputs then act from half a step before their
+  /// instant on, as in a step that is not divided.
   ///
   /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved
   /// slower than regularised friction creeps, or than counts. Then nothing is solved.
@@ -50,7 +55,8 @@ public:
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
   double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
-  /// Of the joint's fastest swing in one step, motor against output on the ring's present stiffness [rad].
+  int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
+  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
@@ -58,13 +64,16 @@ public:
 private:
   using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
                                                            boost::numeric::odeint::vector_space_algebra>;
+  bool substep() noexcept;
   bool stepRungeKutta() noexcept;
   bool staysAtRest(const JointInputs& inputs) const noexcept;
-  void checkStep(const Parameters& parameters);
+  void divideStep(const Parameters& parameters);
 
   StepperKind kind_;
   int rest_steps_{};  // in a row at whose end the joint was at rest
-  double step_;       // [s]
+  int substeps_{ 1 };
+  double step_;     // [s]
+  double substep_;  // [s]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
   RungeKutta4 runge_kutta_;

@@ -47,7 +47,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     model.mesh_friction.addTerms(model.ring.of<ToothMesh>(), ring.forces().of<ToothMesh>(), rates, { 0.0, 0.0 },
                                  friction);
     model.cup_friction.addTerm(rates.meanRotation(), friction);
-    friction.terms.push_back({ model.load.dryFriction(), Eigen::Vector2d::UnitY() });
+    model.addOutput(friction);
     const double drag = friction.dryPower(Eigen::Vector2d::UnitY());
     const double angle = unloaded - ring.position().output_angle;
     up.push_back({ elastic + drag, angle });

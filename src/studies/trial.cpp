@@ -37,6 +37,7 @@ TrialResult runTrial(Twin& twin, Stamp end, Stamp sample_period, const std::func
     result.iterations_max = std::max(result.iterations_max, now.iterations);
     result.residual_max = std::max(result.residual_max, now.residual);
     result.energy_residual_max = std::max(result.energy_residual_max, std::abs(now.energy_residual));
+    result.substeps = now.substeps;
     result.phase_advance_max = std::max(result.phase_advance_max, now.phase_advance);
     const double turn = now.motor_angle - last.motor_angle;
     result.wave_generator_turn_max = std::max(result.wave_generator_turn_max, std::abs(turn));

@@ -31,7 +31,8 @@ struct TrialResult
   double residual_max{};             ///< largest out-of-balance force on a tooth [N]
   double energy_residual_max{};      ///< largest |energy in - stored - dissipated| [J]
   double throughput{};               ///< sum of |work| of motor and load [J]
-  double phase_advance_max{};        ///< largest, per step [rad]
+  std::uint32_t substeps{};          ///< of a step
+  double phase_advance_max{};        ///< largest, per substep [rad]
   double wave_generator_turn_max{};  ///< largest, per step [rad]
 };
 

@@ -146,7 +146,6 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
 double Observer::preslide(double most, double free, double response) noexcept
 {
   constexpr int BISECTIONS = 40;
-  constexpr double HELD = 0.95;  // of the friction: beyond it the motor slides
   const auto turn = [&](double friction) { return 0.5 * STEP * (state_[1] + free - response * friction); };
   double low = -most;
   double high = most;
@@ -158,7 +157,7 @@ double Observer::preslide(double most, double free, double response) noexcept
   friction_now_ = 0.5 * (low + high);
   const double moved = turn(friction_now_);
   mobilised_ = mobilised(mobilised_, moved, presliding_angle_);
-  sticking_ = std::abs(mobilised_) < HELD;
+  sticking_ = std::abs(mobilised_) < SLIDING_SHARE;
   const double growth = 0.5 * STEP * most * (1.0 - std::copysign(mobilised_, mobilised_ * moved)) / presliding_angle_;
   return growth / (1.0 + response * growth);
 }

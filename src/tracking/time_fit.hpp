@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/median.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -97,10 +98,9 @@ public:
     {
       values[i] = std::abs(values[i] - factor.value);
     }
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count / 2),
-                     values.begin() + static_cast<std::ptrdiff_t>(count));
     constexpr double DEVIATION = 1.48;  // of a normal distribution, over its median magnitude
-    factor.uncertainty = DEVIATION * values[count / 2] / std::sqrt(static_cast<double>(count));
+    const double typical = upperMedian(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+    factor.uncertainty = DEVIATION * typical / std::sqrt(static_cast<double>(count));
     return factor;
   }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/number_text.hpp"
+#include "elements/presliding.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/motion_driven.hpp"
@@ -271,9 +272,8 @@ MeasuredFriction Tracker::friction() const
 /// In steady motion.
 void Tracker::addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept
 {
-  constexpr double STEADY = 0.95;  // share of the friction that is mobilised
   const double limit = follower_->frictionAt(sample.velocity, sample.load, now.temperature);
-  if (limit == 0.0 || std::abs(now.friction_torque) < STEADY * limit)
+  if (limit == 0.0 || std::abs(now.friction_torque) < SLIDING_SHARE * limit)
   {
     return;
   }

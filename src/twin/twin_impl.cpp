@@ -335,6 +335,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.brake_engaged = brake_engaged;
   outputs.converged = converged;
   outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
+  outputs.substeps = static_cast<std::uint32_t>(stepper.substeps());
   outputs.residual = stepper.status().residual;
   outputs.phase_advance = stepper.phaseAdvance();
 }

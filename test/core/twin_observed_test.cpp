@@ -105,7 +105,8 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
 /// What one reader of the health was told of the solver, another is told as well.
 TEST(ObservedHealth, HasAReportForEveryReader)
 {
-  Twin twin(shippedParameters({ "solver.rate=1000" }));  // every step is too long for the swing of the joint
+  Twin twin(shippedParameters({ "motor.speed_limit=1.0" }));  // steps are too long for how stiffly the drive holds it
+  twin.commandMotorTorque(0, 2.0);
   advance(twin, 20 * MILLISECOND);
   for (int reader = 0; reader < 2; ++reader)
   {

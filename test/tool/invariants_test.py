@@ -35,14 +35,15 @@ class State(tool.ToolTest):
         self.assertGreater(abs(there["flank_force_max"] - here["flank_force_max"]), 0.1)
 
     def test_torques_are_derivatives_of_the_energy(self):
-        rows = self.states("--loads", "30", "--steps", "1e-4,1e-5", "--config", "golden.yaml")["potential"]
-        self.assertEqual([row["wave_generator_step"] for row in rows], [1e-4, 1e-5])
+        # At 1e-5 rad the forces left, up to 5e-7 N on 200 teeth, are 2e-5 of the differences, and more at less.
+        rows = self.states("--loads", "30", "--steps", "1e-4,3e-5")["potential"]
+        self.assertEqual([row["wave_generator_step"] for row in rows], [1e-4, 3e-5])
         for row in rows:
             self.assertGreater(abs(row["wave_generator_torque"]), 0.2)
             self.assertLess(abs(row["wave_generator_difference"]), 1e-6)
             self.assertLess(abs(row["output_difference"]), 1e-6)
-            self.assertAlmostEqual(row["wave_generator_by_output"] / row["output_by_wave_generator"], 1.0, delta=1e-5)
-            self.assertAlmostEqual(row["wave_generator_by_output"] / row["condensed_stiffness"], -1.0, delta=1e-3)
+            self.assertAlmostEqual(row["wave_generator_by_output"] / row["output_by_wave_generator"], 1.0, delta=1e-6)
+            self.assertAlmostEqual(row["wave_generator_by_output"] / row["condensed_stiffness"], -1.0, delta=1e-6)
 
     def test_a_law_that_holds_on_to_the_housing_does_not_balance(self):
         row = self.states("--loads", "120", "--set", "ring.bending_law=absolute")["states"][0]

@@ -6,8 +6,8 @@ PROFILE = "time,motor_torque,load_torque,brake\n0,0,0,1\n0.004,0,40,1\n0.012,0,-
 
 
 class Trial(tool.ToolTest):
-    def trial(self, *arguments):
-        self.write("profile.csv", PROFILE)
+    def trial(self, *arguments, profile=PROFILE):
+        self.write("profile.csv", profile)
         return self.succeed_json("trial", "--profile", "profile.csv", "--duration", "0.02", *arguments)
 
     def test_says_what_the_solver_said(self):
@@ -19,9 +19,19 @@ class Trial(tool.ToolTest):
         self.assertAlmostEqual(fine["samples"]["time"][-1], 0.02)
         self.assertGreater(max(fine["samples"]["joint_torque"]), 40.0)
         self.assertLess(fine["energy_residual_max"], 1e-2 * fine["throughput"])
-        coarse = self.trial("--set", "solver.rate=1000")
+        self.assertEqual(fine["substeps"], 1)
+        coarse = self.trial("--set", "motor.speed_limit=1.0", profile="time,motor_torque,load_torque,brake\n0,2,0,0\n")
         self.assertEqual(coarse["solver_state"], "degraded")
-        self.assertEqual(coarse["coarse_steps"], 20)
+        self.assertGreater(coarse["coarse_steps"], 100)
+
+    def test_a_step_too_long_for_the_swing_is_divided(self):
+        for options, substeps in [(["solver.rate=1000"], 7), (["output.load_inertia=0.0"], 23)]:
+            with self.subTest(options):
+                divided = self.trial("--set", *options)
+                self.assertEqual(divided["solver_state"], "ok")
+                self.assertEqual(divided["substeps"], substeps)
+                self.assertLess(divided["phase_advance_max"], 0.1)
+                self.assertLess(divided["energy_residual_max"], 1e-2 * divided["throughput"])
 
     def test_advance_is_an_earlier_profile(self):
         here = self.trial("--sample-period", "1e-4")["samples"]["joint_torque"]

@@ -42,8 +42,9 @@ struct JointOutputs
   bool brake_engaged{};
   bool converged{ true };      ///< false: the ring did not converge and the last good state is held
   std::uint32_t iterations{};  ///< Newton iterations of the last step
+  std::uint32_t substeps{};    ///< it was divided into, where it would be too long for the joint's swing; 1 ... 31
   double residual{};           ///< largest out-of-balance force [N]
-  double phase_advance{};      ///< of the joint's fastest natural mode in one step [rad]
+  double phase_advance{};      ///< of the joint's fastest natural mode in one substep [rad]
 };
 
 /// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
