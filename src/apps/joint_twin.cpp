@@ -2,10 +2,33 @@
 #include <exception>
 #include <iostream>
 #include <optional>
+#ifdef HJT_COMPLETE_TOOL
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include <unistd.h>
+#endif
 
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
+
+#ifdef HJT_COMPLETE_TOOL
+namespace
+{
+/// The tool with every command, beside this one, takes the place of the process.
+int runComplete(char** argv)
+{
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  const std::string complete = self.parent_path() / HJT_COMPLETE_TOOL;
+  execv(complete.c_str(), argv);
+  std::cerr << "joint_twin: cannot run " << complete << ": " << std::strerror(errno) << '\n';
+  return hjt::EXIT_FAILED;
+}
+}  // namespace
+#endif
 
 int main(int argc, char** argv)
 {
@@ -14,9 +37,15 @@ int main(int argc, char** argv)
       "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
       "in rad.");
   line.addSubcommands();
-  hjt::catchInterrupts();
   try
   {
+#ifdef HJT_COMPLETE_TOOL
+    if (!line.knows(argc, argv))
+    {
+      return runComplete(argv);
+    }
+#endif
+    hjt::catchInterrupts();
     const std::optional<int> ended = line.parse(argc, argv);
     return ended ? *ended : line.run();
   }

@@ -3,12 +3,160 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 namespace hjt
 {
+namespace
+{
+__extension__ using Wide = unsigned __int128;
+
+constexpr int DIGITS = std::numeric_limits<double>::max_digits10;
+constexpr std::uint64_t LEAST = 10'000'000'000'000'000;  // of that many digits
+constexpr int MAX_POWER = 51;                            // 53 bits times 5^51 have less than 192
+
+constexpr std::array<Wide, MAX_POWER + 1> powersOfFive()
+{
+  std::array<Wide, MAX_POWER + 1> powers{};
+  powers[0] = 1;
+  for (std::size_t i = 1; i < powers.size(); ++i)
+  {
+    powers[i] = 5 * powers[i - 1];
+  }
+  return powers;
+}
+
+/// mantissa 5^power 2^exponent, rounded to the nearest whole number, from halfway to the even one. Less than 2^63.
+std::uint64_t scaled(std::uint64_t mantissa, int power, int exponent) noexcept
+{
+  static constexpr std::array<Wide, MAX_POWER + 1> FIVES = powersOfFive();
+  const Wide five = FIVES[static_cast<std::size_t>(power)];
+  const Wide low = static_cast<Wide>(mantissa) * static_cast<std::uint64_t>(five);
+  const Wide high = static_cast<Wide>(mantissa) * static_cast<std::uint64_t>(five >> 64) + (low >> 64);
+  const auto last = static_cast<std::uint64_t>(low);
+  const int shift = -exponent;
+  if (shift <= 0)
+  {
+    return last << exponent;
+  }
+  Wide whole{};
+  bool half{};  // the first bit cut off
+  bool rest{};  // any further one
+  if (shift < 64)
+  {
+    whole = high << (64 - shift) | last >> shift;
+    half = (last >> (shift - 1) & 1) != 0;
+    rest = (last & ((std::uint64_t{ 1 } << (shift - 1)) - 1)) != 0;
+  }
+  else
+  {
+    whole = shift < 192 ? high >> (shift - 64) : 0;
+    half = shift == 64 ? last >> 63 != 0 : (high >> (shift - 65) & 1) != 0;
+    rest = shift == 64 ? last << 1 != 0 : last != 0 || (high & ((Wide{ 1 } << (shift - 65)) - 1)) != 0;
+  }
+  const auto number = static_cast<std::uint64_t>(whole);
+  return number + (half && (rest || (number & 1) != 0) ? 1 : 0);
+}
+}  // namespace
+
+char* writeExact(double value, char* text) noexcept
+{
+  constexpr double SMALLEST = 1e-34;
+  constexpr double LARGEST = 1e16;
+  constexpr int FIRST_FIXED = -4;  // exponent from which no power is written
+  const double size = std::abs(value);
+  if (!(size >= SMALLEST && size < LARGEST))
+  {
+    if (value == 0.0 && !std::signbit(value))
+    {
+      *text = '0';
+      return text + 1;
+    }
+    return text + std::snprintf(text, EXACT_TEXT_SIZE, "%.*g", DIGITS, value);
+  }
+  std::uint64_t bits{};
+  std::memcpy(&bits, &size, sizeof(bits));
+  const std::uint64_t mantissa = (bits & ((std::uint64_t{ 1 } << 52) - 1)) | std::uint64_t{ 1 } << 52;
+  const int exponent = static_cast<int>(bits >> 52) - 1075;
+  // value = 0.d1 d2 ... 10^(decimal + 1): floor(log10(2) times its exponent), or one more.
+  int decimal = ((exponent + 52) * 78913) >> 18;
+  const auto digitsAt = [&](int at) { return scaled(mantissa, DIGITS - 1 - at, exponent + DIGITS - 1 - at); };
+  std::uint64_t number = digitsAt(decimal);
+  if (number >= 10 * LEAST)
+  {
+    number = digitsAt(++decimal);
+  }
+  if (number >= 10 * LEAST)  // rounded up to the next power of ten
+  {
+    number /= 10;
+    ++decimal;
+  }
+  std::array<char, DIGITS> digits{};
+  int count = DIGITS;
+  for (int i = DIGITS; i-- > 0; number /= 10)
+  {
+    digits[static_cast<std::size_t>(i)] = static_cast<char>('0' + number % 10);
+  }
+  while (digits[static_cast<std::size_t>(count) - 1] == '0')
+  {
+    --count;
+  }
+  if (value < 0.0)
+  {
+    *text++ = '-';
+  }
+  const auto copy = [&](int from, int to)
+  {
+    std::memcpy(text, digits.data() + from, static_cast<std::size_t>(to - from));
+    text += to - from;
+  };
+  const auto zeros = [&](int number_of)
+  {
+    std::memset(text, '0', static_cast<std::size_t>(number_of));
+    text += number_of;
+  };
+  if (decimal < FIRST_FIXED)
+  {
+    copy(0, 1);
+    if (count > 1)
+    {
+      *text++ = '.';
+      copy(1, count);
+    }
+    const int power = -decimal;
+    *text++ = 'e';
+    *text++ = '-';
+    *text++ = static_cast<char>('0' + power / 10);
+    *text++ = static_cast<char>('0' + power % 10);
+  }
+  else if (decimal < 0)
+  {
+    *text++ = '0';
+    *text++ = '.';
+    zeros(-decimal - 1);
+    copy(0, count);
+  }
+  else
+  {
+    const int whole = decimal + 1;
+    copy(0, whole < count ? whole : count);
+    if (count > whole)
+    {
+      *text++ = '.';
+      copy(whole, count);
+    }
+    else
+    {
+      zeros(whole - count);
+    }
+  }
+  return text;
+}
+
 std::string numberText(double value)
 {
   if (std::isnan(value))

@@ -16,6 +16,10 @@ namespace
 {
 Eigen::VectorXd seededDeviations(double total, int seed, int teeth)
 {
+  if (total == 0.0)
+  {
+    return Eigen::VectorXd::Zero(teeth);
+  }
   constexpr double NUMBERS = 4294967296.0;  // of the generator
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   Eigen::VectorXd deviations = Eigen::VectorXd::Zero(teeth);

@@ -80,6 +80,22 @@ TEST(TwinAtRest, StaysAsItIsUntilAnInputChanges)
   EXPECT_TRUE(runs[0] == runs[1]);
 }
 
+/// Friction that is regularised lets the output creep; at no load does that keep it from resting.
+TEST(TwinAtRest, ComesAtAnyLoad)
+{
+  for (const double load : { 0.0, 10.0, 40.0, -40.0, 60.0, 100.0, 150.0 })
+  {
+    Twin twin(shippedParameters());
+    twin.commandBrake(0, true);
+    twin.commandLoadTorque(0, load);
+    advance(twin, 1500 * MILLISECOND);
+    const std::vector<double> at_rest = withoutStamp(twin.outputs());
+    advance(twin, 1600 * MILLISECOND);
+    EXPECT_EQ(withoutStamp(twin.outputs()), at_rest) << load;
+    EXPECT_NEAR(twin.outputs().joint_torque, load, 0.1 + shippedParameters().cup.friction_torque);
+  }
+}
+
 TEST(TwinRepeats, InChunksOfAnyLength)
 {
   const std::vector<Input> inputs = randomInputs(82, SECOND / 2, 1.5, 60.0);

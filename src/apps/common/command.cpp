@@ -241,6 +241,14 @@ void CommandLine::addSubcommands()
   }
 }
 
+bool CommandLine::knows(int argc, char** argv)
+{
+  const std::string first = argc > 1 ? argv[1] : "";
+  const std::vector<const Subcommand*>& all = subcommands();
+  return first == "--version" ||
+         std::any_of(all.begin(), all.end(), [&](const Subcommand* each) { return each->name_ == first; });
+}
+
 std::string CommandLine::unknownSubcommand(int argc, char** argv) const
 {
   const CLI::App* app = app_.get();

@@ -122,6 +122,9 @@ public:
   Command root() { return Command(*app_); }
   void addSubcommands();
 
+  /// The subcommand given is one of this program, or only the version is asked for.
+  static bool knows(int argc, char** argv);
+
   /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, printed if
   /// `aloud`.
   std::optional<int> parse(int argc, char** argv, bool aloud = true);

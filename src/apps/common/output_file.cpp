@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -49,13 +50,16 @@ CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& co
 
 void CsvWriter::writeRow(const std::vector<double>& values)
 {
-  const char* separator = "";
+  line_.resize(values.size() * (EXACT_TEXT_SIZE + 1) + 1);
+  char* end = line_.data();
   for (const double value : values)
   {
-    std::fprintf(file_.get(), "%s%.17g", separator, value);
-    separator = ",";
+    end = writeExact(value, end);
+    *end++ = ',';
   }
-  std::fprintf(file_.get(), "\n");
+  end -= values.empty() ? 0 : 1;
+  *end++ = '\n';
+  std::fwrite(line_.data(), 1, static_cast<std::size_t>(end - line_.data()), file_.get());
 }
 
 void CsvWriter::close()

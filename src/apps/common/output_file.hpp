@@ -28,6 +28,7 @@ private:
   [[noreturn]] void fail() const;
 
   std::string path_;
+  std::vector<char> line_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 }  // namespace hjt
