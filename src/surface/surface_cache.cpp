@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 /// First line of a file, before the hash of the code that made it.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
-/// No table is larger; the shipped gear's has 51 MB [bytes].
+/// No table is larger; the shipped gear's has 14 MB [bytes].
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
@@ -320,8 +320,11 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
     return std::nullopt;
   }
   const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
+  // Beside a twin that runs, one processor is left to it.
+  const unsigned threads = std::max(1u, processors() - (source.background ? 1u : 0u));
   std::optional<SurfaceTable> table = obtain<SurfaceTable>(
-      "surface", key, source, [&] { return buildSurface(equal_parameters, equal, source.progress); });
+      "surface", key, source,
+      [&] { return buildSurface(equal_parameters, equal, source.progress, MAX_SURFACE_POINTS, threads); });
   if (!table)
   {
     return std::nullopt;

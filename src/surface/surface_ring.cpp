@@ -21,6 +21,7 @@ using Node = SurfaceTable::Node;
 
 constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
+constexpr double SAME_TORQUE = 1e-6;      // of the torque limit, that equal torques may differ by [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
 
 /// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in
@@ -197,9 +198,44 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
          static_friction_ * flanks;
 }
 
+bool SurfaceRing::isMirrored()
+{
+  constexpr double SAME_FRICTION = 1e-5;  // of itself [-]
+  constexpr int PLACES = 8;               // in a pitch
+  std::vector<Node> nodes;
+  bool mirrored = true;
+  for (const double direction : { 1.0, -1.0 })
+  {
+    mirrored = mirrored && insert();
+    std::size_t number = 0;
+    for (const double load : { 0.1, 0.4, 1.0 })
+    {
+      for (int i = 0; i < PLACES && mirrored; ++i)
+      {
+        // Not in the middle of a pitch, nor where it begins: there is each its own mirror image at no load.
+        const double angle = pitch_ * (i + 0.3) / PLACES;
+        mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
+        const Node node = mirrored ? measure() : Node{};
+        if (direction > 0.0)
+        {
+          nodes.push_back(node);
+          continue;
+        }
+        const Node& image = nodes[number++];
+        const double friction = frictionTorque(node);
+        const double by_v = node[SurfaceTable::ENERGY_BY_V] + image[SurfaceTable::ENERGY_BY_V];
+        const double by_u = node[SurfaceTable::ENERGY_BY_U] + image[SurfaceTable::ENERGY_BY_U];
+        mirrored = mirrored && std::abs(by_v) <= SAME_TORQUE * torque_limit_ &&
+                   std::abs(by_u) / pitch_ * ratio_ <= SAME_TORQUE * torque_limit_ &&
+                   std::abs(friction - frictionTorque(image)) <= SAME_FRICTION * friction;
+      }
+    }
+  }
+  return mirrored;
+}
+
 int SurfaceRing::repetition()
 {
-  constexpr double SAME = 1e-6;  // of the torque limit [-]
   constexpr double LOAD = 0.25;  // of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
   // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to
@@ -227,7 +263,7 @@ int SurfaceRing::repetition()
       const auto period = static_cast<std::size_t>(candidates[c]);
       for (std::size_t i = period; i < torques.size() && repeats[c]; ++i)
       {
-        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME * torque_limit_;
+        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME_TORQUE * torque_limit_;
       }
     }
   }

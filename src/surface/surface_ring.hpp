@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// No table of the ring has more: 150 MB; the shipped gear needs a third of it.
+/// No table of the ring has more: 150 MB; the shipped gear needs a tenth of it.
 constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 
 /// Why there is no table of more than `most` points, with the parameters that its size depends on.
@@ -60,6 +60,10 @@ public:
   /// Teeth that the gear must turn by to be the same again at the same v: 1 where all teeth are equal, half a turn or a
   /// whole one where those of one member differ; 0: none of these. As torques of both signs tell, sampled once a pitch.
   int repetition();
+
+  /// Whether the gear is its own mirror image: same friction and opposite torques at opposite angles of both. As places
+  /// at three loads tell. False also where one has no equilibrium.
+  bool isMirrored();
 
   int solves() const noexcept { return solves_; }
 
