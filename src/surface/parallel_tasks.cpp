@@ -30,10 +30,10 @@ void runTasks(std::size_t count, unsigned threads, const std::function<void(std:
       for (std::size_t i = next++; i < count; i = next++)
       {
         task(i);
-        ++done;
-        if (reports)
+        const std::size_t so_far = ++done;
+        if (reports && so_far < count)
         {
-          finished(done);
+          finished(so_far);
         }
       }
     }

@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-using Node = SurfaceTable::Node;
+using Node = SurfaceNode;
 using Line = std::vector<Node>;
 using Lines = std::map<double, Line>;  // by their v [rad]
 
@@ -32,8 +32,8 @@ Line mirrorImage(const Line& line)
   Line image(line.rbegin(), line.rend());
   for (Node& node : image)
   {
-    node[SurfaceTable::ENERGY_BY_U] *= -1.0;
-    node[SurfaceTable::ENERGY_BY_V] *= -1.0;
+    node.set(SurfaceNode::ENERGY_BY_U, -node[SurfaceNode::ENERGY_BY_U]);
+    node.set(SurfaceNode::ENERGY_BY_V, -node[SurfaceNode::ENERGY_BY_V]);
   }
   return image;
 }
@@ -102,13 +102,8 @@ public:
       {
         return false;
       }
-      Node interpolated;
-      for (std::size_t i = 0; i < interpolated.size(); ++i)
-      {
-        interpolated[i] = ResponseSurface::value(place, static_cast<int>(i));
-      }
-      friction_misses +=
-          std::abs(ring_.frictionTorque(interpolated) - ring_.frictionTorque(node)) / ring_.frictionTolerance(node);
+      friction_misses += std::abs(ring_.frictionTorque(ResponseSurface::bilinear(place)) - ring_.frictionTorque(node)) /
+                         ring_.frictionTolerance(node);
     }
     return friction_misses <= columns_;
   }
@@ -133,8 +128,8 @@ public:
         const RingResponse response = surface.response(place);
         const Node& node = finer[i];
         const double slope = response.wave_generator_torque + response.output_torque / ring_.ratio();
-        if (std::abs(slope + node[SurfaceTable::ENERGY_BY_U] / ring_.pitch()) > ring_.motorTolerance(node) ||
-            std::abs(response.output_torque + node[SurfaceTable::ENERGY_BY_V]) > ring_.outputTolerance(node))
+        if (std::abs(slope + node[SurfaceNode::ENERGY_BY_U] / ring_.pitch()) > ring_.motorTolerance(node) ||
+            std::abs(response.output_torque + node[SurfaceNode::ENERGY_BY_V]) > ring_.outputTolerance(node))
         {
           return false;
         }
@@ -159,8 +154,8 @@ private:
   bool torquesAgree(const ResponseSurface& surface, const ResponseSurface::Place& place, const Node& node) const
   {
     const RingResponse response = surface.response(place);
-    const double output_torque = -node[SurfaceTable::ENERGY_BY_V];
-    const double motor_torque = -node[SurfaceTable::ENERGY_BY_U] / ring_.pitch() - output_torque / ring_.ratio();
+    const double output_torque = -node[SurfaceNode::ENERGY_BY_V];
+    const double motor_torque = -node[SurfaceNode::ENERGY_BY_U] / ring_.pitch() - output_torque / ring_.ratio();
     return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
            std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node);
   }
@@ -249,7 +244,7 @@ private:
         found = ring.ring().moveTo(0.0, v);
         if (found)
         {
-          reached = std::abs(ring.ring().measure()[SurfaceTable::ENERGY_BY_V]);
+          reached = std::abs(ring.ring().measure()[SurfaceNode::ENERGY_BY_V]);
           coarse_.push_back(v);
         }
       }
@@ -283,7 +278,7 @@ private:
     {
       --first;
     }
-    const auto reached = [&](std::size_t i) { return std::abs(lines[i].front()[SurfaceTable::ENERGY_BY_V]); };
+    const auto reached = [&](std::size_t i) { return std::abs(lines[i].front()[SurfaceNode::ENERGY_BY_V]); };
     const double least = end == none ? 0.0 : mirrored_ ? reached(end - 1) : std::min(reached(end - 1), reached(first));
     if (good() && least < limit_)
     {

@@ -185,12 +185,12 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
       {
         const double motor = (0.123 + 1.7 * i) * ring.pitch();
         ASSERT_TRUE(ring.moveTo(motor, v));
-        const SurfaceTable::Node node = ring.measure();
+        const SurfaceNode node = ring.measure();
         ResponseSurface::Place place;
         ASSERT_TRUE(table.locate(motor, v + motor / ring.ratio(), place));
-        EXPECT_NEAR(table.response(place).output_torque, -node[SurfaceTable::ENERGY_BY_V], 1e-3);
-        EXPECT_NEAR(table.response(place).energy, node[SurfaceTable::ENERGY], 1e-7);
-        EXPECT_NEAR(ResponseSurface::value(place, SurfaceTable::CONTACT_FORCE), node[SurfaceTable::CONTACT_FORCE], 0.5);
+        EXPECT_NEAR(table.response(place).output_torque, -node[SurfaceNode::ENERGY_BY_V], 1e-3);
+        EXPECT_NEAR(table.response(place).energy, node[SurfaceNode::ENERGY], 1e-7);
+        EXPECT_NEAR(ResponseSurface::value(place, SurfaceNode::CONTACT_FORCE), node[SurfaceNode::CONTACT_FORCE], 0.5);
       }
     }
   }
@@ -350,16 +350,11 @@ TEST(ResponseSurface, FrictionIsThatOfTheFullRing)
     v = i % 50 == 0 ? 4.3e-3 * part(random) : v + 1e-5 * part(random);
     motor += 0.05 * part(random);
     ASSERT_TRUE(ring.moveTo(motor, v));
-    const SurfaceTable::Node node = ring.measure();
+    const SurfaceNode node = ring.measure();
     ResponseSurface::Place place;
     ASSERT_TRUE(surface().locate(motor, v + motor / ring.ratio(), place));
-    SurfaceTable::Node tabled;
-    for (std::size_t k = 0; k < tabled.size(); ++k)
-    {
-      tabled[k] = ResponseSurface::value(place, static_cast<int>(k));
-    }
     const double friction = ring.frictionTorque(node);
-    const double miss = ring.frictionTorque(tabled) - friction;
+    const double miss = ring.frictionTorque(ResponseSurface::bilinear(place)) - friction;
     sum += friction;
     misses += miss;
     squares += miss * miss;
@@ -542,15 +537,15 @@ TEST(SurfaceDeviations, ABrokenToothIsFeltAsOnTheFullRing)
       motor += 0.6 * sound_ring.pitch() * part(random);
       const double v = sound_ring.twist(load) * (0.9 + 0.1 * part(random));
       ASSERT_TRUE(sound_ring.moveTo(motor, v) && faulty_ring.moveTo(motor, v));
-      const SurfaceTable::Node sound_node = sound_ring.measure();
-      const SurfaceTable::Node faulty_node = faulty_ring.measure();
+      const SurfaceNode sound_node = sound_ring.measure();
+      const SurfaceNode faulty_node = faulty_ring.measure();
       ResponseSurface::Place place;
       ASSERT_TRUE(surface().locate(motor, v + motor / 101.0, place));
       const RingResponse without = surface().response(place);
       ASSERT_TRUE(faulty.locate(motor, v + motor / 101.0, place));
       const RingResponse with = faulty.response(place);
-      const double by_v = faulty_node[SurfaceTable::ENERGY_BY_V] - sound_node[SurfaceTable::ENERGY_BY_V];
-      const double by_u = faulty_node[SurfaceTable::ENERGY_BY_U] - sound_node[SurfaceTable::ENERGY_BY_U];
+      const double by_v = faulty_node[SurfaceNode::ENERGY_BY_V] - sound_node[SurfaceNode::ENERGY_BY_V];
+      const double by_u = faulty_node[SurfaceNode::ENERGY_BY_U] - sound_node[SurfaceNode::ENERGY_BY_U];
       const Eigen::Array2d effect(-by_v, by_v / 101.0 - by_u / sound_ring.pitch());
       const Eigen::Array2d tabled(with.output_torque - without.output_torque,
                                   with.wave_generator_torque - without.wave_generator_torque);
