@@ -34,9 +34,19 @@ public:
   explicit CupFriction(const CupParameters& parameters)
     : torque_(parameters.friction_torque), width_(0.5 * parameters.friction_angle)
   {
+    scale(1.0);
   }
 
-  void scale(double factor) noexcept { torque_ *= factor; }
+  void scale(double factor) noexcept
+  {
+    torque_ *= factor;
+    double widths = 0.0;
+    for (int j = 0; j < ELEMENTS; ++j)
+    {
+      widths = widths / RATIO + width_;
+    }
+    stiffness_ = hasState() ? ELEMENTS * torque_ / widths : 0.0;
+  }
 
   /// Springs with sliders, which have a state; else one dry term.
   bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
@@ -92,15 +102,7 @@ public:
   }
 
   /// Of all elements together, before any slips: the largest [N.m/rad].
-  double stiffness() const noexcept
-  {
-    double widths = 0.0;
-    for (int j = 0; j < ELEMENTS; ++j)
-    {
-      widths = widths / RATIO + width_;
-    }
-    return hasState() ? ELEMENTS * torque_ / widths : 0.0;
-  }
+  double stiffness() const noexcept { return stiffness_; }
 
   /// The rigid-plastic element's term, by the mean rotation's rates by motor and output angle [-]; none where there is
   /// no friction or it has a state.
@@ -118,5 +120,6 @@ private:
 
   double torque_;  // sum of what the elements slip at [N.m]
   double width_;   // of the widest element [rad]
+  double stiffness_{};
 };
 }  // namespace hjt

@@ -140,67 +140,78 @@ bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, co
                         const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
   constexpr std::size_t MAX_TERMS = 9;
-  constexpr double SLIDING = 3e4;      // slip over the regularisation's width
-  constexpr double STICK_RANGE = 1e3;  // as in `solve`
   const std::size_t count = friction.terms.size();
   if (count == 0 || count > MAX_TERMS)
   {
     return false;
   }
-  // The term nearest to sticking is the one unknown.
-  std::array<double, MAX_TERMS> widths{};
-  std::array<double, MAX_TERMS> senses{};
-  std::size_t nearest = 0;
-  double least = 0.0;  // slip of the nearest
-  for (std::size_t j = 0; j < count; ++j)
-  {
-    const double slip = friction.terms[j].slip.dot(old_speeds);
-    widths[j] = width(friction.terms[j], velocity_ratio);
-    senses[j] = slip < 0.0 ? -1.0 : 1.0;
-    // Against its width, without dividing.
-    if (j == 0 || std::abs(slip) * widths[nearest] < least * widths[j])
-    {
-      least = std::abs(slip);
-      nearest = j;
-    }
-  }
+  std::array<double, MAX_TERMS> impulses;  // of the terms, each against its slip at the old speeds
   Eigen::Vector2d momentum = inertia_.cwiseProduct(free_speeds) - 0.5 * step * (friction.viscous * old_speeds);
   for (std::size_t j = 0; j < count; ++j)
   {
-    if (j != nearest)
-    {
-      momentum -= step * friction.terms[j].strength * senses[j] * friction.terms[j].slip;
-    }
+    const FrictionTerm& term = friction.terms[j];
+    const double slip = term.slip[0] * old_speeds[0] + term.slip[1] * old_speeds[1];
+    impulses[j] = std::copysign(step * term.strength, slip);
+    momentum -= impulses[j] * term.slip;
   }
   const double a = inertia_[0] + 0.5 * step * friction.viscous(0, 0);
   const double b = 0.5 * step * friction.viscous(0, 1);
   const double d = inertia_[1] + 0.5 * step * friction.viscous(1, 1);
   const double inverse = 1.0 / (a * d - b * b);
-  const FrictionTerm& term = friction.terms[nearest];
-  const Eigen::Vector2d without(inverse * (d * momentum[0] - b * momentum[1]),
-                                inverse * (a * momentum[1] - b * momentum[0]));
-  const Eigen::Vector2d response(inverse * (d * term.slip[0] - b * term.slip[1]),
-                                 inverse * (a * term.slip[1] - b * term.slip[0]));
-  const double most = step * term.strength * term.slip.dot(response);  // of its slip, that this term can take
-  double share = 0.0;                                                  // of its strength that it acts with
-  if (!solveSlip(term.slip.dot(without), most, widths[nearest], share))
-  {
-    return false;
-  }
-  const Eigen::Vector2d v = without - step * term.strength * share * response;
+  const auto answer = [&](const Eigen::Vector2d& to)
+  { return Eigen::Vector2d(inverse * (d * to[0] - b * to[1]), inverse * (a * to[1] - b * to[0])); };
+  Eigen::Vector2d v = answer(momentum);
+  // The terms that do not go on as they slid: one of them may be the one unknown.
+  const double follow = std::abs(velocity_ratio);
+  std::size_t nearest = count;
   for (std::size_t j = 0; j < count; ++j)
   {
-    if (j != nearest && !(senses[j] * friction.terms[j].slip.dot(v) > SLIDING * widths[j]))
+    if (!goesOn(friction.terms[j], follow, impulses[j], v))
+    {
+      if (nearest < count)
+      {
+        return false;
+      }
+      nearest = j;
+    }
+  }
+  if (nearest < count)
+  {
+    const FrictionTerm& term = friction.terms[nearest];
+    const Eigen::Vector2d response = answer(term.slip);
+    const Eigen::Vector2d without = v + impulses[nearest] * response;
+    const double most = step * term.strength * term.slip.dot(response);  // of its slip, that this term can take
+    double share = 0.0;                                                  // of its strength that it acts with
+    if (!solveSlip(term.slip.dot(without), most, width(term, velocity_ratio), share))
     {
       return false;
     }
+    v = without - step * term.strength * share * response;
+    for (std::size_t j = 0; j < count; ++j)
+    {
+      if (j != nearest && !goesOn(friction.terms[j], follow, impulses[j], v))
+      {
+        return false;
+      }
+    }
   }
+  constexpr double STICK_RANGE = 1e3;  // as in `solve`
   if (!(std::abs(v[0]) >= STICK_RANGE * width_))
   {
     return false;
   }
   speeds = v;
   return true;
+}
+
+/// Whether a term slides at these speeds in the sense of its impulse, far from standing still.
+bool DryFriction::goesOn(const FrictionTerm& term, double follow, double impulse,
+                         const Eigen::Vector2d& speeds) const noexcept
+{
+  constexpr double SLIDING = 3e4;  // slip over the regularisation's width
+  const double slip = term.slip[0] * speeds[0] + term.slip[1] * speeds[1];
+  return std::copysign(1.0, impulse) * slip >
+         SLIDING * width_ * (std::abs(term.slip[0]) + follow * std::abs(term.slip[1]));
 }
 
 Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double velocity_ratio,

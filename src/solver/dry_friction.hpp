@@ -25,8 +25,8 @@ public:
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
-  /// The same minimum where every term but one slides as it did at the old speeds, far from standing still: linear but
-  /// for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by the tails of the
+  /// The same minimum where every term, or every one but one, slides as it did at the old speeds, far from standing
+  /// still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by the tails of the
   /// regularisation, less than 1e-9 of the friction.
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
@@ -37,6 +37,7 @@ public:
 
 private:
   double width(const FrictionTerm& term, double velocity_ratio) const noexcept;
+  bool goesOn(const FrictionTerm& term, double follow, double impulse, const Eigen::Vector2d& speeds) const noexcept;
 
   Eigen::Vector2d inertia_;
   double width_;

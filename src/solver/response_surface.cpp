@@ -7,34 +7,6 @@
 
 namespace hjt
 {
-namespace
-{
-/// Cubic on 0 ... 1 from value and slope at its start and at its end, and its derivatives.
-class Hermite
-{
-public:
-  explicit Hermite(double t) noexcept : t_(t), r_(1.0 - t) {}
-
-  double value(const std::array<double, 4>& x) const noexcept
-  {
-    const double end = t_ * t_ * (3.0 - 2.0 * t_);
-    return x[0] + end * (x[2] - x[0]) + t_ * r_ * (r_ * x[1] - t_ * x[3]);
-  }
-  double rate(const std::array<double, 4>& x) const noexcept
-  {
-    return 6.0 * t_ * r_ * (x[2] - x[0]) + r_ * (1.0 - 3.0 * t_) * x[1] + t_ * (3.0 * t_ - 2.0) * x[3];
-  }
-  double curvature(const std::array<double, 4>& x) const noexcept
-  {
-    return 6.0 * (1.0 - 2.0 * t_) * (x[2] - x[0]) + (6.0 * t_ - 4.0) * x[1] + (6.0 * t_ - 2.0) * x[3];
-  }
-
-private:
-  double t_;
-  double r_;
-};
-}  // namespace
-
 LineIndex::LineIndex(const std::vector<double>& lines)
 {
   if (lines.empty())
@@ -63,43 +35,46 @@ LineIndex::LineIndex(const std::vector<double>& lines)
 
 SurfaceCell::Energy SurfaceCell::energy() const noexcept
 {
-  using Table = SurfaceTable;
-  const Hermite along_v(v);
-  const Hermite along_u(u);
-  const double h = height;
-  const double w = width;
-  // At the lower and the higher u, at this v; derivatives by the place within the cell.
-  std::array<double, 2> energy;
-  std::array<double, 2> by_u;
-  std::array<double, 2> by_v;
-  std::array<double, 2> by_uv;
-  std::array<double, 2> by_vv;
-  std::array<double, 2> by_uvv;
-  for (int i = 0; i < 2; ++i)
+  // Two cubics side by side along v: of the energy and of its slope by u. By the place within the cell.
+  using Pair = Eigen::Array2d;
+  const double h = 1.0 / per_height_;
+  const double v = v_;
+  const double v_left = 1.0 - v;
+  const double blend = v * v * (3.0 - 2.0 * v);
+  struct Along
   {
-    const Node& a = below[i];
-    const Node& b = above[i];
-    const std::array<double, 4> values{ a[Table::ENERGY], h * a[Table::ENERGY_BY_V], b[Table::ENERGY],
-                                        h * b[Table::ENERGY_BY_V] };
-    const std::array<double, 4> slopes{ w * a[Table::ENERGY_BY_U], w * h * a[Table::ENERGY_BY_UV],
-                                        w * b[Table::ENERGY_BY_U], w * h * b[Table::ENERGY_BY_UV] };
-    energy[i] = along_v.value(values);
-    by_v[i] = along_v.rate(values);
-    by_vv[i] = along_v.curvature(values);
-    by_u[i] = along_v.value(slopes);
-    by_uv[i] = along_v.rate(slopes);
-    by_uvv[i] = along_v.curvature(slopes);
-  }
-  const std::array<double, 4> energies{ energy[0], by_u[0], energy[1], by_u[1] };
-  const std::array<double, 4> rates{ by_v[0], by_uv[0], by_v[1], by_uv[1] };
-  const double per_width = 1.0 / w;
-  const double per_height = 1.0 / h;
-  return { along_u.value(energies),
-           along_u.rate(energies) * per_width,
-           along_u.value(rates) * per_height,
-           along_u.curvature(energies) * per_width * per_width,
-           along_u.rate(rates) * per_width * per_height,
-           along_u.value({ by_vv[0], by_uvv[0], by_vv[1], by_uvv[1] }) * per_height * per_height };
+    Pair value, rate, curvature;
+  };
+  const auto along_v = [&](const SurfaceNode& low, const SurfaceNode& high) -> Along
+  {
+    const Eigen::Map<const Eigen::Array4d> a(low.energies().data());
+    const Eigen::Map<const Eigen::Array4d> b(high.energies().data());
+    const Pair start = h * a.tail<2>();
+    const Pair end = h * b.tail<2>();
+    const Pair rise = b.head<2>() - a.head<2>();
+    return { a.head<2>() + blend * rise + (v * v_left) * (v_left * start - v * end),
+             (6.0 * v * v_left) * rise + (v_left * (1.0 - 3.0 * v)) * start + (v * (3.0 * v - 2.0)) * end,
+             (6.0 - 12.0 * v) * rise + (6.0 * v - 4.0) * start + (6.0 * v - 2.0) * end };
+  };
+  const Along left = along_v(below_[0], above_[0]);
+  const Along right = along_v(below_[1], above_[1]);
+  const double w = 1.0 / per_width_;
+  const double u = u_;
+  const double u_left = 1.0 - u;
+  const auto value = [&](const Pair& a, const Pair& b)
+  { return a[0] + u * u * (3.0 - 2.0 * u) * (b[0] - a[0]) + u * u_left * w * (u_left * a[1] - u * b[1]); };
+  const auto rate = [&](const Pair& a, const Pair& b)
+  {
+    return 6.0 * u * u_left * (b[0] - a[0]) * per_width_ + u_left * (1.0 - 3.0 * u) * a[1] + u * (3.0 * u - 2.0) * b[1];
+  };
+  const double curvature = (6.0 - 12.0 * u) * (right.value[0] - left.value[0]) * per_width_ +
+                           (6.0 * u - 4.0) * left.value[1] + (6.0 * u - 2.0) * right.value[1];
+  return { value(left.value, right.value),
+           rate(left.value, right.value),
+           value(left.rate, right.rate) * per_height_,
+           curvature * per_width_,
+           rate(left.rate, right.rate) * per_height_,
+           value(left.curvature, right.curvature) * per_height_ * per_height_ };
 }
 
 ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations)
@@ -115,7 +90,7 @@ ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations)
   }
   for (std::size_t i = 0; i + 1 < table_.lines.size(); ++i)
   {
-    inverse_height_.push_back(1.0 / (table_.lines[i + 1] - table_.lines[i]));
+    per_height_.push_back(1.0 / (table_.lines[i + 1] - table_.lines[i]));
   }
 }
 
@@ -135,15 +110,15 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   const int column = std::min(static_cast<int>(columns), table_.columns - 1);
   const std::size_t line = line_index_.below(table_.lines, v);
   const std::size_t stride = static_cast<std::size_t>(table_.columns) + 1;
-  SurfaceCell& cell = place.cell;
-  cell.below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
-  cell.above = cell.below + stride;
-  cell.u = columns - column;
-  cell.v = (v - table_.lines[line]) * inverse_height_[line];
-  cell.width = 1.0 / table_.columns;
-  cell.height = table_.lines[line + 1] - table_.lines[line];
+  const SurfaceNode* below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
+  place.cell = { below,
+                 below + stride,
+                 columns - column,
+                 (v - table_.lines[line]) * per_height_[line],
+                 static_cast<double>(table_.columns),
+                 per_height_[line] };
   place.at = v;
-  place.deviation.below = nullptr;
+  place.deviation = {};
   if (!deviations_.pitches.empty())
   {
     locateDeviation(pitch, part, place);
@@ -166,22 +141,25 @@ void ResponseSurface::locateDeviation(std::int64_t pitch, double part, Place& pl
   const int column = std::min(static_cast<int>(columns), table.columns - 1);
   const std::size_t line = deviation_index_[within].below(table.lines, place.at);
   const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
-  const double height = table.lines[line + 1] - table.lines[line];
-  const SurfaceTable::Node* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
-  place.deviation = {
-    below, below + stride, columns - column, (place.at - table.lines[line]) / height, 1.0 / table.columns, height
-  };
+  const double per_height = 1.0 / (table.lines[line + 1] - table.lines[line]);
+  const SurfaceNode* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
+  place.deviation = { below,
+                      below + stride,
+                      columns - column,
+                      (place.at - table.lines[line]) * per_height,
+                      static_cast<double>(table.columns),
+                      per_height };
   place.lobes_swapped = deviations_.swaps_lobes && turns % 2 != 0;
 }
 
 std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept
 {
-  std::array<double, 2> forces{ place.cell.value(SurfaceTable::LOBE_FORCE),
-                                place.cell.value(SurfaceTable::LOBE_FORCE + 1) };
-  if (place.deviation.below != nullptr)
+  std::array<double, 2> forces{ place.cell.value(SurfaceNode::LOBE_FORCE),
+                                place.cell.value(SurfaceNode::LOBE_FORCE + 1) };
+  if (!place.deviation.empty())
   {
-    forces[place.lobes_swapped ? 1 : 0] += place.deviation.value(SurfaceTable::LOBE_FORCE);
-    forces[place.lobes_swapped ? 0 : 1] += place.deviation.value(SurfaceTable::LOBE_FORCE + 1);
+    forces[place.lobes_swapped ? 1 : 0] += place.deviation.value(SurfaceNode::LOBE_FORCE);
+    forces[place.lobes_swapped ? 0 : 1] += place.deviation.value(SurfaceNode::LOBE_FORCE + 1);
   }
   return forces;
 }
@@ -190,9 +168,9 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
 {
   SurfaceCell::Energy energy = place.cell.energy();
   RingResponse response;
-  response.velocity_ratio = place.cell.value(SurfaceTable::VELOCITY_RATIO);
-  response.output_stiffness = place.cell.value(SurfaceTable::OUTPUT_STIFFNESS);
-  if (place.deviation.below != nullptr)
+  response.velocity_ratio = place.cell.value(SurfaceNode::VELOCITY_RATIO);
+  response.output_stiffness = place.cell.value(SurfaceNode::OUTPUT_STIFFNESS);
+  if (!place.deviation.empty())
   {
     const SurfaceCell::Energy more = place.deviation.energy();
     energy.value += more.value;
@@ -201,8 +179,8 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
     energy.by_uu += more.by_uu;
     energy.by_uv += more.by_uv;
     energy.by_vv += more.by_vv;
-    response.velocity_ratio += place.deviation.value(SurfaceTable::VELOCITY_RATIO);
-    response.output_stiffness += place.deviation.value(SurfaceTable::OUTPUT_STIFFNESS);
+    response.velocity_ratio += place.deviation.value(SurfaceNode::VELOCITY_RATIO);
+    response.output_stiffness += place.deviation.value(SurfaceNode::OUTPUT_STIFFNESS);
   }
   const double per_pitch = pitches_per_radian_;
   const double k_uu = energy.by_uu * per_pitch * per_pitch;
@@ -220,32 +198,25 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
 
 void ResponseSurface::friction(const Place& place, RingFrictionResponse& friction) const noexcept
 {
-  using Table = SurfaceTable;
-  constexpr int FIRST = Table::CONTACT_FORCE;
-  constexpr int COUNT = Table::TEETH_LOADED - FIRST;
-  using Values = Eigen::Array<double, COUNT, 1>;
-  const auto at = [](const Table::Node& node) { return Eigen::Map<const Values>(node.data() + FIRST); };
-  const auto bilinear = [&](const SurfaceCell& cell) -> Values
-  {
-    const double w11 = cell.u * cell.v;
-    const double w10 = cell.v - w11;
-    const double w01 = cell.u - w11;
-    const double w00 = 1.0 - cell.u - w10;
-    return w00 * at(cell.below[0]) + w01 * at(cell.below[1]) + w10 * at(cell.above[0]) + w11 * at(cell.above[1]);
-  };
-  Values x = bilinear(place.cell);
-  if (place.deviation.below != nullptr)
-  {
-    x += bilinear(place.deviation);
-  }
-  friction.contact_force = x[Table::CONTACT_FORCE - FIRST];
-  friction.ring_torque = x[Table::RING_TORQUE - FIRST];
-  friction.viscous << x[Table::VISCOUS - FIRST], x[Table::VISCOUS - FIRST + 1], x[Table::VISCOUS - FIRST + 2];
+  using Value = SurfaceNode::Value;
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
-  constexpr int FLANKS = Table::FLANKS - FIRST;
-  friction.flank_by_motor = x.segment<GROUPS>(FLANKS);
-  friction.flank_by_output = x.segment<GROUPS>(FLANKS + GROUPS);
-  friction.rms_slip_by_motor = x.segment<GROUPS>(FLANKS + 2 * GROUPS);
-  friction.rms_slip_by_output = x.segment<GROUPS>(FLANKS + 3 * GROUPS);
+  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // a few more than needed: whole vectors
+  constexpr int VISCOUS = Value::VISCOUS - Value::BILINEAR;
+  constexpr int FLANKS = Value::FLANKS - Value::BILINEAR;
+  Eigen::Array<float, COUNT, 1> x = place.cell.values<COUNT>();
+  if (!place.deviation.empty())
+  {
+    x += place.deviation.values<COUNT>();
+  }
+  friction.contact_force = x[Value::CONTACT_FORCE - Value::BILINEAR];
+  friction.ring_torque = x[Value::RING_TORQUE - Value::BILINEAR];
+  friction.viscous << x[VISCOUS], x[VISCOUS + 1], x[VISCOUS + 2];
+  for (int i = 0; i < GROUPS; ++i)
+  {
+    friction.flank_by_motor[i] = x[FLANKS + i];
+    friction.flank_by_output[i] = x[FLANKS + GROUPS + i];
+    friction.rms_slip_by_motor[i] = x[FLANKS + 2 * GROUPS + i];
+    friction.rms_slip_by_output[i] = x[FLANKS + 3 * GROUPS + i];
+  }
 }
 }  // namespace hjt

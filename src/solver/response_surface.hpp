@@ -11,28 +11,76 @@
 
 namespace hjt
 {
+/// Values of the ring in equilibrium at a node of its table. Energy and torques in double precision, which their
+/// derivatives need; what is bilinear in single precision, which halves what a step reads.
+class SurfaceNode
+{
+public:
+  /// What is kept, in this order.
+  enum Value : std::uint8_t
+  {
+    ENERGY,                    // U [J]
+    ENERGY_BY_U,               // dU/du, u in pitches [J]
+    ENERGY_BY_V,               // dU/dv [J/rad]
+    ENERGY_BY_UV,              // [J/rad]
+    BILINEAR,                  // the first of these
+    CONTACT_FORCE = BILINEAR,  // [N]
+    RING_TORQUE,               // of outer race and flexing rim at the motor [N.m]
+    VISCOUS,                   // motor-motor, motor-output, output-output [N.m.s/rad]
+    FLANKS = VISCOUS + 3,      // slip (2) and rms slip (2) a group [N.m], [m/rad]
+    VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
+    OUTPUT_STIFFNESS,                                                  // [N.m/rad]
+    TEETH_LOADED,                                                      // [-]
+    LOBE_FORCE,                                                        // of both lobes [N]
+    VALUES = LOBE_FORCE + 2
+  };
+  using Energies = std::array<double, BILINEAR>;
+  using Bilinear = std::array<float, VALUES - BILINEAR>;
+
+  SurfaceNode() = default;
+  explicit SurfaceNode(const std::array<double, VALUES>& values) noexcept
+  {
+    for (int i = 0; i < VALUES; ++i)
+    {
+      set(i, values[static_cast<std::size_t>(i)]);
+    }
+  }
+
+  double operator[](int which) const noexcept
+  {
+    return which < BILINEAR ? energies_[static_cast<std::size_t>(which)] :
+                              static_cast<double>(bilinear_[static_cast<std::size_t>(which - BILINEAR)]);
+  }
+  void set(int which, double value) noexcept
+  {
+    if (which < BILINEAR)
+    {
+      energies_[static_cast<std::size_t>(which)] = value;
+    }
+    else
+    {
+      bilinear_[static_cast<std::size_t>(which - BILINEAR)] = static_cast<float>(value);
+    }
+  }
+
+  const Energies& energies() const noexcept { return energies_; }
+  const Bilinear& bilinear() const noexcept { return bilinear_; }
+
+  friend bool operator==(const SurfaceNode& a, const SurfaceNode& b) noexcept
+  {
+    return a.energies_ == b.energies_ && a.bilinear_ == b.bilinear_;
+  }
+
+private:
+  Energies energies_{};
+  Bilinear bilinear_{};
+};
+
 /// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
 /// generator angle / ratio. Plain data: what is built, cached and read.
 struct SurfaceTable
 {
-  /// What is kept at every node, in this order.
-  enum Value : std::uint8_t
-  {
-    ENERGY,                // U [J]
-    ENERGY_BY_U,           // dU/du, u in pitches [J]
-    ENERGY_BY_V,           // dU/dv [J/rad]
-    ENERGY_BY_UV,          // [J/rad]
-    VELOCITY_RATIO,        // [-]
-    OUTPUT_STIFFNESS,      // [N.m/rad]
-    CONTACT_FORCE,         // [N]
-    RING_TORQUE,           // of outer race and flexing rim at the motor [N.m]
-    VISCOUS,               // motor-motor, motor-output, output-output [N.m.s/rad]
-    FLANKS = VISCOUS + 3,  // slip (2) and rms slip (2) a group [N.m], [m/rad]
-    TEETH_LOADED = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
-    LOBE_FORCE,                                                      // of both lobes [N]
-    VALUES = LOBE_FORCE + 2
-  };
-  using Node = std::array<double, VALUES>;
+  using Node = SurfaceNode;
 
   double pitch{};             ///< of the flexspline's teeth [rad]
   double ratio{};             ///< nominal: v stays the same when the drive has turned by a tooth pitch [-]
@@ -48,9 +96,9 @@ struct DeviationTable
 {
   struct Pitch
   {
-    int columns{};                          ///< intervals of u, equal
-    std::vector<double> lines;              ///< v of the lines, ascending [rad]; none: nothing departs
-    std::vector<SurfaceTable::Node> nodes;  ///< (columns + 1) a line
+    int columns{};                   ///< intervals of u, equal
+    std::vector<double> lines;       ///< v of the lines, ascending [rad]; none: nothing departs
+    std::vector<SurfaceNode> nodes;  ///< (columns + 1) a line
   };
   std::vector<Pitch> pitches;  ///< none: there are no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
@@ -77,16 +125,22 @@ private:
 };
 
 /// The part of a table between two columns and two lines.
-struct SurfaceCell
+class SurfaceCell
 {
-  using Node = SurfaceTable::Node;
+public:
+  /// Of no table.
+  SurfaceCell() = default;
 
-  const Node* below{};  ///< node at its lower u on the line below; the next in memory is at the higher u
-  const Node* above{};
-  double u{};       ///< of a place within the cell, 0 ... 1
-  double v{};       ///< likewise
-  double width{};   ///< in u [pitches]
-  double height{};  ///< in v [rad]
+  /// `below`: node at its lower u on the line below; the next in memory is at the higher u. `above`: likewise.
+  /// `u`, `v`: of a place within the cell, 0 ... 1. `per_width`, `per_height`: over its width in u [pitches] and its
+  /// height in v [rad].
+  SurfaceCell(const SurfaceNode* below, const SurfaceNode* above, double u, double v, double per_width,
+              double per_height) noexcept
+    : below_(below), above_(above), u_(u), v_(v), per_width_(per_width), per_height_(per_height)
+  {
+  }
+
+  bool empty() const noexcept { return below_ == nullptr; }
 
   /// Energy and its derivatives by u [pitches] and v [rad]: bicubic after Hermite.
   struct Energy
@@ -98,10 +152,33 @@ struct SurfaceCell
   /// Bilinear, of any value but the energy's.
   double value(int which) const noexcept
   {
-    const double low = (1.0 - u) * below[0][which] + u * below[1][which];
-    const double high = (1.0 - u) * above[0][which] + u * above[1][which];
-    return (1.0 - v) * low + v * high;
+    const double low = (1.0 - u_) * below_[0][which] + u_ * below_[1][which];
+    const double high = (1.0 - u_) * above_[0][which] + u_ * above_[1][which];
+    return (1.0 - v_) * low + v_ * high;
   }
+
+  /// The first so many of them at once.
+  template <int COUNT>
+  Eigen::Array<float, COUNT, 1> values() const noexcept
+  {
+    using Values = Eigen::Array<float, COUNT, 1>;
+    const auto at = [](const SurfaceNode& node) { return Eigen::Map<const Values>(node.bilinear().data()); };
+    const auto u = static_cast<float>(u_);
+    const auto v = static_cast<float>(v_);
+    const float w11 = u * v;
+    const float w10 = v - w11;
+    const float w01 = u - w11;
+    const float w00 = 1.0f - u - w10;
+    return w00 * at(below_[0]) + w01 * at(below_[1]) + w10 * at(above_[0]) + w11 * at(above_[1]);
+  }
+
+private:
+  const SurfaceNode* below_{};
+  const SurfaceNode* above_{};
+  double u_{};
+  double v_{};
+  double per_width_{};
+  double per_height_{};
 };
 
 /// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
@@ -119,7 +196,7 @@ public:
   struct Place
   {
     SurfaceCell cell;
-    SurfaceCell deviation;  ///< without nodes where nothing departs
+    SurfaceCell deviation;  ///< empty where nothing departs
     bool lobes_swapped{};   ///< against how the deviations were measured
     double at{};            ///< v [rad]
   };
@@ -147,7 +224,18 @@ public:
   /// Bilinear, of any value but the energy's.
   static double value(const Place& place, int which) noexcept
   {
-    return place.cell.value(which) + (place.deviation.below != nullptr ? place.deviation.value(which) : 0.0);
+    return place.cell.value(which) + (place.deviation.empty() ? 0.0 : place.deviation.value(which));
+  }
+
+  /// All of these, without those of the energy.
+  static SurfaceNode bilinear(const Place& place) noexcept
+  {
+    SurfaceNode node;
+    for (int i = SurfaceNode::BILINEAR; i < SurfaceNode::VALUES; ++i)
+    {
+      node.set(i, value(place, i));
+    }
+    return node;
   }
 
   /// Mesh force of both lobes [N].
@@ -166,7 +254,7 @@ private:
   double pitches_per_radian_;
   double inverse_ratio_;
   LineIndex line_index_;
-  std::vector<double> inverse_height_;
+  std::vector<double> per_height_;          // of the intervals between lines [1/rad]
   std::vector<LineIndex> deviation_index_;  // one a pitch
 };
 }  // namespace hjt

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-using Node = SurfaceTable::Node;
+using Node = SurfaceNode;
 /// Nodes of one tooth pitch on one line, with both its ends.
 using Strip = std::vector<Node>;
 using Torques = Eigen::Array2d;  // on output and motor [N.m]
@@ -133,7 +133,10 @@ private:
       good = good && actual_.moveTo(actual_.pitch() * (static_cast<double>(pitch) + part), v);
       Node node = good ? actual_.measure() : Node{};
       const Node& reference = equal[static_cast<std::size_t>(std::llround(part * static_cast<double>(equal.size())))];
-      std::transform(node.begin(), node.end(), reference.begin(), node.begin(), std::minus<>());
+      for (int i = 0; i < SurfaceNode::VALUES; ++i)
+      {
+        node.set(i, node[i] - reference[i]);
+      }
       return node;
     };
     std::vector<Node> edges(pitches_);  // at the start of each pitch
@@ -192,7 +195,7 @@ private:
 
   Torques torques(const Node& deviation) const
   {
-    return torques(deviation[SurfaceTable::ENERGY_BY_U], deviation[SurfaceTable::ENERGY_BY_V]);
+    return torques(deviation[SurfaceNode::ENERGY_BY_U], deviation[SurfaceNode::ENERGY_BY_V]);
   }
 
   Torques torques(double by_u, double by_v) const { return { -by_v, by_v / actual_.ratio() - by_u / actual_.pitch() }; }
@@ -250,7 +253,8 @@ private:
       for (std::size_t i = 1; i < stride; ++i)
       {
         const double part = static_cast<double>(i) / static_cast<double>(stride);
-        if (!agrees({ ends.data(), ends.data(), part, 0.0, 1.0 / columns, 1.0 }, strip[first + i], tolerance))
+        if (!agrees({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i],
+                    tolerance))
         {
           return false;
         }
@@ -323,7 +327,7 @@ private:
     const auto columns = static_cast<std::size_t>(columns_[pitch]);
     for (std::size_t i = 0; i < columns; ++i)
     {
-      if (!agrees({ &below[i], &above[i], 0.0, 0.5, 1.0 / static_cast<double>(columns), height }, line.strips[pitch][i],
+      if (!agrees({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, line.strips[pitch][i],
                   line.tolerance))
       {
         return false;
@@ -392,19 +396,18 @@ private:
       const double height = pitch.lines[i] - pitch.lines[kept];
       for (std::size_t between = kept + 1; between < i; ++between)
       {
-        const SurfaceCell cell{
-          low.data(), high.data(), 0.0, (pitch.lines[between] - pitch.lines[kept]) / height, 1.0 / pitch.columns, height
-        };
+        const SurfaceCell cell(low.data(), high.data(), 0.0, (pitch.lines[between] - pitch.lines[kept]) / height,
+                               static_cast<double>(pitch.columns), 1.0 / height);
         const SurfaceCell::Energy energy = cell.energy();
         Node& node = pitch.nodes[between * stride + column];
-        for (std::size_t value = 0; value < node.size(); ++value)
+        for (int value = SurfaceNode::BILINEAR; value < SurfaceNode::VALUES; ++value)
         {
-          node[value] = cell.value(static_cast<int>(value));
+          node.set(value, cell.value(value));
         }
-        node[SurfaceTable::ENERGY] = energy.value;
-        node[SurfaceTable::ENERGY_BY_U] = energy.by_u;
-        node[SurfaceTable::ENERGY_BY_V] = energy.by_v;
-        node[SurfaceTable::ENERGY_BY_UV] = energy.by_uv;
+        node.set(SurfaceNode::ENERGY, energy.value);
+        node.set(SurfaceNode::ENERGY_BY_U, energy.by_u);
+        node.set(SurfaceNode::ENERGY_BY_V, energy.by_v);
+        node.set(SurfaceNode::ENERGY_BY_UV, energy.by_uv);
       }
       kept = i;
       ++in_common;

@@ -2,17 +2,23 @@
 #include "surface/surface_builder.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <mutex>
 #include <sstream>
 #include <vector>
+
+#include "surface/parallel_tasks.hpp"
 
 namespace hjt
 {
 namespace
 {
-using Node = SurfaceTable::Node;
+using Node = SurfaceNode;
 using Line = std::vector<Node>;
+using Lines = std::map<double, Line>;  // by their v [rad]
 
 constexpr double TORQUE_MARGIN = 2.0;  // the table reaches to this times the torque limits
 constexpr int COARSE_LINES = 32;       // a side, before refinement, about
@@ -20,67 +26,48 @@ constexpr int MAX_HALVINGS = 9;        // of an interval between two lines
 constexpr int MIN_COLUMNS = 16;
 constexpr int MAX_COLUMNS = 64;
 
-class SurfaceBuilder
+/// The line at the opposite v, of a gear whose mirror image is the gear itself.
+Line mirrorImage(const Line& line)
+{
+  Line image(line.rbegin(), line.rend());
+  for (Node& node : image)
+  {
+    node.set(SurfaceNode::ENERGY_BY_U, -node[SurfaceNode::ENERGY_BY_U]);
+    node.set(SurfaceNode::ENERGY_BY_V, -node[SurfaceNode::ENERGY_BY_V]);
+  }
+  return image;
+}
+
+/// A ring that measures lines of the table.
+class LineRing
 {
 public:
-  SurfaceBuilder(const Parameters& parameters, const JointModel& model, const std::function<void(double)>& progress,
-                 std::size_t max_points)
-    : parameters_(parameters), progress_(progress), max_points_(max_points), ring_(parameters, model)
-  {
-    table_.pitch = ring_.pitch();
-    table_.ratio = ring_.ratio();
-  }
+  LineRing(const Parameters& parameters, const JointModel& model) : ring_(parameters, model) {}
 
-  SurfaceBuild build()
-  {
-    SurfaceBuild result;
-    if (ring_.torqueLimit() > 0.0)
-    {
-      insert();
-    }
-    else
-    {
-      failure_reason_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
-    }
-    if (good())
-    {
-      coverRange();
-    }
-    if (good())
-    {
-      refine();
-    }
-    result.failure_reason = failure_reason_;
-    result.solves = ring_.solves();
-    for (const auto& [v, line] : lines_)
-    {
-      table_.lines.push_back(v);
-      table_.nodes.insert(table_.nodes.end(), line.begin(), line.end());
-    }
-    result.table = std::move(table_);
-    return result;
-  }
+  const SurfaceRing& ring() const noexcept { return ring_; }
+  SurfaceRing& ring() noexcept { return ring_; }
 
-private:
-  bool good() const { return failure_reason_.empty(); }
-
-  void insert()
+  /// From cold to an output angle by steps of the coarse lines, so that it stays on their branch. False: no way.
+  bool leadTo(double v, double step)
   {
-    if (!ring_.insert())
+    const int steps = static_cast<int>(std::lround(std::abs(v) / step));
+    bool good = ring_.insert();
+    for (int i = 0; i <= steps && good; ++i)
     {
-      failure_reason_ = "the insertion of the wave generator did not converge";
+      good = ring_.moveTo(0.0, std::copysign(i * step, v));
     }
+    return good;
   }
 
   /// The nodes at one v, to and fro so that the ring never moves far. Empty: no equilibrium.
-  Line measureLine(double v, int columns)
+  Line measure(double v, int columns)
   {
     Line line(static_cast<std::size_t>(columns) + 1);
-    const bool backwards = ring_.motorAngle() > 0.5 * table_.pitch;
+    const bool backwards = ring_.motorAngle() > 0.5 * ring_.pitch();
     for (int i = 0; i < columns; ++i)
     {
       const int column = backwards ? columns - 1 - i : i;
-      if (!ring_.moveTo(table_.pitch * column / columns, v))
+      if (!ring_.moveTo(ring_.pitch() * column / columns, v))
       {
         return {};
       }
@@ -90,195 +77,348 @@ private:
     return line;
   }
 
-  /// Whether the surface over two lines gives the torques of a node that lies between them.
-  bool agrees(const ResponseSurface& surface, double motor_angle, double v, const Node& node) const
+private:
+  SurfaceRing ring_;
+};
+
+/// Whether a line half way between two is what the table over those two gives there.
+class LineCheck
+{
+public:
+  LineCheck(const SurfaceRing& ring, int columns) : ring_(ring), columns_(columns) {}
+
+  /// The torques at every column; the friction in the mean over the line. Where a tooth begins to touch, the rates of
+  /// all teeth jump and with them the friction, at another place on every line: between two lines no grid has that.
+  bool agrees(double v_below, const Line& below, double v_above, const Line& above, double v, const Line& line) const
   {
-    ResponseSurface::Place place;
-    if (!surface.locate(motor_angle, v + motor_angle / table_.ratio, place))
+    const ResponseSurface surface = between(v_below, below, v_above, above);
+    double friction_misses = 0.0;  // over their tolerance [-]
+    for (int column = 0; column < columns_; ++column)
     {
-      return false;
+      const double motor_angle = ring_.pitch() * column / columns_;
+      const Node& node = line[static_cast<std::size_t>(column)];
+      ResponseSurface::Place place;
+      if (!surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place) || !torquesAgree(surface, place, node))
+      {
+        return false;
+      }
+      friction_misses += std::abs(ring_.frictionTorque(ResponseSurface::bilinear(place)) - ring_.frictionTorque(node)) /
+                         ring_.frictionTolerance(node);
     }
-    const RingResponse response = surface.response(place);
-    const double output_torque = -node[SurfaceTable::ENERGY_BY_V];
-    const double motor_torque = -node[SurfaceTable::ENERGY_BY_U] / table_.pitch - output_torque / table_.ratio;
-    Node interpolated;
-    for (std::size_t i = 0; i < interpolated.size(); ++i)
-    {
-      interpolated[i] = ResponseSurface::value(place, static_cast<int>(i));
-    }
-    return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
-           std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node) &&
-           std::abs(ring_.frictionTorque(interpolated) - ring_.frictionTorque(node)) <= ring_.frictionTolerance(node);
+    return friction_misses <= columns_;
   }
 
-  ResponseSurface between(double v_below, const Line& below, double v_above, const Line& above, int columns) const
+  /// Whether the columns of a line give its torques half way between them. `finer`: the line on a multiple of columns.
+  bool columnsSuffice(double v, const Line& finer) const
+  {
+    const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);
+    Line line;
+    for (std::size_t i = 0; i < finer.size(); i += stride)
+    {
+      line.push_back(finer[i]);
+    }
+    const ResponseSurface surface = between(v, line, v + 1.0, line);
+    for (std::size_t i = 0; i + 1 < finer.size(); ++i)
+    {
+      // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
+      ResponseSurface::Place place;
+      const double motor_angle = ring_.pitch() * static_cast<double>(i) / static_cast<double>(finer.size() - 1);
+      if (surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place))
+      {
+        const RingResponse response = surface.response(place);
+        const Node& node = finer[i];
+        const double slope = response.wave_generator_torque + response.output_torque / ring_.ratio();
+        if (std::abs(slope + node[SurfaceNode::ENERGY_BY_U] / ring_.pitch()) > ring_.motorTolerance(node) ||
+            std::abs(response.output_torque + node[SurfaceNode::ENERGY_BY_V]) > ring_.outputTolerance(node))
+        {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  ResponseSurface between(double v_below, const Line& below, double v_above, const Line& above) const
   {
     SurfaceTable table;
-    table.pitch = table_.pitch;
-    table.ratio = table_.ratio;
-    table.columns = columns;
+    table.pitch = ring_.pitch();
+    table.ratio = ring_.ratio();
+    table.columns = columns_;
     table.lines = { v_below, v_above };
     table.nodes = below;
     table.nodes.insert(table.nodes.end(), above.begin(), above.end());
     return ResponseSurface(std::move(table));
   }
 
-  /// Fewest columns that give a line's torques half way between them.
-  int columnsFor(double v)
+  bool torquesAgree(const ResponseSurface& surface, const ResponseSurface::Place& place, const Node& node) const
   {
-    const Line finest = measureLine(v, 2 * MAX_COLUMNS);
-    if (finest.empty())
-    {
-      return MAX_COLUMNS;
-    }
-    for (int columns = MIN_COLUMNS; columns < MAX_COLUMNS; columns *= 2)
-    {
-      const int stride = 2 * MAX_COLUMNS / columns;
-      Line line;
-      for (int i = 0; i <= columns; ++i)
-      {
-        line.push_back(finest[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride)]);
-      }
-      const ResponseSurface surface = between(v, line, v + 1.0, line, columns);
-      bool fine = true;
-      for (int i = 0; i < 2 * MAX_COLUMNS; ++i)
-      {
-        // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
-        ResponseSurface::Place place;
-        const double motor_angle = table_.pitch * i / (2 * MAX_COLUMNS);
-        if (surface.locate(motor_angle, v + motor_angle / table_.ratio, place))
-        {
-          const RingResponse response = surface.response(place);
-          const Node& node = finest[static_cast<std::size_t>(i)];
-          const double slope = response.wave_generator_torque + response.output_torque / table_.ratio;
-          fine = fine &&
-                 std::abs(slope + node[SurfaceTable::ENERGY_BY_U] / table_.pitch) <= ring_.motorTolerance(node) &&
-                 std::abs(response.output_torque + node[SurfaceTable::ENERGY_BY_V]) <= ring_.outputTolerance(node);
-        }
-      }
-      if (fine)
-      {
-        return columns;
-      }
-    }
-    return MAX_COLUMNS;
+    const RingResponse response = surface.response(place);
+    const double output_torque = -node[SurfaceNode::ENERGY_BY_V];
+    const double motor_torque = -node[SurfaceNode::ENERGY_BY_U] / ring_.pitch() - output_torque / ring_.ratio();
+    return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
+           std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node);
   }
 
-  /// Coarse lines from no load outwards, until the torque limits with margin are reached both ways.
-  void coverRange()
+  const SurfaceRing& ring_;
+  int columns_;
+};
+
+/// Every coarse line, and every interval between two of them, is a task for itself that begins with a ring from cold:
+/// the bits of a table do not depend on the number of threads.
+class SurfaceBuilder
+{
+public:
+  SurfaceBuilder(const Parameters& parameters, const JointModel& model, const std::function<void(double)>& progress,
+                 std::size_t max_points, unsigned threads)
+    : parameters_(parameters), model_(model), progress_(progress), max_points_(max_points), threads_(threads)
   {
-    const double step = ring_.twist(TORQUE_MARGIN * ring_.torqueLimit()) / COARSE_LINES;
-    table_.columns = MIN_COLUMNS;
+  }
+
+  SurfaceBuild build()
+  {
+    SurfaceBuild result;
+    LineRing line_ring(parameters_, model_);
+    SurfaceRing& ring = line_ring.ring();
+    limit_ = ring.torqueLimit();
+    step_ = ring.twist(TORQUE_MARGIN * limit_) / COARSE_LINES;
+    if (!(limit_ > 0.0))
+    {
+      failure_reason_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
+    }
+    else if (!ring.insert())
+    {
+      failure_reason_ = "the insertion of the wave generator did not converge";
+    }
+    if (good())
+    {
+      columns_ = fewestColumns(line_ring);
+      mirrored_ = ring.isMirrored();
+      coverRange(line_ring);
+    }
+    if (good())
+    {
+      refine();
+    }
+    if (good())
+    {
+      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {} };
+      fill(result.table);
+    }
+    result.failure_reason = failure_reason_;
+    result.solves = solves_ + ring.solves();
+    return result;
+  }
+
+private:
+  bool good() const { return failure_reason_.empty(); }
+
+  /// Fewest columns that give a line's torques half way between them.
+  int fewestColumns(LineRing& ring)
+  {
+    int columns = MIN_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
     {
-      table_.columns = std::max(table_.columns, columnsFor(-ring_.twist(load * ring_.torqueLimit())));
+      const double v = -ring.ring().twist(load * limit_);
+      const Line finest = ring.measure(v, 2 * MAX_COLUMNS);
+      while (columns < MAX_COLUMNS && (finest.empty() || !LineCheck(ring.ring(), columns).columnsSuffice(v, finest)))
+      {
+        columns *= 2;
+      }
     }
+    return columns;
+  }
+
+  /// Coarse lines until the torque limits with margin are reached both ways; one way where the other is its mirror
+  /// image.
+  void coverRange(LineRing& ring)
+  {
     for (const double direction : { 1.0, -1.0 })
     {
-      insert();
+      bool found = ring.leadTo(0.0, step_);
       double reached = 0.0;
-      for (int i = 0; i <= 2 * COARSE_LINES && reached < TORQUE_MARGIN * ring_.torqueLimit(); ++i)
+      for (int i = direction > 0.0 ? 0 : 1;
+           i <= 2 * COARSE_LINES && found && reached < TORQUE_MARGIN * limit_ && !(mirrored_ && direction < 0.0); ++i)
       {
-        const double v = direction * i * step;
-        Line line = measureLine(v, table_.columns);
-        if (line.empty())
+        const double v = direction * i * step_;
+        found = ring.ring().moveTo(0.0, v);
+        if (found)
         {
-          break;
+          reached = std::abs(ring.ring().measure()[SurfaceNode::ENERGY_BY_V]);
+          coarse_.push_back(v);
         }
-        reached = std::abs(line.front()[SurfaceTable::ENERGY_BY_V]);
-        lines_[v] = std::move(line);
-        report(0.2 * (direction < 0.0 ? 1.0 : 0.0) +
-               0.2 * std::min(1.0, reached / (TORQUE_MARGIN * ring_.torqueLimit())));
       }
-      if (reached < ring_.torqueLimit())
-      {
-        std::ostringstream text;
-        text << "the ring finds no equilibrium beyond " << reached << " N.m at the output, less than the "
-             << ring_.torqueLimit() << " N.m that load or motor can bring";
-        failure_reason_ = text.str();
-      }
+    }
+    std::sort(coarse_.begin(), coarse_.end());
+    std::vector<Line> lines(coarse_.size());
+    run(coarse_.size(), 0.0, 0.1,
+        [&](std::size_t i)
+        {
+          LineRing own(parameters_, model_);
+          if (own.leadTo(coarse_[i], step_))
+          {
+            lines[i] = measure(own, coarse_[i]);
+          }
+          solves_ += own.ring().solves();
+        });
+    keepRange(lines);
+  }
+
+  /// The lines from no load outwards, up to where there is no equilibrium any more.
+  void keepRange(std::vector<Line>& lines)
+  {
+    const auto none = static_cast<std::size_t>(std::find(coarse_.begin(), coarse_.end(), 0.0) - coarse_.begin());
+    std::size_t first = none;
+    std::size_t end = none;
+    while (end < lines.size() && !lines[end].empty())
+    {
+      ++end;
+    }
+    while (first > 0 && !lines[first - 1].empty())
+    {
+      --first;
+    }
+    const auto reached = [&](std::size_t i) { return std::abs(lines[i].front()[SurfaceNode::ENERGY_BY_V]); };
+    const double least = end == none ? 0.0 : mirrored_ ? reached(end - 1) : std::min(reached(end - 1), reached(first));
+    if (good() && least < limit_)
+    {
+      std::ostringstream text;
+      text << "the ring finds no equilibrium beyond " << least << " N.m at the output, less than the " << limit_
+           << " N.m that load or motor can bring";
+      failure_reason_ = text.str();
+    }
+    coarse_ = { coarse_.begin() + static_cast<std::ptrdiff_t>(first),
+                coarse_.begin() + static_cast<std::ptrdiff_t>(end) };
+    for (std::size_t i = first; i < end; ++i)
+    {
+      lines_[coarse_[i - first]] = std::move(lines[i]);
     }
   }
 
   void refine()
   {
-    std::vector<double> coarse;
-    for (const auto& [v, line] : lines_)
+    std::vector<Lines> between(coarse_.size() - 1);
+    run(between.size(), 0.1, 1.0,
+        [&](std::size_t i)
+        {
+          LineRing own(parameters_, model_);
+          const double inner = std::abs(coarse_[i]) < std::abs(coarse_[i + 1]) ? coarse_[i] : coarse_[i + 1];
+          if (own.leadTo(inner, step_))
+          {
+            refine(own, { coarse_[i], lines_.at(coarse_[i]) }, { coarse_[i + 1], lines_.at(coarse_[i + 1]) }, 0,
+                   between[i]);
+          }
+          else
+          {
+            fail("the ring did not come back to an equilibrium that it had been in");
+          }
+          solves_ += own.ring().solves();
+        });
+    for (Lines& lines : between)
     {
-      coarse.push_back(v);
-    }
-    // Down to the lowest line by way of all others, so that the ring stays on the branch of the coarse lines.
-    for (auto v = coarse.rbegin(); v != coarse.rend(); ++v)
-    {
-      if (!ring_.moveTo(0.0, *v))
-      {
-        failure_reason_ = "the ring did not come back to an equilibrium that it had been in";
-        return;
-      }
-    }
-    for (std::size_t i = 0; i + 1 < coarse.size() && good(); ++i)
-    {
-      refine(coarse[i], coarse[i + 1], 0);
-      report(0.4 + 0.6 * static_cast<double>(i + 1) / static_cast<double>(coarse.size() - 1));
+      lines_.merge(lines);
     }
   }
 
-  void refine(double below, double above, int halvings)
+  struct Placed
   {
-    if (lines_.size() * (static_cast<std::size_t>(table_.columns) + 1) >= max_points_)
-    {
-      failure_reason_ = tooManyPoints(parameters_, max_points_);
-      return;
-    }
-    const double middle = 0.5 * (below + above);
-    Line line = measureLine(middle, table_.columns);
+    double v;
+    const Line& line;
+  };
+
+  void refine(LineRing& ring, const Placed& below, const Placed& above, int halvings, Lines& found)
+  {
+    const double middle = 0.5 * (below.v + above.v);
+    const Line& line = found[middle] = measure(ring, middle);
     if (line.empty())
     {
-      failure_reason_ = "the ring found no equilibrium between two that it had been in";
-      return;
+      fail("the ring found no equilibrium between two that it had been in");
     }
-    const ResponseSurface surface = between(below, lines_[below], above, lines_[above], table_.columns);
-    bool fine = halvings >= MAX_HALVINGS;
-    if (!fine)
+    else if (halvings < MAX_HALVINGS &&
+             !LineCheck(ring.ring(), columns_).agrees(below.v, below.line, above.v, above.line, middle, line))
     {
-      fine = true;
-      for (int column = 0; column < table_.columns && fine; ++column)
+      refine(ring, below, { middle, line }, halvings + 1, found);
+      if (!failed_)
       {
-        fine = agrees(surface, table_.pitch * column / table_.columns, middle, line[static_cast<std::size_t>(column)]);
+        refine(ring, { middle, line }, above, halvings + 1, found);
       }
-    }
-    lines_[middle] = std::move(line);
-    if (!fine)
-    {
-      refine(below, middle, halvings + 1);
-    }
-    if (!fine && good())
-    {
-      refine(middle, above, halvings + 1);
     }
   }
 
-  void report(double done) const
+  /// A line of the table. Empty: no equilibrium, too many points, or another task has failed.
+  Line measure(LineRing& ring, double v)
   {
-    if (progress_)
+    const std::size_t size = (static_cast<std::size_t>(columns_) + 1) * (mirrored_ ? 2 : 1);
+    if (points_.fetch_add(size) + size > max_points_)
     {
-      progress_(done);
+      fail(tooManyPoints(parameters_, max_points_));
     }
+    return failed_ ? Line{} : ring.measure(v, columns_);
+  }
+
+  /// The first reason counts.
+  void fail(const std::string& reason)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failed_)
+    {
+      failure_reason_ = reason;
+    }
+    failed_ = true;
+  }
+
+  void fill(SurfaceTable& table)
+  {
+    if (mirrored_)
+    {
+      Lines mirrored;
+      for (const auto& [v, line] : lines_)
+      {
+        mirrored[-v] = v > 0.0 ? mirrorImage(line) : line;
+      }
+      lines_.merge(mirrored);
+    }
+    for (const auto& [v, line] : lines_)
+    {
+      table.lines.push_back(v);
+      table.nodes.insert(table.nodes.end(), line.begin(), line.end());
+    }
+  }
+
+  void run(std::size_t count, double from, double to, const std::function<void(std::size_t)>& task)
+  {
+    runTasks(count, threads_, task,
+             [&](std::size_t done)
+             {
+               if (progress_)
+               {
+                 progress_(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
+               }
+             });
   }
 
   const Parameters& parameters_;
+  const JointModel& model_;
   std::function<void(double)> progress_;
   std::size_t max_points_;
-  SurfaceRing ring_;
-  SurfaceTable table_;
-  std::map<double, Line> lines_;
+  unsigned threads_;
+  int columns_{};
+  double limit_{};              // torque [N.m]
+  double step_{};               // between coarse lines [rad]
+  bool mirrored_{};             // only the half of v >= 0 is measured
+  std::vector<double> coarse_;  // lines, ascending
+  Lines lines_;
+  std::atomic<std::size_t> points_{ 0 };
+  std::atomic<int> solves_{ 0 };
+  std::atomic<bool> failed_{ false };
+  std::mutex mutex_;  // of the reason
   std::string failure_reason_;
 };
 }  // namespace
 
 SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
-                          const std::function<void(double)>& progress, std::size_t max_points)
+                          const std::function<void(double)>& progress, std::size_t max_points, unsigned threads)
 {
-  return SurfaceBuilder(parameters, model, progress, max_points).build();
+  return SurfaceBuilder(parameters, model, progress, max_points, threads).build();
 }
 }  // namespace hjt

@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 /// First line of a file, before the hash of the code that made it.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
-/// No table is larger; the shipped gear's has 51 MB [bytes].
+/// No table is larger; the shipped gear's has 8 MB [bytes].
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
@@ -139,11 +139,15 @@ private:
   bool good_{ true };
 };
 
-bool finite(const std::vector<SurfaceTable::Node>& nodes)
+bool finite(const std::vector<SurfaceNode>& nodes)
 {
   return std::all_of(nodes.begin(), nodes.end(),
-                     [](const SurfaceTable::Node& node)
-                     { return std::all_of(node.begin(), node.end(), [](double x) { return std::isfinite(x); }); });
+                     [](const SurfaceNode& node)
+                     {
+                       const auto is_finite = [](auto x) { return std::isfinite(x); };
+                       return std::all_of(node.energies().begin(), node.energies().end(), is_finite) &&
+                              std::all_of(node.bilinear().begin(), node.bilinear().end(), is_finite);
+                     });
 }
 
 /// Each above the one before, all finite.
@@ -320,8 +324,11 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
     return std::nullopt;
   }
   const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
+  // Beside a twin that runs, one processor is left to it.
+  const unsigned threads = std::max(1u, processors() - (source.background ? 1u : 0u));
   std::optional<SurfaceTable> table = obtain<SurfaceTable>(
-      "surface", key, source, [&] { return buildSurface(equal_parameters, equal, source.progress); });
+      "surface", key, source,
+      [&] { return buildSurface(equal_parameters, equal, source.progress, MAX_SURFACE_POINTS, threads); });
   if (!table)
   {
     return std::nullopt;

@@ -22,7 +22,7 @@ class SurfacePool
 public:
   using Surface = std::shared_ptr<const ResponseSurface>;
 
-  /// `kept`: number of surfaces, at least one, that stay in memory, the last requested ones, 50 MB each, also while no
+  /// `kept`: number of surfaces, at least one, that stay in memory, the last requested ones, 8 MB each, also while no
   /// twin uses them.
   explicit SurfacePool(std::size_t kept) : kept_(kept) {}
 

@@ -17,10 +17,11 @@ namespace hjt
 {
 namespace
 {
-using Node = SurfaceTable::Node;
+using Node = SurfaceNode;
 
 constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
+constexpr double SAME_TORQUE = 1e-6;      // of the torque limit, that equal torques may differ by [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
 
 /// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in
@@ -132,45 +133,45 @@ Node SurfaceRing::measure()
   {
     ring_.refreshSensitivities();
   }
-  Node node{};
+  std::array<double, SurfaceNode::VALUES> node{};
   const RingForces& forces = ring_.forces();
   const auto& contact = forces.of<WaveGeneratorContact>();
   const auto& mesh = forces.of<ToothMesh>();
   const Eigen::Matrix2d& k = ring_.stiffness();
   const double velocity_ratio = ring_.velocityRatio();
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  node[SurfaceTable::ENERGY] = forces.energy;
-  node[SurfaceTable::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
-  node[SurfaceTable::ENERGY_BY_V] = -forces.output_torque;
-  node[SurfaceTable::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
-  node[SurfaceTable::VELOCITY_RATIO] = velocity_ratio;
-  node[SurfaceTable::OUTPUT_STIFFNESS] = k(1, 1);
-  node[SurfaceTable::CONTACT_FORCE] = contact.force.sum();
+  node[SurfaceNode::ENERGY] = forces.energy;
+  node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
+  node[SurfaceNode::ENERGY_BY_V] = -forces.output_torque;
+  node[SurfaceNode::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
+  node[SurfaceNode::VELOCITY_RATIO] = velocity_ratio;
+  node[SurfaceNode::OUTPUT_STIFFNESS] = k(1, 1);
+  node[SurfaceNode::CONTACT_FORCE] = contact.force.sum();
   friction_.running = rates.by_motor + velocity_ratio * rates.by_output;
-  node[SurfaceTable::RING_TORQUE] = model_.ringTorque(ring_.shape(), forces, friction_.running);
+  node[SurfaceNode::RING_TORQUE] = model_.ringTorque(ring_.shape(), forces, friction_.running);
   friction_.setZero();
   model_.damping.add(contact, rates, friction_);
-  node[SurfaceTable::VISCOUS] = friction_.viscous(0, 0);
-  node[SurfaceTable::VISCOUS + 1] = friction_.viscous(0, 1);
-  node[SurfaceTable::VISCOUS + 2] = friction_.viscous(1, 1);
+  node[SurfaceNode::VISCOUS] = friction_.viscous(0, 0);
+  node[SurfaceNode::VISCOUS + 1] = friction_.viscous(0, 1);
+  node[SurfaceNode::VISCOUS + 2] = friction_.viscous(1, 1);
   unit_friction_.addTerms(model_.ring.of<ToothMesh>(), mesh, rates, { 0.0, 0.0 }, friction_);
-  groupFlanks(friction_.terms, velocity_ratio, &node[SurfaceTable::FLANKS]);
+  groupFlanks(friction_.terms, velocity_ratio, &node[SurfaceNode::FLANKS]);
   const LobeLoads lobes =
       lobeLoads({ mesh.flank_force, contact.force, tooth_angles_, ring_.position().wave_generator_angle });
-  node[SurfaceTable::TEETH_LOADED] = lobes.teeth_loaded;
-  node[SurfaceTable::LOBE_FORCE] = lobes.mesh_force[0];
-  node[SurfaceTable::LOBE_FORCE + 1] = lobes.mesh_force[1];
-  return node;
+  node[SurfaceNode::TEETH_LOADED] = lobes.teeth_loaded;
+  node[SurfaceNode::LOBE_FORCE] = lobes.mesh_force[0];
+  node[SurfaceNode::LOBE_FORCE + 1] = lobes.mesh_force[1];
+  return SurfaceNode(node);
 }
 
 double SurfaceRing::overload(const Node& node) const noexcept
 {
-  return std::abs(node[SurfaceTable::ENERGY_BY_V]) > torque_limit_ ? OVERLOAD_FACTOR : 1.0;
+  return std::abs(node[SurfaceNode::ENERGY_BY_V]) > torque_limit_ ? OVERLOAD_FACTOR : 1.0;
 }
 
 double SurfaceRing::outputTolerance(const Node& node) const noexcept
 {
-  return ANGLE_TOLERANCE * std::max(node[SurfaceTable::OUTPUT_STIFFNESS], softest_) * overload(node);
+  return ANGLE_TOLERANCE * std::max(node[SurfaceNode::OUTPUT_STIFFNESS], softest_) * overload(node);
 }
 
 double SurfaceRing::motorTolerance(const Node& node) const noexcept
@@ -189,17 +190,52 @@ double SurfaceRing::frictionTolerance(const Node& node) const noexcept
 double SurfaceRing::frictionTorque(const Node& node) const noexcept
 {
   double flanks = 0.0;
-  for (int i = SurfaceTable::FLANKS; i < SurfaceTable::FLANKS + RingFrictionResponse::FLANK_GROUPS; ++i)
+  for (int i = SurfaceNode::FLANKS; i < SurfaceNode::FLANKS + RingFrictionResponse::FLANK_GROUPS; ++i)
   {
-    flanks += std::abs(node[i] + node[SurfaceTable::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
+    flanks += std::abs(node[i] + node[SurfaceNode::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
   }
-  return model_.bearing.torque(0.0, node[SurfaceTable::CONTACT_FORCE], temperature_) + node[SurfaceTable::RING_TORQUE] +
+  return model_.bearing.torque(0.0, node[SurfaceNode::CONTACT_FORCE], temperature_) + node[SurfaceNode::RING_TORQUE] +
          static_friction_ * flanks;
+}
+
+bool SurfaceRing::isMirrored()
+{
+  constexpr double SAME_FRICTION = 1e-5;  // of itself [-]
+  constexpr int PLACES = 8;               // in a pitch
+  std::vector<Node> nodes;
+  bool mirrored = true;
+  for (const double direction : { 1.0, -1.0 })
+  {
+    mirrored = mirrored && insert();
+    std::size_t number = 0;
+    for (const double load : { 0.1, 0.4, 1.0 })
+    {
+      for (int i = 0; i < PLACES && mirrored; ++i)
+      {
+        // Not in the middle of a pitch, nor where it begins: there is each its own mirror image at no load.
+        const double angle = pitch_ * (i + 0.3) / PLACES;
+        mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
+        const Node node = mirrored ? measure() : Node{};
+        if (direction > 0.0)
+        {
+          nodes.push_back(node);
+          continue;
+        }
+        const Node& image = nodes[number++];
+        const double friction = frictionTorque(node);
+        const double by_v = node[SurfaceNode::ENERGY_BY_V] + image[SurfaceNode::ENERGY_BY_V];
+        const double by_u = node[SurfaceNode::ENERGY_BY_U] + image[SurfaceNode::ENERGY_BY_U];
+        mirrored = mirrored && std::abs(by_v) <= SAME_TORQUE * torque_limit_ &&
+                   std::abs(by_u) / pitch_ * ratio_ <= SAME_TORQUE * torque_limit_ &&
+                   std::abs(friction - frictionTorque(image)) <= SAME_FRICTION * friction;
+      }
+    }
+  }
+  return mirrored;
 }
 
 int SurfaceRing::repetition()
 {
-  constexpr double SAME = 1e-6;  // of the torque limit [-]
   constexpr double LOAD = 0.25;  // of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
   // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to
@@ -227,7 +263,7 @@ int SurfaceRing::repetition()
       const auto period = static_cast<std::size_t>(candidates[c]);
       for (std::size_t i = period; i < torques.size() && repeats[c]; ++i)
       {
-        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME * torque_limit_;
+        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME_TORQUE * torque_limit_;
       }
     }
   }

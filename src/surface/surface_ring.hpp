@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// No table of the ring has more: 150 MB; the shipped gear needs a third of it.
+/// No table of the ring has more: 85 MB; the shipped gear needs a tenth of it.
 constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 
 /// Why there is no table of more than `most` points, with the parameters that its size depends on.
@@ -32,7 +32,7 @@ public:
   bool moveTo(double motor_angle, double v);
 
   /// All values of a node at the present place.
-  SurfaceTable::Node measure();
+  SurfaceNode measure();
 
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
@@ -44,27 +44,31 @@ public:
   double twist(double torque) const noexcept { return torque / softest_; }
 
   /// How far a table's output torque may be off at a node: what 0.002 seconds of arc make [N.m].
-  double outputTolerance(const SurfaceTable::Node& node) const noexcept;
+  double outputTolerance(const SurfaceNode& node) const noexcept;
 
   /// Likewise the motor's torque: a share of the motor's torque limit, or without one of what the load's limit is at
   /// the motor [N.m].
-  double motorTolerance(const SurfaceTable::Node& node) const noexcept;
+  double motorTolerance(const SurfaceNode& node) const noexcept;
 
   /// Likewise the friction at the motor: as its torque; on balls, where teeth that begin to touch change the rates of
   /// all by some per cent and no grid resolves that, not below 1 % of the friction [N.m].
-  double frictionTolerance(const SurfaceTable::Node& node) const noexcept;
+  double frictionTolerance(const SurfaceNode& node) const noexcept;
 
   /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].
-  double frictionTorque(const SurfaceTable::Node& node) const noexcept;
+  double frictionTorque(const SurfaceNode& node) const noexcept;
 
   /// Teeth that the gear must turn by to be the same again at the same v: 1 where all teeth are equal, half a turn or a
   /// whole one where those of one member differ; 0: none of these. As torques of both signs tell, sampled once a pitch.
   int repetition();
 
+  /// Whether the gear is its own mirror image: same friction and opposite torques at opposite angles of both. As places
+  /// at three loads tell. False also where one has no equilibrium.
+  bool isMirrored();
+
   int solves() const noexcept { return solves_; }
 
   /// Beyond the torque limits tolerances are this much wider.
-  double overload(const SurfaceTable::Node& node) const noexcept;
+  double overload(const SurfaceNode& node) const noexcept;
 
 private:
   JointModel model_;

@@ -388,11 +388,11 @@ LobeLoads Twin::Impl::lobes() const noexcept
   }
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;
-  loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceTable::TEETH_LOADED)));
+  loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceNode::TEETH_LOADED)));
   loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
   const double sum = loads.mesh_force[0] + loads.mesh_force[1];
   loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
-  loads.wave_generator_force = value(SurfaceTable::CONTACT_FORCE);
+  loads.wave_generator_force = value(SurfaceNode::CONTACT_FORCE);
   return loads;
 }
 }  // namespace hjt
