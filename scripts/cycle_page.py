@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Times the twin's whole cycle with `joint_cycle_benchmark`, every scene on the full ring and on the response surface,
-and writes the table and the figure of it into docs/performance.md."""
+and each option against the shipped gear; writes the tables and the figure into docs/performance.md."""
 import argparse
 import json
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 
@@ -19,13 +20,33 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 SURFACE = "surface: "
 STEP = 100.0   # [us] at 10 kHz
 WANTED = {"full ring": 10.0, "response surface": 0.1}  # [us] a step
+OPTIONS = {
+    "straight flanks": ["mesh.profile=trapezoid"],
+    "springs under the rim": ["contact.support=springs"],
+    "single balls": ["contact.support=single_balls"],
+    "one Coulomb element in the cup": ["cup.friction_angle=0"],
+    "loss of the bending rim": ["ring.loss_factor=0.05"],
+    "dry friction of the output": ["output.coulomb_torque=5", "output.tilting_moment=100",
+                                   "output.tilting_friction=0.002"],
+    "Stribeck curve and presliding at the shaft": ["motor.stribeck_torque=0.02", "motor.presliding_angle=0.01"],
+    "current loop, ripple, cogging, hot magnets": ["motor.current_bandwidth=500", "motor.torque_ripple=0.01",
+                                                   "motor.cogging_torque=0.01",
+                                                   "motor.torque_temperature_coefficient=-0.001"],
+    "brake with play": ["brake.play=0.1", "brake.delay=0.02"],
+    "heat in two nodes": ["thermal.model=two_nodes"],
+    "run-out of the flexspline": ["manufacture.flexspline_eccentricity=[0.000005, 0]"],
+}
+ALTERNATIONS = 5
+STANDING = "standstill"
 
 
 def settings(path):
     """An overlay as `--set` takes it, numbers without an exponent."""
     for section, keys in yaml.safe_load(path.read_text()).items():
         for key, value in keys.items():
-            text = f"[{', '.join(f'{number:.9f}' for number in value)}]" if isinstance(value, list) else f"{value:.9f}"
+            text = value if isinstance(value, str) else f"{value:.9f}"
+            if isinstance(value, list):
+                text = f"[{', '.join(f'{number:.9f}' for number in value)}]"
             yield f"{section}.{key}={text}"
 
 
@@ -47,6 +68,29 @@ def rows(options):
     print("performance: six joints", file=sys.stderr)
     for row in measure(options, "--joints", "6"):
         yield {**row, "gear": "shipped", "joints": 6}
+
+
+def moving_times(options, arguments):
+    """Median time of a step [us] in each scene that moves."""
+    short = argparse.Namespace(**{**vars(options), "duration": options.duration / 10})
+    return [row["median_us"] for row in measure(short, "--watch", "teeth", *arguments)
+            if not row["scene"].startswith(STANDING)]
+
+
+def option_rows(options):
+    """Time of a step over that of the shipped gear: median over the scenes and over alternating runs."""
+    cases = {name: [argument for setting in chosen for argument in ("--set", setting)]
+             for name, chosen in OPTIONS.items()}
+    cases["all of `config/golden.yaml`"] = [argument for setting in settings(options.config / "golden.yaml")
+                                            for argument in ("--set", setting)]
+    for name, arguments in cases.items():
+        print(f"performance: {name}", file=sys.stderr)
+        ratios = []
+        for _ in range(ALTERNATIONS):
+            shipped = moving_times(options, [])
+            ratios += [with_it / without for with_it, without in zip(moving_times(options, arguments), shipped)]
+        chosen = ", ".join(f"`{setting}`" for setting in OPTIONS.get(name, [])) or "overlay"
+        yield f"| {name} | {chosen} | {statistics.median(ratios):.2f} |"
 
 
 def table(measured):
@@ -99,6 +143,10 @@ def main():
         f"`scripts/performance`: {options.duration:g} s simulated a scene, twenty times that on the surface; load "
         f"average before it "
         f"{load:.1f}."])
+    page_section.write(options.docs / "performance.md", "options", [
+        "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
+        f"`scripts/performance`: full ring, every array, the scenes that move; medians of {ALTERNATIONS} alternating "
+        f"runs."])
     print(f"performance: wrote {options.docs / 'performance.md'}", file=sys.stderr)
 
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -14,13 +13,6 @@ std::string numberText(double value);
 
 /// With so many significant digits.
 std::string roundedText(double value, int digits);
-
-/// Room that `writeExact` may need [bytes].
-constexpr std::size_t EXACT_TEXT_SIZE = 32;
-
-/// Writes what printf writes as %.17g, from which the same number reads back, without a zero byte. Some ten times faster
-/// for usual numbers. @returns the end.
-char* writeExact(double value, char* text) noexcept;
 
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.
 std::string rangeText(const Range& range);

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -92,38 +86,6 @@ std::vector<std::string> allKeys()
   const Parameters parameters;
   visitFields(parameters, [&](const std::string& key, const auto&...) { keys.push_back(key); });
   return keys;
-}
-
-TEST(NumberText, WritesWhatPrintfWrites)
-{
-  std::mt19937_64 random(5);
-  const auto judge = [](double value)
-  {
-    std::array<char, EXACT_TEXT_SIZE + 1> text{};
-    *writeExact(value, text.data()) = '\0';
-    std::array<char, EXACT_TEXT_SIZE + 1> expected{};
-    std::snprintf(expected.data(), expected.size(), "%.17g", value);
-    ASSERT_STREQ(text.data(), expected.data());
-  };
-  for (int i = 0; i < 100000; ++i)
-  {
-    const std::uint64_t bits = random();
-    double any{};
-    std::memcpy(&any, &bits, sizeof(any));
-    judge(any);
-    const auto exponent = static_cast<int>(random() % 170);
-    judge(std::ldexp(static_cast<double>(random() >> 11), -exponent));
-    judge(-static_cast<double>(random() % 100000) / 1000.0);
-    const double power = std::pow(10.0, exponent % 60 - 40);
-    judge(power);
-    judge(std::nextafter(power, 0.0));
-    judge(static_cast<double>(random() % 20'000'000'000'000'000) / 32.0);  // some halfway between two texts
-  }
-  for (const double special :
-       { 0.0, -0.0, 1e16, 9999999999999998.0, 1e-34, 9.9999999999999991e-5, std::numeric_limits<double>::infinity() })
-  {
-    judge(special);
-  }
 }
 
 TEST(ShippedConfiguration, IsCompleteAndValid)

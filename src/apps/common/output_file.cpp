@@ -4,8 +4,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 
-#include "base/number_text.hpp"
+#include <fmt/format.h>
+
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -50,16 +52,16 @@ CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& co
 
 void CsvWriter::writeRow(const std::vector<double>& values)
 {
-  line_.resize(values.size() * (EXACT_TEXT_SIZE + 1) + 1);
-  char* end = line_.data();
+  line_.clear();
+  const char* separator = "";
   for (const double value : values)
   {
-    end = writeExact(value, end);
-    *end++ = ',';
+    // The shortest text that reads back as the same number.
+    fmt::format_to(std::back_inserter(line_), "{}{}", separator, value);
+    separator = ",";
   }
-  end -= values.empty() ? 0 : 1;
-  *end++ = '\n';
-  std::fwrite(line_.data(), 1, static_cast<std::size_t>(end - line_.data()), file_.get());
+  line_.push_back('\n');
+  std::fwrite(line_.data(), 1, line_.size(), file_.get());
 }
 
 void CsvWriter::close()
