@@ -34,6 +34,7 @@ void JointStepper::divideStep(const Parameters& parameters)
 {
   constexpr double AIM = 0.8 * MAX_PHASE_ADVANCE;  // of a substep: under load friction stiffens the joint further [rad]
   constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
+  constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
@@ -60,7 +61,8 @@ void JointStepper::divideStep(const Parameters& parameters)
   }
   if (phase > MAX_PHASE_ADVANCE)
   {
-    const int least = static_cast<int>(std::ceil(phase / AIM * (1.0 - 1e-12)));
+    const double wanted = std::max(phase / AIM, std::min<double>(step_ / LENGTH, MAX_SUBSTEPS));
+    const int least = static_cast<int>(std::ceil(wanted * (1.0 - 1e-12)));
     substeps_ = least + (least % 2 == 0 ? 1 : 0);
     substep_ = step_ / substeps_;
   }

@@ -146,8 +146,8 @@ TEST(DoubtfulStep, IsDividedWhereTheParametersSaySo)
   Twin coarse(goldenParameters({ "solver.rate=1000" }));
   EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 0U);
   EXPECT_EQ(coarse.health().solver_state, SolverState::OK);
-  EXPECT_EQ(coarse.outputs().substeps, 7U);
-  EXPECT_NEAR(coarse.outputs().phase_advance, 0.28 / 7.0, 0.003);
+  EXPECT_EQ(coarse.outputs().substeps, 11U);
+  EXPECT_NEAR(coarse.outputs().phase_advance, 0.28 / 11.0, 0.002);
 }
 
 TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)

@@ -25,7 +25,7 @@ class Trial(tool.ToolTest):
         self.assertGreater(coarse["coarse_steps"], 100)
 
     def test_a_step_too_long_for_the_swing_is_divided(self):
-        for options, substeps in [(["solver.rate=1000"], 7), (["output.load_inertia=0.0"], 23)]:
+        for options, substeps in [(["solver.rate=1000"], 11), (["output.load_inertia=0.0"], 23)]:
             with self.subTest(options):
                 divided = self.trial("--set", *options)
                 self.assertEqual(divided["solver_state"], "ok")
