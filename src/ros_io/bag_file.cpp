@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include <console_bridge/console.h>
 #include <rosbag/view.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -13,6 +14,8 @@ namespace hjt
 void openForReading(rosbag::Bag& bag, const std::string& path)
 {
   checkBagFile(path);
+  // As in BagWriter.
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
   try
   {
     bag.open(path, rosbag::bagmode::Read);

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include <console_bridge/console.h>
 #include <rosbag/exceptions.h>
 
 namespace hjt
@@ -12,6 +13,8 @@ namespace hjt
 BagWriter::BagWriter(std::string path)
   : path_(std::move(path)), active_path_(path_ + ".active"), lock_(active_path_), bag_(std::make_unique<rosbag::Bag>())
 {
+  // ROS' console sets the level to debug: rosbag would spell out a line for every message, which nobody reads.
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
   try
   {
     bag_->open(active_path_, rosbag::bagmode::Write);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -98,6 +100,16 @@ public:
                 });
           }
         });
+  }
+
+  /// The next instant after this one at which a message is due and wanted [ns].
+  Stamp nextDue(Stamp instant) const noexcept
+  {
+    Stamp next = std::numeric_limits<Stamp>::max() / 2;
+    const auto look = [&](const auto& output)
+    { next = output.sink.isWanted() ? std::min(next, (instant / output.period + 1) * output.period) : next; };
+    std::apply([&](const auto&... output) { (look(output), ...); }, outputs_);
+    return next;
   }
 
   template <class Visit>

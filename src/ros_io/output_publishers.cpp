@@ -13,8 +13,10 @@ using std::chrono::milliseconds;
 
 /// Between two looks at the rings: well under the shortest publish period in use.
 constexpr milliseconds DRAIN_PERIOD{ 1 };
-/// How long a new subscriber may go unnoticed, in drain periods.
+/// While there are subscribers: how long a new one may go unnoticed, in drain periods.
 constexpr int HEARD_REFRESH = 5;
+/// While there are none, between two looks for some.
+constexpr milliseconds IDLE_PERIOD{ 20 };
 /// Slots for lists of faults: one more change has to wait for the next instant.
 constexpr std::size_t FAULT_SLOTS = 16;
 }  // namespace
@@ -107,7 +109,7 @@ void OutputPublishers::run()
         });
     drain();
     // While nobody hears there is nothing to drain: only to see whether somebody comes.
-    std::this_thread::sleep_for(heard ? DRAIN_PERIOD : HEARD_REFRESH * DRAIN_PERIOD);
+    std::this_thread::sleep_for(heard ? DRAIN_PERIOD : IDLE_PERIOD);
     round = heard ? (round + 1) % HEARD_REFRESH : 0;
   }
   drain();

@@ -28,6 +28,9 @@ public:
   /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
   void offer(Twin& twin) noexcept;
 
+  /// Loop: the next instant after this one whose messages somebody hears [ns].
+  Stamp nextHeard(Stamp instant) const noexcept { return outputs_.nextDue(instant); }
+
   /// The faults published last, for a human reader.
   std::string activeFaults() const;
 

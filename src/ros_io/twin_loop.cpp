@@ -22,7 +22,9 @@ using std::chrono::steady_clock;
 
 /// Of the loop, by the wall clock.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
-/// Simulated at most in one cycle, so that the loop stays responsive while it catches up [ns].
+/// The longest sleep, while nobody awaits an instant: how long a request may wait for its answer.
+constexpr milliseconds MAX_PAUSE{ 16 };
+/// Simulated at most in one cycle, more than MAX_PAUSE, so that the loop stays responsive while it catches up [ns].
 constexpr Stamp MAX_CATCH_UP = 20'000'000;
 /// A smaller step back, as time synchronisation makes, is waited out [ns].
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
@@ -56,12 +58,14 @@ void prepareThread()
 }
 }  // namespace
 
-TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step)
+TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+                   NextAwaited next_awaited)
   : twin_(twin)
   , inbox_(inbox)
   , clock_(std::move(clock))
   , clock_kind_(clock_kind)
   , after_step_(std::move(after_step))
+  , next_awaited_(std::move(next_awaited))
   , input_delay_(toStampLength(twin.parameters().input.delay))
   , deadline_(toStampLength(twin.parameters().realtime.deadline))
   , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
@@ -100,13 +104,30 @@ void TwinLoop::run()
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
     // Without a sleep while it catches up, however short those cycles: they add nothing to the sleep after them.
-    wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + CYCLE_PERIOD, end) : end;
+    const auto length = pause();
+    wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + length, end) : end;
     if (wake_up > end)
     {
+      // Instants that nobody awaits are due with the one that ends the sleep.
+      if (length > CYCLE_PERIOD)
+      {
+        released_ = std::max(released_, status_.clock + nanoseconds(wake_up - begin - CYCLE_PERIOD));
+      }
       std::this_thread::sleep_until(wake_up);
       status_.timing.wake_up.add(nanoseconds(steady_clock::now() - wake_up));
     }
   }
+}
+
+/// From one wake-up to the next: to the next awaited instant, in whole periods.
+steady_clock::duration TwinLoop::pause() const noexcept
+{
+  if (!next_awaited_ || clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
+  {
+    return CYCLE_PERIOD;
+  }
+  const Stamp ahead = next_awaited_(twin_.stamp()) + input_delay_ - status_.clock;
+  return std::clamp<steady_clock::duration>(ahead / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD, CYCLE_PERIOD, MAX_PAUSE);
 }
 
 void TwinLoop::cycle() noexcept

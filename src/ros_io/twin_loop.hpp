@@ -78,14 +78,20 @@ struct LoopStatus
 /// The twin stays `input.delay` behind the clock. It never skips time: after a jump forward it catches up, a
 /// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
 /// it.
+///
+/// On a clock that runs, the loop sleeps until the next instant that somebody awaits, one to MAX_PAUSE. What it
+/// simulates then is what it would have simulated in between: inputs act by their stamps.
 class TwinLoop
 {
 public:
   using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
   using AfterStep = std::function<void(Twin&)>;  ///< called at every simulated instant; must not wait or allocate
+  /// The next instant after this one whose result somebody awaits [ns]; neither waits nor allocates.
+  using NextAwaited = std::function<Stamp(Stamp)>;
 
-  /// Starts the thread.
-  TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step);
+  /// Starts the thread. Without `next_awaited` every instant is awaited.
+  TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+           NextAwaited next_awaited = {});
 
   /// Stops the thread.
   ~TwinLoop();
@@ -100,6 +106,7 @@ public:
 
 private:
   void run();
+  std::chrono::steady_clock::duration pause() const noexcept;
   void cycle() noexcept;
   bool readClock(Stamp now) noexcept;
   void answerRequests(Stamp limit, std::size_t waiting) noexcept;
@@ -117,6 +124,7 @@ private:
   Clock clock_;
   const ClockKind clock_kind_;
   AfterStep after_step_;
+  NextAwaited next_awaited_;
   const Stamp input_delay_;
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]

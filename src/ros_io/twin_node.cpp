@@ -46,13 +46,15 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
   : twin_(watchedTwin(parameters))
   , publishers_(node, twin_)
   , life_(node, parameters)
-  , loop_(twin_, inbox_, now, clockKind(),
-          [this](Twin& twin)
-          {
-            publishers_.offer(twin);
-            const JointOutputs& joint = twin.outputs();
-            life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
-          })
+  , loop_(
+        twin_, inbox_, now, clockKind(),
+        [this](Twin& twin)
+        {
+          publishers_.offer(twin);
+          const JointOutputs& joint = twin.outputs();
+          life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
+        },
+        [this](Stamp instant) { return publishers_.nextHeard(instant); })
   , realtime_(requestRealtime(parameters.realtime, loop_))
   , subscribers_(node, parameters, inbox_)
   , timing_publisher_(node, parameters, loop_)

@@ -228,6 +228,44 @@ TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
   EXPECT_EQ(loop_->status().timing.lateness.count(), 0U);
 }
 
+/// It sleeps while nobody awaits an instant, misses no deadline by that, and simulates every instant all the same.
+TEST_F(LoopFixture, SleepsUntilTheNextInstantThatIsAwaited)
+{
+  const auto start_time = std::chrono::steady_clock::now();
+  const auto clock = [start_time]
+  {
+    return 100 * SECOND +
+           std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start_time).count();
+  };
+  std::atomic<Stamp> period{ SECOND };
+  Twin twin(shippedParameters({ "solver.rate=1000", "input.delay=0.02", "realtime.deadline=1.0" }));
+  instants_.reserve(1 << 20);
+  TwinLoop loop(
+      twin, inbox_, clock, ClockKind::RUNNING,
+      [this](Twin& at) {
+        instants_.push_back({ at.outputs().stamp, 0.0 });
+      },
+      [&period](Stamp instant) { return (instant / period + 1) * period; });
+  const auto cyclesInASecond = [&loop]
+  {
+    const std::uint64_t before = loop.status().cycles;
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    return loop.status().cycles - before;
+  };
+  waitFor([&loop] { return loop.status().state == LoopState::RUNNING; });
+  EXPECT_LT(cyclesInASecond(), 100U);
+  EXPECT_LT(loop.status().timing.lateness.quantile(0.1), 8 * MILLISECOND) << "a sleep counted as late";
+  EXPECT_EQ(loop.status().timing.missed_deadlines, 0U);
+  period = MILLISECOND;
+  EXPECT_GT(cyclesInASecond(), 150U);
+  ASSERT_TRUE(loop.reset());
+  ASSERT_GT(instants_.size(), 1500U);
+  for (std::size_t i = 1; i < 1500; ++i)
+  {
+    ASSERT_EQ(instants_[i].stamp - instants_[i - 1].stamp, STEP);
+  }
+}
+
 TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
 {
   start(false);
