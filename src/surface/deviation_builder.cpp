@@ -336,14 +336,20 @@ private:
     return true;
   }
 
+  /// A pitch whose edges are yet to be joined.
+  struct OpenPitch
+  {
+    int columns{};
+    std::vector<double> lines;
+    std::vector<Node> nodes;
+  };
+
   DeviationTable table() const
   {
-    DeviationTable table;
-    table.swaps_lobes = static_cast<int>(pitches_) <= actual_.model().ring.rest.teeth() / 2 + 1;
-    table.pitches.resize(pitches_);
+    std::vector<OpenPitch> pitches(pitches_);
     for (std::size_t number = 0; number < pitches_; ++number)
     {
-      DeviationTable::Pitch& pitch = table.pitches[number];
+      OpenPitch& pitch = pitches[number];
       pitch.columns = columns_[number];
       for (const auto& [v, line] : lines_)
       {
@@ -361,14 +367,20 @@ private:
     }
     for (std::size_t number = 0; number < pitches_; ++number)
     {
-      join(table.pitches[number], table.pitches[next(number)]);
+      join(pitches[number], pitches[next(number)]);
+    }
+    DeviationTable table;
+    table.swaps_lobes = static_cast<int>(pitches_) <= actual_.model().ring.rest.teeth() / 2 + 1;
+    for (OpenPitch& pitch : pitches)
+    {
+      table.pitches.push_back({ pitch.columns, std::move(pitch.lines), SurfaceNodes(std::move(pitch.nodes)) });
     }
     return table;
   }
 
   /// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
   /// what lies between those that both have.
-  static void join(DeviationTable::Pitch& before, DeviationTable::Pitch& after)
+  static void join(OpenPitch& before, OpenPitch& after)
   {
     std::vector<double> common;
     std::set_intersection(before.lines.begin(), before.lines.end(), after.lines.begin(), after.lines.end(),
@@ -381,7 +393,7 @@ private:
     levelEdge(after, 0, common);
   }
 
-  static void levelEdge(DeviationTable::Pitch& pitch, std::size_t column, const std::vector<double>& common)
+  static void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
   {
     const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
     std::size_t kept = 0;  // the last line in common
