@@ -348,7 +348,7 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
         [&]
         {
           return buildDeviations(parameters, equal, model, repetition, tables.table.lines.front(),
-                                 tables.table.lines.back(), source.progress);
+                                 tables.table.lines.back(), source.progress, MAX_DEVIATION_POINTS, threads);
         });
     if (!deviations)
     {
