@@ -26,8 +26,8 @@ public:
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
   /// The same minimum where every term, or every one but one, slides as it did at the old speeds, far from standing
-  /// still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by the tails of the
-  /// regularisation, less than 1e-9 of the friction.
+  /// still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by
+  /// the tails of the regularisation, less than 1e-9 of the friction.
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 

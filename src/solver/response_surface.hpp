@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -76,17 +80,49 @@ private:
   Bilinear bilinear_{};
 };
 
+/// Nodes one after the other, which nobody changes any more: those of a vector, or what lies in a file in memory.
+/// Copies share them.
+class SurfaceNodes
+{
+public:
+  SurfaceNodes() = default;
+  explicit SurfaceNodes(std::vector<SurfaceNode> nodes)
+  {
+    const auto own = std::make_shared<const std::vector<SurfaceNode>>(std::move(nodes));
+    *this = SurfaceNodes(own, own->data(), own->size());
+  }
+  SurfaceNodes(std::shared_ptr<const void> owner, const SurfaceNode* first, std::size_t size) noexcept
+    : owner_(std::move(owner)), first_(first), size_(size)
+  {
+  }
+
+  const SurfaceNode& operator[](std::size_t i) const noexcept { return first_[i]; }
+  const SurfaceNode* begin() const noexcept { return first_; }
+  const SurfaceNode* end() const noexcept { return first_ + size_; }
+  const SurfaceNode* data() const noexcept { return first_; }
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+
+  friend bool operator==(const SurfaceNodes& a, const SurfaceNodes& b)
+  {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+private:
+  std::shared_ptr<const void> owner_;
+  const SurfaceNode* first_{};
+  std::size_t size_{};
+};
+
 /// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
 /// generator angle / ratio. Plain data: what is built, cached and read.
 struct SurfaceTable
 {
-  using Node = SurfaceNode;
-
   double pitch{};             ///< of the flexspline's teeth [rad]
   double ratio{};             ///< nominal: v stays the same when the drive has turned by a tooth pitch [-]
   int columns{};              ///< intervals of u over a pitch, equal
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
-  std::vector<Node> nodes;    ///< (columns + 1) a line; the last is the first again
+  SurfaceNodes nodes;         ///< (columns + 1) a line; the last is the first again
 };
 
 /// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
@@ -96,9 +132,9 @@ struct DeviationTable
 {
   struct Pitch
   {
-    int columns{};                   ///< intervals of u, equal
-    std::vector<double> lines;       ///< v of the lines, ascending [rad]; none: nothing departs
-    std::vector<SurfaceNode> nodes;  ///< (columns + 1) a line
+    int columns{};              ///< intervals of u, equal
+    std::vector<double> lines;  ///< v of the lines, ascending [rad]; none: nothing departs
+    SurfaceNodes nodes;         ///< (columns + 1) a line
   };
   std::vector<Pitch> pitches;  ///< none: there are no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places

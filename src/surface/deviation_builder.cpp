@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -30,19 +31,69 @@ constexpr int MAX_COLUMNS = 16;
 struct Line
 {
   std::vector<Strip> strips;  ///< one a pitch; none where the line is not needed
-  Torques tolerance{ Torques::Zero() };
+  Torques largest{ Torques::Zero() };
+  double overload{};  ///< by how much its tolerances are wider [-]
+};
+using Lines = std::map<double, Line>;  // by their v [rad]
+
+/// A ring of equal teeth and the gear's own, side by side.
+struct Rings
+{
+  Rings(const Parameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
+    : equal(parameters, equal_model), actual(parameters, actual_model)
+  {
+  }
+
+  bool insert() { return equal.insert() && actual.insert(); }
+
+  /// Both to another line at the angles where they are, in pieces no longer than a `longest` way.
+  bool leadTo(double target, double longest)
+  {
+    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(target - v) / longest)));
+    bool good = true;
+    for (int i = 1; i <= pieces && good; ++i)
+    {
+      const double between = v + (target - v) * i / pieces;
+      good = equal.moveTo(equal.motorAngle(), between) && actual.moveTo(actual.motorAngle(), between);
+    }
+    v = target;
+    return good;
+  }
+
+  /// The gear of equal teeth at these columns. Empty: no equilibrium.
+  std::vector<Node> measureEqual(int columns)
+  {
+    std::vector<Node> nodes;
+    for (int column = 0; column < columns; ++column)
+    {
+      if (!equal.moveTo(equal.pitch() * column / columns, v))
+      {
+        return {};
+      }
+      nodes.push_back(equal.measure());
+    }
+    return nodes;
+  }
+
+  SurfaceRing equal;
+  SurfaceRing actual;
+  double v{};  // where they are [rad]
 };
 
+/// Every coarse line, and every interval between two of them, is a task for itself that begins with rings from cold:
+/// the bits of a table do not depend on the number of threads.
 class DeviationBuilder
 {
 public:
   DeviationBuilder(const Parameters& parameters, const JointModel& equal, const JointModel& actual, int repetition,
-                   const std::function<void(double)>& progress, std::size_t max_points)
+                   const std::function<void(double)>& progress, std::size_t max_points, unsigned threads)
     : parameters_(parameters)
+    , equal_(equal)
+    , model_(actual)
     , progress_(progress)
     , max_points_(max_points)
-    , equal_(parameters, equal)
-    , actual_(parameters, actual)
+    , threads_(threads)
+    , ring_(parameters, actual)
     , pitches_(static_cast<std::size_t>(repetition))
     , columns_(pitches_, 2 * MAX_COLUMNS)
   {
@@ -52,17 +103,25 @@ public:
   {
     DeviationBuild result;
     longest_way_ = (highest - lowest) / (4.0 * COARSE_LINES);
-    if (equal_.insert() && actual_.insert() && chooseColumns(lowest, highest) && coverRange(lowest, highest) &&
-        refine())
+    chooseColumns(lowest, highest);
+    if (!failed_)
     {
-      result.table = table();
+      coverRange(lowest, highest);
     }
-    else
+    if (!failed_)
+    {
+      refine();
+    }
+    if (failed_)
     {
       result.failure_reason = too_many_ ? tooManyPoints(parameters_, max_points_) :
                                           "the ring finds no equilibrium at some angles within a turn";
     }
-    result.solves = equal_.solves() + actual_.solves();
+    else
+    {
+      result.table = table();
+    }
+    result.solves = solves_;
     return result;
   }
 
@@ -71,36 +130,6 @@ private:
 
   std::size_t next(std::size_t pitch) const { return pitch + 1 < pitches_ ? pitch + 1 : 0; }
   std::size_t last(std::size_t pitch) const { return pitch > 0 ? pitch - 1 : pitches_ - 1; }
-
-  /// Both rings to another line at the angles where they are, the way in short pieces.
-  bool leadTo(double v)
-  {
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(v - v_) / longest_way_)));
-    bool good = true;
-    for (int i = 1; i <= pieces && good; ++i)
-    {
-      const double between = v_ + (v - v_) * i / pieces;
-      good = equal_.moveTo(equal_.motorAngle(), between) && actual_.moveTo(actual_.motorAngle(), between);
-    }
-    v_ = v;
-    return good;
-  }
-
-  /// The gear of equal teeth at the columns of the finest pitch. Empty: no equilibrium.
-  std::vector<Node> measureEqual()
-  {
-    const int columns = *std::max_element(columns_.begin(), columns_.end());
-    std::vector<Node> nodes;
-    for (int column = 0; column < columns; ++column)
-    {
-      if (!equal_.moveTo(equal_.pitch() * column / columns, v_))
-      {
-        return {};
-      }
-      nodes.push_back(equal_.measure());
-    }
-    return nodes;
-  }
 
   /// Of a line's strips.
   std::size_t pointsOf(const Set& wanted) const
@@ -113,25 +142,23 @@ private:
     return points;
   }
 
-  /// SurfaceDeviations on a line for some of the pitches: first at their edges, then, on the way back, within those
-  /// where, or beside which, there are any. False: no equilibrium, or too many points.
-  bool measureLine(double v, const Set& wanted, Line& line)
+  /// Deviations on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
+  /// beside which, there are any. False, and everything ends: no equilibrium.
+  bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
-    too_many_ = points_ + pointsOf(wanted) > max_points_;
-    if (too_many_ || !leadTo(v))
-    {
-      return false;
-    }
-    const std::vector<Node> equal = measureEqual();
+    const bool there = !failed_ && rings.leadTo(v, longest_way_);
+    const std::vector<Node> equal =
+        there ? rings.measureEqual(*std::max_element(columns_.begin(), columns_.end())) : std::vector<Node>{};
     if (equal.empty())
     {
+      failed_ = true;
       return false;
     }
     bool good = true;
     const auto deviation = [&](std::size_t pitch, double part)
     {
-      good = good && actual_.moveTo(actual_.pitch() * (static_cast<double>(pitch) + part), v);
-      Node node = good ? actual_.measure() : Node{};
+      good = good && rings.actual.moveTo(ring_.pitch() * (static_cast<double>(pitch) + part), v);
+      Node node = good ? rings.actual.measure() : Node{};
       const Node& reference = equal[static_cast<std::size_t>(std::llround(part * static_cast<double>(equal.size())))];
       for (int i = 0; i < SurfaceNode::VALUES; ++i)
       {
@@ -167,44 +194,45 @@ private:
         }
       }
     }
-    setTolerance(line, equal.front());
-    return good;
-  }
-
-  /// The same for a line of the table.
-  bool addLine(double v, const Set& wanted)
-  {
-    const bool good = measureLine(v, wanted, lines_[v]);
-    points_ += pointsOf(wanted);
-    return good;
-  }
-
-  void setTolerance(Line& line, const Node& equal)
-  {
-    Torques largest = Torques::Zero();
     for (const Strip& strip : line.strips)
     {
       for (const Node& node : strip)
       {
-        largest = largest.max(torques(node).abs());
+        line.largest = line.largest.max(torques(node).abs());
       }
     }
-    largest_ = largest_.max(largest);
-    line.tolerance = SHARE * actual_.overload(equal) * largest.max(SMALLEST * largest_);
+    line.overload = ring_.overload(equal.front());
+    failed_ = failed_ || !good;
+    return good;
   }
+
+  /// The same for a line of the table, if there is room.
+  bool addLine(Rings& rings, double v, const Set& wanted, Line& line)
+  {
+    const std::size_t size = pointsOf(wanted);
+    if (points_.fetch_add(size) + size > max_points_)
+    {
+      too_many_ = true;
+      failed_ = true;
+    }
+    return measureLine(rings, v, wanted, line);
+  }
+
+  /// Of a line, by its own largest deviation and that of the coarse lines.
+  Torques toleranceOf(const Line& line) const { return SHARE * line.overload * line.largest.max(SMALLEST * largest_); }
 
   Torques torques(const Node& deviation) const
   {
     return torques(deviation[SurfaceNode::ENERGY_BY_U], deviation[SurfaceNode::ENERGY_BY_V]);
   }
 
-  Torques torques(double by_u, double by_v) const { return { -by_v, by_v / actual_.ratio() - by_u / actual_.pitch() }; }
+  Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
 
   bool departs(const Node& node) const
   {
     constexpr double ROUNDING = 1e-8;  // of the torque limit; the rings are solved to a tenth of that
     const Torques torque = torques(node).abs();
-    return std::max(torque[0], torque[1] * actual_.ratio()) > ROUNDING * actual_.torqueLimit();
+    return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
   /// Whether what lies in a cell is close enough to the deviation measured there.
@@ -215,21 +243,28 @@ private:
   }
 
   /// For each pitch the fewest columns that give the deviations half way between them.
-  bool chooseColumns(double lowest, double highest)
+  void chooseColumns(double lowest, double highest)
   {
-    std::vector<int> enough(pitches_, MIN_COLUMNS);
-    const Set all(pitches_, 1);
-    for (const double v : { 0.02 * lowest, 0.1 * lowest, 0.3 * lowest, 0.3 * highest, 0.1 * highest, 0.02 * highest })
+    const std::array<double, 6> places{ 0.02 * lowest, 0.1 * lowest,  0.3 * lowest,
+                                        0.3 * highest, 0.1 * highest, 0.02 * highest };
+    std::array<Line, places.size()> lines;
+    run(places.size(), 0.0, 0.1,
+        [&](Rings& rings, std::size_t i) { measureLine(rings, places[i], Set(pitches_, 1), lines[i]); });
+    for (const Line& line : lines)
     {
-      Line line;
-      if (!measureLine(v, all, line))
-      {
-        return false;
-      }
+      largest_ = largest_.max(line.largest);
+    }
+    if (failed_)
+    {
+      return;
+    }
+    std::vector<int> enough(pitches_, MIN_COLUMNS);
+    for (const Line& line : lines)
+    {
       for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
       {
         int& columns = enough[pitch];
-        while (columns < MAX_COLUMNS && !columnsSuffice(line.strips[pitch], columns, line.tolerance))
+        while (columns < MAX_COLUMNS && !columnsSuffice(line.strips[pitch], columns, toleranceOf(line)))
         {
           columns *= 2;
         }
@@ -240,7 +275,6 @@ private:
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });
     }
-    return true;
   }
 
   /// Whether every so manyth node of a strip gives those between.
@@ -263,62 +297,68 @@ private:
     return true;
   }
 
-  /// Coarse lines from no load outwards, both ways.
-  bool coverRange(double lowest, double highest)
+  /// Coarse lines, denser towards no load.
+  void coverRange(double lowest, double highest)
   {
-    const Set all(pitches_, 1);
-    for (const double end : { lowest, highest })
+    for (int i = -COARSE_LINES; i <= COARSE_LINES; ++i)
     {
-      for (int i = 0; i <= COARSE_LINES; ++i)
-      {
-        const double part = static_cast<double>(i) / COARSE_LINES;
-        const double v = end * part * part;
-        if (lines_.count(v) == 0 && !addLine(v, all))
-        {
-          return false;
-        }
-        report(0.1 + 0.1 * part + (end == highest ? 0.1 : 0.0));
-      }
+      const double part = static_cast<double>(i) / COARSE_LINES;
+      coarse_.push_back((i < 0 ? lowest : highest) * part * part);
     }
-    return true;
+    std::vector<Line> lines(coarse_.size());
+    run(coarse_.size(), 0.1, 0.3,
+        [&](Rings& rings, std::size_t i) { addLine(rings, coarse_[i], Set(pitches_, 1), lines[i]); });
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+    {
+      largest_ = largest_.max(lines[i].largest);
+      lines_[coarse_[i]] = std::move(lines[i]);
+    }
   }
 
-  bool refine()
+  void refine()
   {
-    std::vector<double> coarse;
-    for (const auto& [v, line] : lines_)
+    std::vector<Lines> between(coarse_.size() - 1);
+    run(between.size(), 0.3, 1.0,
+        [&](Rings& rings, std::size_t i)
+        {
+          refine(rings, { coarse_[i], lines_.at(coarse_[i]) }, { coarse_[i + 1], lines_.at(coarse_[i + 1]) },
+                 Set(pitches_, 1), 0, between[i]);
+        });
+    for (Lines& lines : between)
     {
-      coarse.push_back(v);
+      lines_.merge(lines);
     }
-    const Set all(pitches_, 1);
-    for (std::size_t i = coarse.size() - 1; i > 0; --i)
-    {
-      if (!refine(coarse[i - 1], coarse[i], all, 0))
-      {
-        return false;
-      }
-      report(1.0 - 0.7 * static_cast<double>(i - 1) / static_cast<double>(coarse.size() - 1));
-    }
-    return true;
   }
+
+  struct Placed
+  {
+    double v;
+    const Line& line;
+  };
 
   /// A line between two for the pitches `wanted`, and further lines for those that it shows to be too coarse.
-  bool refine(double below, double above, const Set& wanted, int halvings)
+  void refine(Rings& rings, const Placed& below, const Placed& above, const Set& wanted, int halvings, Lines& found)
   {
-    const double middle = 0.5 * (below + above);
-    if (!addLine(middle, wanted))
+    const double middle = 0.5 * (below.v + above.v);
+    Line& line = found[middle];
+    if (!addLine(rings, middle, wanted, line))
     {
-      return false;
+      return;
     }
-    const Line& line = lines_[middle];
     Set coarse(pitches_, 0);
     for (std::size_t pitch = 0; pitch < pitches_ && halvings < MAX_HALVINGS; ++pitch)
     {
       coarse[pitch] =
-          wanted[pitch] && !gives(lines_[below].strips[pitch], lines_[above].strips[pitch], above - below, line, pitch);
+          wanted[pitch] && !gives(below.line.strips[pitch], above.line.strips[pitch], above.v - below.v, line, pitch);
     }
-    return std::find(coarse.begin(), coarse.end(), 1) == coarse.end() ||
-           (refine(middle, above, coarse, halvings + 1) && refine(below, middle, coarse, halvings + 1));
+    if (std::find(coarse.begin(), coarse.end(), 1) != coarse.end())
+    {
+      refine(rings, { middle, line }, above, coarse, halvings + 1, found);
+      if (!failed_)
+      {
+        refine(rings, below, { middle, line }, coarse, halvings + 1, found);
+      }
+    }
   }
 
   /// Whether two lines' strips of a pitch give that of the line half way between them.
@@ -328,7 +368,7 @@ private:
     for (std::size_t i = 0; i < columns; ++i)
     {
       if (!agrees({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, line.strips[pitch][i],
-                  line.tolerance))
+                  toleranceOf(line)))
       {
         return false;
       }
@@ -336,14 +376,20 @@ private:
     return true;
   }
 
+  /// A pitch whose edges are yet to be joined.
+  struct OpenPitch
+  {
+    int columns{};
+    std::vector<double> lines;
+    std::vector<Node> nodes;
+  };
+
   DeviationTable table() const
   {
-    DeviationTable table;
-    table.swaps_lobes = static_cast<int>(pitches_) <= actual_.model().ring.rest.teeth() / 2 + 1;
-    table.pitches.resize(pitches_);
+    std::vector<OpenPitch> pitches(pitches_);
     for (std::size_t number = 0; number < pitches_; ++number)
     {
-      DeviationTable::Pitch& pitch = table.pitches[number];
+      OpenPitch& pitch = pitches[number];
       pitch.columns = columns_[number];
       for (const auto& [v, line] : lines_)
       {
@@ -361,14 +407,20 @@ private:
     }
     for (std::size_t number = 0; number < pitches_; ++number)
     {
-      join(table.pitches[number], table.pitches[next(number)]);
+      join(pitches[number], pitches[next(number)]);
+    }
+    DeviationTable table;
+    table.swaps_lobes = static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1;
+    for (OpenPitch& pitch : pitches)
+    {
+      table.pitches.push_back({ pitch.columns, std::move(pitch.lines), SurfaceNodes(std::move(pitch.nodes)) });
     }
     return table;
   }
 
   /// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
   /// what lies between those that both have.
-  static void join(DeviationTable::Pitch& before, DeviationTable::Pitch& after)
+  static void join(OpenPitch& before, OpenPitch& after)
   {
     std::vector<double> common;
     std::set_intersection(before.lines.begin(), before.lines.end(), after.lines.begin(), after.lines.end(),
@@ -381,7 +433,7 @@ private:
     levelEdge(after, 0, common);
   }
 
-  static void levelEdge(DeviationTable::Pitch& pitch, std::size_t column, const std::vector<double>& common)
+  static void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
   {
     const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
     std::size_t kept = 0;  // the last line in common
@@ -414,34 +466,52 @@ private:
     }
   }
 
-  void report(double done) const
+  void run(std::size_t count, double from, double to, const std::function<void(Rings&, std::size_t)>& task)
   {
-    if (progress_)
+    const auto with_rings = [&](std::size_t i)
     {
-      progress_(done);
-    }
+      Rings rings(parameters_, equal_, model_);
+      failed_ = failed_ || !rings.insert();
+      if (!failed_)
+      {
+        task(rings, i);
+      }
+      solves_ += rings.equal.solves() + rings.actual.solves();
+    };
+    runTasks(count, threads_, with_rings,
+             [&](std::size_t done)
+             {
+               if (progress_)
+               {
+                 progress_(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
+               }
+             });
   }
 
   const Parameters& parameters_;
+  const JointModel& equal_;
+  const JointModel& model_;
   std::function<void(double)> progress_;
   std::size_t max_points_;
-  SurfaceRing equal_;
-  SurfaceRing actual_;
+  unsigned threads_;
+  const SurfaceRing ring_;  // knows limits and tolerances, is not solved
   std::size_t pitches_;
-  std::vector<int> columns_;  // of each pitch
-  std::map<double, Line> lines_;
-  std::size_t points_{};  // of all lines
-  bool too_many_{};
-  Torques largest_{ Torques::Zero() };  // deviations of all lines so far
-  double longest_way_{};                // between two solves, in v [rad]
-  double v_{};                          // where the rings are [rad]
+  std::vector<int> columns_;    // of each pitch
+  std::vector<double> coarse_;  // lines, ascending
+  Lines lines_;
+  Torques largest_{ Torques::Zero() };    // deviations of the coarse lines
+  double longest_way_{};                  // between two solves, in v [rad]
+  std::atomic<std::size_t> points_{ 0 };  // of all lines
+  std::atomic<int> solves_{ 0 };
+  std::atomic<bool> failed_{ false };
+  std::atomic<bool> too_many_{ false };
 };
 }  // namespace
 
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
-                               const std::function<void(double)>& progress, std::size_t max_points)
+                               const std::function<void(double)>& progress, std::size_t max_points, unsigned threads)
 {
-  return DeviationBuilder(parameters, equal, actual, repetition, progress, max_points).build(lowest, highest);
+  return DeviationBuilder(parameters, equal, actual, repetition, progress, max_points, threads).build(lowest, highest);
 }
 }  // namespace hjt

@@ -8,6 +8,7 @@
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "model/joint_model.hpp"
 #include "solver/response_surface.hpp"
+#include "surface/parallel_tasks.hpp"
 
 namespace hjt
 {
@@ -26,10 +27,10 @@ struct DeviationBuild
 /// `highest` of v [rad].
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
-/// size of the deviations: one per cent of the largest on the line. `progress`: called with 0 ... 1, or empty.
-/// A table of more than `max_points` is given up.
+/// size of the deviations: one per cent of the largest on the line. `progress`: called from this thread with 0 ... 1,
+/// or empty. A table of more than `max_points` is given up. The bits do not depend on the number of `threads`.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress,
-                               std::size_t max_points = MAX_DEVIATION_POINTS);
+                               std::size_t max_points = MAX_DEVIATION_POINTS, unsigned threads = processors());
 }  // namespace hjt

@@ -146,8 +146,9 @@ private:
     table.ratio = ring_.ratio();
     table.columns = columns_;
     table.lines = { v_below, v_above };
-    table.nodes = below;
-    table.nodes.insert(table.nodes.end(), above.begin(), above.end());
+    Line nodes = below;
+    nodes.insert(nodes.end(), above.begin(), above.end());
+    table.nodes = SurfaceNodes(std::move(nodes));
     return ResponseSurface(std::move(table));
   }
 
@@ -378,11 +379,13 @@ private:
       }
       lines_.merge(mirrored);
     }
+    Line nodes;
     for (const auto& [v, line] : lines_)
     {
       table.lines.push_back(v);
-      table.nodes.insert(table.nodes.end(), line.begin(), line.end());
+      nodes.insert(nodes.end(), line.begin(), line.end());
     }
+    table.nodes = SurfaceNodes(std::move(nodes));
   }
 
   void run(std::size_t count, double from, double to, const std::function<void(std::size_t)>& task)

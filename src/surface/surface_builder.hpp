@@ -23,9 +23,9 @@ struct SurfaceBuild
 
 /// Tabulates the ring in equilibrium from no load to twice the torque that load or motor can bring, both ways.
 ///
-/// The grid follows from measured errors: wherever the table's torques or the mean friction at the middle of an interval
-/// miss the ring's by more than a tolerance, the interval is halved. `model` must be the same again after every tooth
-/// pitch. There is no surface where its ring finds no equilibrium at the torques of its limits.
+/// The grid follows from measured errors: wherever the table's torques or the mean friction at the middle of an
+/// interval miss the ring's by more than a tolerance, the interval is halved. `model` must be the same again after
+/// every tooth pitch. There is no surface where its ring finds no equilibrium at the torques of its limits.
 /// `progress`: called from this thread with 0 ... 1, or empty. A table of more than `max_points` is given up. The bits
 /// of the table do not depend on the number of `threads`.
 SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,

@@ -12,14 +12,12 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
@@ -28,7 +26,10 @@
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
 #include "solver/arc_elimination.hpp"
+#include "surface/cache_folder.hpp"
 #include "surface/deviation_builder.hpp"
+#include "surface/mapped_file.hpp"
+#include "surface/parallel_tasks.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
 
@@ -59,6 +60,8 @@ std::string header(const Parameters& parameters, const std::string& faults)
     text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
     text += '\n';
   }
+  // The numbers that follow lie as they do in memory.
+  text.append((sizeof(double) - text.size() % sizeof(double)) % sizeof(double), '\n');
   return text;
 }
 
@@ -99,47 +102,63 @@ std::string body(const DeviationTable& table)
 class BodyReader
 {
 public:
-  explicit BodyReader(std::string_view bytes) : bytes_(bytes) {}
+  /// `bytes` of the file, behind a multiple of the size of a number.
+  BodyReader(std::shared_ptr<const MappedFile> file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
   /// A whole number not below `least`.
   std::size_t size(double least)
   {
     constexpr double MAX_VALUE = 1e6;
     double value = 0.0;
-    take(&value, 1);
+    number(value);
     good_ = good_ && value >= least && value < MAX_VALUE;
     return good_ ? static_cast<std::size_t>(value) : 0;
   }
 
-  template <class T>
-  void vector(std::vector<T>& values, std::size_t count)
+  void number(double& value)
   {
-    good_ = good_ && count <= bytes_.size() / sizeof(T);
-    values.resize(good_ ? count : 0);
-    take(values.data(), values.size());
+    if (const char* start = take(sizeof(value)))
+    {
+      std::memcpy(&value, start, sizeof(value));
+    }
   }
 
-  void number(double& value) { take(&value, 1); }
+  void numbers(std::vector<double>& values, std::size_t count)
+  {
+    const char* start = take(count * sizeof(double));
+    values.resize(start != nullptr ? count : 0);
+    if (!values.empty())
+    {
+      std::memcpy(values.data(), start, count * sizeof(double));
+    }
+  }
+
+  /// Where they lie. `count` below 1e12.
+  SurfaceNodes nodes(std::size_t count)
+  {
+    static_assert(alignof(SurfaceNode) == sizeof(double) && std::is_trivially_copyable_v<SurfaceNode>);
+    const char* start = take(count * sizeof(SurfaceNode));
+    return start != nullptr ? SurfaceNodes(file_, reinterpret_cast<const SurfaceNode*>(start), count) : SurfaceNodes();
+  }
 
   bool complete() const { return good_ && bytes_.empty(); }
 
 private:
-  template <class T>
-  void take(T* values, std::size_t count)
+  /// The next bytes; null if there are not enough.
+  const char* take(std::size_t size)
   {
-    good_ = good_ && bytes_.size() >= count * sizeof(T);
-    if (good_ && count > 0)
-    {
-      std::memcpy(values, bytes_.data(), count * sizeof(T));
-      bytes_.remove_prefix(count * sizeof(T));
-    }
+    good_ = good_ && bytes_.size() >= size;
+    const char* start = good_ ? bytes_.data() : nullptr;
+    bytes_.remove_prefix(good_ ? size : 0);
+    return start;
   }
 
+  std::shared_ptr<const MappedFile> file_;
   std::string_view bytes_;
   bool good_{ true };
 };
 
-bool finite(const std::vector<SurfaceNode>& nodes)
+bool finite(const SurfaceNodes& nodes)
 {
   return std::all_of(nodes.begin(), nodes.end(),
                      [](const SurfaceNode& node)
@@ -157,24 +176,22 @@ bool ascending(const std::vector<double>& lines)
          std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) == lines.end();
 }
 
-bool parseBody(std::string_view bytes, SurfaceTable& table)
+bool parseBody(BodyReader& reader, SurfaceTable& table)
 {
-  BodyReader reader(bytes);
   reader.number(table.pitch);
   reader.number(table.ratio);
   const std::size_t columns = reader.size(1.0);
   const std::size_t lines = reader.size(2.0);
   table.columns = static_cast<int>(columns);
-  reader.vector(table.lines, lines);
-  reader.vector(table.nodes, lines * (columns + 1));
+  reader.numbers(table.lines, lines);
+  table.nodes = reader.nodes(lines * (columns + 1));
   // Written so that NaN fails.
   return reader.complete() && table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 &&
          std::isfinite(table.ratio) && ascending(table.lines) && finite(table.nodes);
 }
 
-bool parseBody(std::string_view bytes, DeviationTable& table)
+bool parseBody(BodyReader& reader, DeviationTable& table)
 {
-  BodyReader reader(bytes);
   table.pitches.resize(reader.size(2.0));
   table.swaps_lobes = reader.size(0.0) != 0;
   bool good = true;
@@ -183,52 +200,28 @@ bool parseBody(std::string_view bytes, DeviationTable& table)
     const std::size_t columns = reader.size(0.0);
     const std::size_t lines = reader.size(0.0);
     pitch.columns = static_cast<int>(columns);
-    reader.vector(pitch.lines, lines);
-    reader.vector(pitch.nodes, lines > 0 ? lines * (columns + 1) : 0);
+    reader.numbers(pitch.lines, lines);
+    pitch.nodes = reader.nodes(lines > 0 ? lines * (columns + 1) : 0);
     good = good && lines != 1 && ascending(pitch.lines) && finite(pitch.nodes);
   }
   return good && reader.complete();
 }
 
-/// The bytes of a regular file of this user that others cannot write, if it is not too large; else nothing. Opening it
-/// does not wait, as it would for the writer of a FIFO.
-std::optional<std::string> readOwnFile(const std::string& path)
-{
-  const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
-  if (descriptor < 0)
-  {
-    return std::nullopt;
-  }
-  struct stat status = {};
-  std::optional<std::string> bytes;
-  if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
-      (status.st_mode & S_IWOTH) == 0 && static_cast<std::size_t>(status.st_size) <= MAX_FILE)
-  {
-    bytes.emplace(static_cast<std::size_t>(status.st_size), '\0');
-    std::size_t done = 0;
-    for (ssize_t got = 1; got > 0 && done < bytes->size(); done += static_cast<std::size_t>(std::max<ssize_t>(got, 0)))
-    {
-      got = read(descriptor, bytes->data() + done, bytes->size() - done);
-    }
-    bytes->resize(done);
-  }
-  close(descriptor);
-  return bytes;
-}
-
-/// A file holds the header, the body and the hash of both.
+/// A file holds the header, the body and the hash of both. The table's nodes stay in it.
 template <class Table>
 bool readFile(const std::string& path, const std::string& wanted, Table& table)
 {
-  const std::optional<std::string> bytes = readOwnFile(path);
+  const std::shared_ptr<const MappedFile> file = MappedFile::ofOwn(path, MAX_FILE);
   std::uint64_t sum = 0;
-  if (!bytes || bytes->size() < wanted.size() + sizeof(sum) || bytes->compare(0, wanted.size(), wanted) != 0)
+  if (!file || file->bytes().size() < wanted.size() + sizeof(sum) ||
+      file->bytes().compare(0, wanted.size(), wanted) != 0)
   {
     return false;
   }
-  const std::string_view summed(bytes->data(), bytes->size() - sizeof(sum));
+  const std::string_view summed = file->bytes().substr(0, file->bytes().size() - sizeof(sum));
   std::memcpy(&sum, summed.data() + summed.size(), sizeof(sum));
-  return sum == textHash(summed) && parseBody(summed.substr(wanted.size()), table);
+  BodyReader reader(file, summed.substr(wanted.size()));
+  return sum == textHash(summed) && parseBody(reader, table);
 }
 
 /// @returns what went wrong, or nothing.
@@ -288,6 +281,20 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
     {
       tell(source, "response surface not kept: " + problem);
     }
+    else
+    {
+      const std::string removed = tidyCache(source.cache_directory, path);
+      if (!removed.empty())
+      {
+        tell(source, removed);
+      }
+      // Out of the file, where all processes have it in common.
+      Table shared;
+      if (readFile(path, key, shared))
+      {
+        return shared;
+      }
+    }
   }
   return std::move(built.table);
 }
@@ -341,7 +348,7 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
         [&]
         {
           return buildDeviations(parameters, equal, model, repetition, tables.table.lines.front(),
-                                 tables.table.lines.back(), source.progress);
+                                 tables.table.lines.back(), source.progress, MAX_DEVIATION_POINTS, threads);
         });
     if (!deviations)
     {

@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -41,6 +42,7 @@
 #include "solver/joint_dynamics.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
+#include "surface/cache_folder.hpp"
 #include "surface/deviation_builder.hpp"
 #include "surface/parallel_tasks.hpp"
 #include "surface/surface_builder.hpp"
@@ -159,7 +161,7 @@ TEST(ResponseSurface, BitsDoNotDependOnTheNumberOfThreads)
   const SurfaceTable three = built(3);
   EXPECT_GT(one.lines.size(), 65U);
   EXPECT_EQ(one.lines, three.lines);
-  EXPECT_EQ(one.nodes, three.nodes);
+  EXPECT_TRUE(one.nodes == three.nodes);
 }
 
 /// A gear that is its own mirror image is measured one way only. This one, with the ellipse off its axis, is not.
@@ -617,6 +619,29 @@ TEST(SurfaceDeviations, AreNotBuiltBeyondABoundedNumberOfPoints)
   EXPECT_TRUE(build.table.pitches.empty());
 }
 
+TEST(SurfaceDeviations, BitsDoNotDependOnTheNumberOfThreads)
+{
+  const Parameters parameters = surfaceParameters();
+  const auto built = [&](unsigned threads)
+  {
+    return buildDeviations(parameters, JointModel(parameters), brokenModel(), 100, -1e-5, 2e-5, {},
+                           MAX_DEVIATION_POINTS, threads)
+        .table;
+  };
+  const DeviationTable one = built(1);
+  const DeviationTable three = built(3);
+  ASSERT_EQ(one.pitches.size(), 100U);
+  ASSERT_EQ(three.pitches.size(), 100U);
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < one.pitches.size(); ++i)
+  {
+    nodes += one.pitches[i].nodes.size();
+    EXPECT_EQ(one.pitches[i].lines, three.pitches[i].lines);
+    EXPECT_TRUE(one.pitches[i].nodes == three.pitches[i].nodes) << i;
+  }
+  EXPECT_GT(nodes, 0U);
+}
+
 TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
 {
   const std::optional<SurfaceTables> built =
@@ -630,7 +655,7 @@ TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
   for (std::size_t i = 0; i < kept->deviations.pitches.size(); ++i)
   {
     EXPECT_EQ(built->deviations.pitches[i].lines, kept->deviations.pitches[i].lines);
-    EXPECT_EQ(built->deviations.pitches[i].nodes, kept->deviations.pitches[i].nodes);
+    EXPECT_TRUE(built->deviations.pitches[i].nodes == kept->deviations.pitches[i].nodes);
   }
 }
 
@@ -801,9 +826,12 @@ TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
   ASSERT_TRUE(obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", counting));
   EXPECT_EQ(built, 0);
   {
-    std::fstream spoilt(file, std::ios::in | std::ios::out | std::ios::binary);
+    // Another file in its place: the one of before is in use.
+    fs::copy_file(file, file + "_spoilt");
+    std::fstream spoilt(file + "_spoilt", std::ios::in | std::ios::out | std::ios::binary);
     spoilt.seekp(static_cast<std::streamoff>(size / 2));
     spoilt.put('!');
+    fs::rename(file + "_spoilt", file);
   }
   ASSERT_TRUE(obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", counting));
   EXPECT_EQ(built, 1);
@@ -814,6 +842,94 @@ TEST(SurfaceCache, ASpoiltOrForeignFileIsBuiltAnew)
   {
     EXPECT_EQ(surfaceCacheFile(shippedParameters({ other }), "x"), surfaceCacheFile(shippedParameters(), "x"));
   }
+}
+
+/// A gear whose table is small.
+Parameters narrowParameters()
+{
+  return shippedParameters({ "solver.scene=auto", "output.load_torque_limit=20.0", "motor.torque_limit=0.19" });
+}
+
+/// How often and with which permissions a file is in the memory of this process: "r--s r--s ", say.
+std::string mappingsOf(const std::string& path)
+{
+  std::ifstream maps("/proc/self/maps");
+  std::string found;
+  for (std::string line; std::getline(maps, line);)
+  {
+    std::istringstream words(line);
+    std::string range;
+    std::string permissions;
+    words >> range >> permissions;
+    found += line.find(path) != std::string::npos ? permissions + ' ' : "";
+  }
+  return found;
+}
+
+TEST(SurfaceCache, IsInMemoryOnceForAllWhoUseIt)
+{
+  const TemporaryFolder folder;
+  const SurfaceSource source{ folder.path().string(), {}, {} };
+  const Parameters parameters = narrowParameters();
+  const std::string file = surfaceCacheFile(parameters, folder.path().string());
+  std::optional<SurfaceTables> built = obtainSurface(parameters, JointModel(parameters), "", source);
+  ASSERT_TRUE(built);
+  EXPECT_EQ(mappingsOf(file), "r--s ") << "who builds it takes it from the file too";
+  const std::optional<SurfaceTables> read = obtainSurface(parameters, JointModel(parameters), "", source);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(mappingsOf(file), "r--s r--s ");
+  EXPECT_TRUE(built->table.nodes == read->table.nodes);
+  built.reset();
+  EXPECT_EQ(mappingsOf(file), "r--s ");
+  fs::remove_all(folder.path());
+  double sum = 0.0;
+  for (const SurfaceNode& node : read->table.nodes)
+  {
+    sum += node[SurfaceNode::ENERGY];
+  }
+  EXPECT_GT(sum, 0.0) << "still there without its name";
+}
+
+TEST(SurfaceCache, RemovesWhatHasNotBeenUsedForLongest)
+{
+  const TemporaryFolder folder;
+  const Parameters parameters = narrowParameters();
+  const auto put = [&](const std::string& name, std::uintmax_t size, std::chrono::hours ago)
+  {
+    const fs::path path = folder.path() / name;
+    std::ofstream(path) << ' ';
+    fs::resize_file(path, size);  // holes: they take no room
+    fs::last_write_time(path, fs::file_time_type::clock::now() - ago);
+    return path;
+  };
+  const auto oldest = put("surface_1.bin", 700000000, std::chrono::hours(30));
+  const auto older = put("deviations_2.bin", 300000000, std::chrono::hours(20));
+  const auto last = put("surface_3.bin", 500000000, std::chrono::hours(10));
+  const auto abandoned = put("surface_4.bin.123.part", 10, std::chrono::hours(2));
+  const auto in_work = put("surface_5.bin.124.part", 10, std::chrono::hours(0));
+  const auto foreign = put("notes.bin", 2000000000, std::chrono::hours(40));
+  std::string notice;
+  const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
+  ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
+  EXPECT_THAT(notice, testing::HasSubstr("removed 1 table of response surfaces, not used for longest, 700 MB"));
+  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " holds at most 1074 MB"));
+  const fs::path own = surfaceCacheFile(parameters, folder.path().string());
+  for (const fs::path& path : { older, last, in_work, foreign, own })
+  {
+    EXPECT_TRUE(fs::exists(path)) << path;
+  }
+  EXPECT_FALSE(fs::exists(oldest));
+  EXPECT_FALSE(fs::exists(abandoned));
+
+  // Reading counts as use.
+  fs::last_write_time(own, fs::file_time_type::clock::now() - std::chrono::hours(50));
+  ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
+  EXPECT_THAT(tidyCache(folder.path().string(), "", 600000000), testing::HasSubstr("removed 1 table "));
+  EXPECT_FALSE(fs::exists(older));
+  EXPECT_THAT(tidyCache(folder.path().string(), last.string(), 0), testing::HasSubstr("removed 1 table "));
+  EXPECT_TRUE(fs::exists(last));
+  EXPECT_FALSE(fs::exists(own));
+  EXPECT_EQ(tidyCache("/nowhere/at/all", "", 0), "");
 }
 
 /// Thrown when a surface begins to be built.
@@ -951,8 +1067,10 @@ TEST(SurfacePool, TriesAgainWhereTheMakerFailed)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     throw std::runtime_error("given up");
   };
-  const auto make = [] {
-    return std::make_shared<const ResponseSurface>(SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, { {}, {}, {}, {} } });
+  const auto make = []
+  {
+    return std::make_shared<const ResponseSurface>(
+        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)) });
   };
   EXPECT_THROW(pool.obtain("a", fail), std::runtime_error);
   EXPECT_TRUE(pool.obtain("a", make));
@@ -974,7 +1092,8 @@ TEST(SurfacePool, MakesEachSurfaceOnceForAllThreads)
   {
     ++made;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    return std::make_shared<const ResponseSurface>(SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, { {}, {}, {}, {} } });
+    return std::make_shared<const ResponseSurface>(
+        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)) });
   };
   SurfacePool::Surface first;
   SurfacePool::Surface second;
