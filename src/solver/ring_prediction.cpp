@@ -94,8 +94,9 @@ void RingPrediction::keep(const RingState& state) noexcept
   }
   constexpr double SAME_TWIST = 1e-7;  // rad
   Kept& kept = keptAt(pitches);
-  if (kept.known && std::abs(state.position.wave_generator_angle - kept.position.wave_generator_angle) * KEPT <
-                        model_.rest.pitchAngle() &&
+  if (kept.known &&
+      std::abs(state.position.wave_generator_angle - kept.position.wave_generator_angle) * KEPT <
+          model_.rest.pitchAngle() &&
       std::abs(twistSince(kept, state.position)) < SAME_TWIST)
   {
     return;  // hardly moved
@@ -140,16 +141,15 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
   const int places = wrapped(whole, 2 * half);
   const double sign = places < half ? 1.0 : -1.0;
   const double angle = whole * pitch;
-  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output },
-                         { 1.0, (away - whole) * pitch, rest }, places % half, sign * std::cos(angle),
-                         sign * std::sin(angle), state.shape.points, half);
+  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output }, { 1.0, (away - whole) * pitch, rest },
+                         places % half, sign * std::cos(angle), sign * std::sin(angle), state.shape.points, half);
   turnSpaces(kept.space, whole, state.shape.space);
   return true;
 }
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double SMALL = 0.02;       // of a pitch; below it the tangent alone is as good
+  constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
   const double pitch = model_.rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
   if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
