@@ -215,7 +215,7 @@ private:
   bool good() const { return failure_reason_.empty(); }
 
   /// Fewest columns that give a line's torques half way between them.
-  int fewestColumns(LineRing& ring)
+  int fewestColumns(LineRing& ring) const
   {
     int columns = MIN_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
