@@ -10,6 +10,7 @@ import numpy as np
 
 from cells import DURATION, STEPS, text
 
+PROJECT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ACCURATE, DEGRADED, REFUSED = "accurate", "degraded, reported", "refused with a reason"
 SILENT, NOT_FINITE, HUNG, CRASHED = "SILENTLY WRONG", "NOT FINITE", "HUNG", "CRASHED"
 GOOD = [ACCURATE, DEGRADED, REFUSED]
@@ -110,7 +111,7 @@ def _judge(runner, cell):
     if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
         return Judged(cell, CRASHED, message or f"exit code {code}")
     if document is None:
-        return Judged(cell, REFUSED, message.replace("joint_twin: ", ""))
+        return Judged(cell, REFUSED, message.replace("joint_twin: ", "").replace(PROJECT + os.sep, ""))
     judged = Judged(cell, "", iterations=document["iterations_mean"], iterations_max=document["iterations_max"],
                     cuts=document["step_cuts"], coarse=document["coarse_steps"], phase=document["phase_advance_max"],
                     turn=document["wave_generator_turn_max"])
