@@ -44,9 +44,10 @@ def settings(path):
     """An overlay as `--set` takes it, numbers without an exponent."""
     for section, keys in yaml.safe_load(path.read_text()).items():
         for key, value in keys.items():
-            text = value if isinstance(value, str) else f"{value:.9f}"
             if isinstance(value, list):
                 text = f"[{', '.join(f'{number:.9f}' for number in value)}]"
+            else:
+                text = value if isinstance(value, str) else f"{value:.9f}"
             yield f"{section}.{key}={text}"
 
 
