@@ -22,9 +22,9 @@ namespace hjt
 ///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; void repeat() noexcept; }
 ///   void addForces(const RingShape&, const DrivePosition&, Scratch&, ForceSum&) const noexcept
 ///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the forces' shape
-///   bool repeats() const noexcept: it is the same again after half a turn, and adds what the solved teeth alone do
+///   bool repeats() const noexcept: it is the same again after half a turn, and adds what the solved teeth alone do;
+///                                  one that does not has the whole ring solved. `repeat` fills in the other half.
 ///
-/// An element that does not repeat has the whole ring solved. `repeat` copies what it found to the other half.
 /// where the scratch carries what the forces found over to the tangent, to friction and to outputs. docs/extending.md
 /// adds one.
 using RingElements = std::tuple<RimTension, RimBending, WaveGeneratorContact, CupTorsion, ToothMesh>;
