@@ -13,10 +13,10 @@ namespace hjt
 ///
 /// Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is a cubic between the
 /// state and its copy one pitch on, forwards or back, with the tangents at both ends; the rest of the output's angle
-/// goes along its own tangent. Where the ring repeats after half a turn the states of the last pitches are kept by their
-/// place in the pitch: the guess goes along the tangents of the nearest one. The error of the last guess corrects the
-/// next one, as far as the last two errors were similar: errors of single teeth stay where they are, while the guess
-/// takes them for turning with the wave generator.
+/// goes along its own tangent. Where the ring repeats after half a turn, the states of the last pitches are kept by
+/// their place in the pitch: the guess goes along the tangents of the nearest one. The error of the last guess
+/// corrects the next one, as far as the last two errors were similar: errors of single teeth stay where they are,
+/// while the guess takes them for turning with the wave generator.
 class RingPrediction
 {
 public:
