@@ -111,8 +111,7 @@ private:
 };
 
 /// Torsion of the gear along a course of loads, wave generator locked: the curve's, less what the friction of the cup
-/// carries that has a state (CupFriction). It starts without torque under the first load, as the joint settles
-/// (JointDynamics::solveAtRest).
+/// carries that has a state (CupFriction). From rest without load on.
 class TorsionCourse
 {
 public:
@@ -134,12 +133,6 @@ public:
       return curve_.torsion(torque);
     }
     const double cup_torque = cup_share_ * torque;
-    if (!started_)
-    {
-      started_ = true;
-      state_ = friction_.relaxed(cup_.rotationAtTorque(cup_torque));
-      return curve_.torsion(torque);
-    }
     double low = cup_.rotationAtTorque(cup_torque - friction_torque_);
     double high = cup_.rotationAtTorque(cup_torque + friction_torque_);
     constexpr int BISECTIONS = 50;
@@ -160,6 +153,5 @@ private:
   double cup_share_;  // of a load at the output that the cup carries, the wave generator the rest [-]
   double friction_torque_;
   CupFriction::State state_;
-  bool started_{};
 };
 }  // namespace hjt

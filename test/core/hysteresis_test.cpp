@@ -21,7 +21,6 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "solver/joint_stepper.hpp"
 #include "statics/static_solver.hpp"
-#include "statics/torsion_curve.hpp"
 #include "test_parameters.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/observer.hpp"
@@ -229,24 +228,6 @@ Swing swing(const std::vector<std::string>& assignments, double amplitude)
   result.throughput = stepper.energyThroughput();
   result.dissipated = stepper.dissipatedEnergy();
   return result;
-}
-
-TEST(TorsionCourse, StartsSettledUnderItsFirstLoad)
-{
-  constexpr double LOAD = 60.0;  // [N.m]
-  const Parameters parameters = shippedParameters();
-  const auto swing = [&](double first, double next)
-  {
-    TorsionCourse course(parameters);
-    const double start = course.to(first);
-    return course.to(next) - start;
-  };
-  EXPECT_EQ(TorsionCourse(parameters).to(LOAD), TorsionCurve(parameters).torsion(LOAD));
-  // Either way alike within the slope that LOAD lies on, and stiffer than without the cup's friction.
-  const double up = swing(LOAD, LOAD + 1.0);
-  EXPECT_NEAR(-swing(LOAD, LOAD - 1.0), up, 1e-3 * up);
-  EXPECT_NEAR(-swing(-LOAD, -LOAD - 1.0), up, 1e-12);
-  EXPECT_LT(up, 0.98 * (TorsionCurve(parameters).torsion(LOAD + 1.0) - TorsionCurve(parameters).torsion(LOAD)));
 }
 
 TEST(Hysteresis, BalancesItsEnergyInTheRunningJoint)

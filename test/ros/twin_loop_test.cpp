@@ -246,18 +246,18 @@ TEST_F(LoopFixture, SleepsUntilTheNextInstantThatIsAwaited)
         instants_.push_back({ at.outputs().stamp, 0.0 });
       },
       [&period](Stamp instant) { return (instant / period + 1) * period; });
-  const auto cyclesInASecond = [&loop]
+  const auto cycles_in_a_second = [&loop]
   {
     const std::uint64_t before = loop.status().cycles;
     std::this_thread::sleep_for(std::chrono::seconds(1));
     return loop.status().cycles - before;
   };
   waitFor([&loop] { return loop.status().state == LoopState::RUNNING; });
-  EXPECT_LT(cyclesInASecond(), 100U);
+  EXPECT_LT(cycles_in_a_second(), 100U);
   EXPECT_LT(loop.status().timing.lateness.quantile(0.1), 8 * MILLISECOND) << "a sleep counted as late";
   EXPECT_EQ(loop.status().timing.missed_deadlines, 0U);
   period = MILLISECOND;
-  EXPECT_GT(cyclesInASecond(), 150U);
+  EXPECT_GT(cycles_in_a_second(), 150U);
   ASSERT_TRUE(loop.reset());
   ASSERT_GT(instants_.size(), 1500U);
   for (std::size_t i = 1; i < 1500; ++i)

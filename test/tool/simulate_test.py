@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin simulate`."""
 import csv
+import glob
 import math
 import os
 import signal
@@ -75,7 +76,8 @@ class Simulate(tool.ToolTest):
             done = self.run_tool("simulate", "--profile", "p.csv", "--duration", 1.0, "--out", f"{scene}.csv",
                                  "--set", f"solver.scene={scene}", environment={"XDG_CACHE_HOME": self.directory})
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual("building the response surface" in done.stderr, scene == "auto", done.stderr)
+            tables = glob.glob(self.path("harmonic_joint_twin/surface_*.bin"))
+            self.assertEqual(len(tables), 1 if scene == "auto" else 0)
             series[scene] = self.rows(f"{scene}.csv")
         self.assertNotEqual(series["full_ring"], series["auto"])
 
