@@ -7,6 +7,15 @@
 
 namespace hjt
 {
+namespace
+{
+/// How often the teeth that a tangent is of stand in the ring.
+int copiesOf(const RingTangent& tangent) noexcept
+{
+  return tangent.solved < tangent.teeth() ? 2 : 1;
+}
+}  // namespace
+
 RingLinearisation::RingLinearisation(const RingModel& model)
   : model_(model)
   , solver_(model.rest.teeth())
@@ -49,9 +58,8 @@ bool RingLinearisation::refactor(const RingState& state) noexcept
 
 bool RingLinearisation::slopesChanged() const noexcept
 {
-  const double copies = tangent_.solved < tangent_.teeth() ? 2.0 : 1.0;
-  if (!factored_ ||
-      copies * model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) != tangent_.cup_stiffness)
+  if (!factored_ || copiesOf(tangent_) * model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) !=
+                        tangent_.cup_stiffness)
   {
     return true;
   }
@@ -64,7 +72,7 @@ void RingLinearisation::solve(Eigen::VectorXd& step) noexcept
 {
   step = forces_.teeth;
   solver().solve<1>(step);
-  if (tangent_.solved < tangent_.teeth())
+  if (copiesOf(tangent_) > 1)
   {
     repeatHalfTurned(step);
   }
@@ -91,22 +99,20 @@ void RingLinearisation::moveSensitivities(RingState& state) noexcept
   {
     newtonStep();
   }
-  if (tangent_.solved < tangent_.teeth())
+  const int copies = copiesOf(tangent_);
+  if (copies > 1)
   {
     repeatHalfTurned(by_wave_generator_);
     repeatHalfTurned(by_output_);
-    repeatHalfTurned(tangent_.wave_generator);
-    repeatHalfTurned(tangent_.output);
   }
   state.by_wave_generator.swap(by_wave_generator_);
   state.by_output.swap(by_output_);
   rates_known_ = false;
-  const double cross = ring_vectors::dot(tangent_.wave_generator, state.by_output, model_.rest.teeth());
-  state.stiffness(0, 0) = tangent_.wave_generator_stiffness +
-                          ring_vectors::dot(tangent_.wave_generator, state.by_wave_generator, model_.rest.teeth());
-  state.stiffness(1, 1) =
-      tangent_.output_stiffness + ring_vectors::dot(tangent_.output, state.by_output, model_.rest.teeth());
-  state.stiffness(0, 1) = state.stiffness(1, 0) = cross;
+  const auto work = [&](const Eigen::VectorXd& mixed, const Eigen::VectorXd& rates)
+  { return copies * ring_vectors::dot(mixed, rates, tangent_.solved); };
+  state.stiffness(0, 0) = tangent_.wave_generator_stiffness + work(tangent_.wave_generator, state.by_wave_generator);
+  state.stiffness(1, 1) = tangent_.output_stiffness + work(tangent_.output, state.by_output);
+  state.stiffness(0, 1) = state.stiffness(1, 0) = work(tangent_.wave_generator, state.by_output);
 }
 
 double RingLinearisation::residual() const noexcept
