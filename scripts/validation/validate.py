@@ -23,6 +23,7 @@ SECTIONS = {
     "drives": "Real drives",
     "heat": "Heat",
     "size14": "Size 14",
+    "family": "The family",
     "dynamics": "The quasi-static claim",
 }
 

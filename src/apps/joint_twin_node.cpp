@@ -12,6 +12,7 @@
 #include "ros_io/shutdown_signals.hpp"
 #include "ros_io/tracker_node.hpp"
 #include "ros_io/twin_node.hpp"
+#include "statics/gear_checks.hpp"
 
 namespace
 {
@@ -28,6 +29,10 @@ void runJoint(ros::NodeHandle& node)
 {
   const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
   ROS_DEBUG_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
+  for (const std::string& warning : hjt::gearWarnings(parameters))
+  {
+    ROS_WARN_STREAM(warning);
+  }
   if (parameters.input.mode == hjt::InputMode::COMMANDS)
   {
     run<hjt::TwinNode>(node, parameters);

@@ -5,6 +5,7 @@
 
 #include "elements/contact_ramp.hpp"
 #include "elements/hertz_contact.hpp"
+#include "elements/race_fit.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -24,14 +25,6 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
   foot.depth = (a * x / radius - x) * foot.normal_x + (b * y / radius - y) * foot.normal_y;
   foot.curvature = 1.0 / radius;
   return foot;
-}
-
-/// Of the wave generator's surface, hot and with its fit [m].
-double meanRadius(const Parameters& parameters) noexcept
-{
-  constexpr double EXPANSION = 11.5e-6;  // of steel [1/K]
-  const double radius = parameters.gear.flexspline_inner_radius;
-  return radius + parameters.contact.fit + EXPANSION * radius * parameters.contact.temperature_difference;
 }
 
 /// The stiffness of each tooth's support, see WaveGeneratorContact.
@@ -70,7 +63,7 @@ WaveGeneratorContact::WaveGeneratorContact(const Parameters& parameters, const T
   : law_(parameters.contact.law)
   , support_(parameters.contact.support)
   , smoothing_(parameters.contact.smoothing)
-  , mean_radius_(meanRadius(parameters))
+  , mean_radius_(parameters.gear.flexspline_inner_radius + raceFit(parameters))
   , ellipticity_(parameters.manufacture.wave_generator_ellipticity)
   , centre_x_(parameters.manufacture.wave_generator_eccentricity[0])
   , centre_y_(parameters.manufacture.wave_generator_eccentricity[1])

@@ -14,6 +14,7 @@ struct RevolutionLoad
 {
   double flank_sliding{};      ///< force times sliding on the flanks of one tooth of the flexspline [N.m]
   double interface_sliding{};  ///< the same between the bearing's outer race and the whole rim [N.m]
+  double race_creep{};         ///< way of the outer race round in the rim, > 0: as the wave generator turns [m]
   std::array<StressCycle, STRESS_PLACES> stress{};  ///< by place
   double bending_range{};  ///< of the bending stress in the tooth space, largest less smallest, nominal [Pa]
   double tension_range{};  ///< of the rim's tension likewise [Pa]
@@ -23,11 +24,9 @@ struct RevolutionLoad
 template <class Of>
 RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& of)
 {
-  RevolutionLoad result{ of(a.flank_sliding, b.flank_sliding),
-                         of(a.interface_sliding, b.interface_sliding),
-                         {},
-                         of(a.bending_range, b.bending_range),
-                         of(a.tension_range, b.tension_range) };
+  RevolutionLoad result{ of(a.flank_sliding, b.flank_sliding), of(a.interface_sliding, b.interface_sliding),
+                         of(a.race_creep, b.race_creep),       {},
+                         of(a.bending_range, b.bending_range), of(a.tension_range, b.tension_range) };
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
     result.stress[place] = { of(a.stress[place].lowest, b.stress[place].lowest),

@@ -8,7 +8,6 @@
 #include "base/number_text.hpp"
 #include "base/range.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "params/variants.hpp"
 
 namespace hjt
 {
@@ -26,7 +25,7 @@ RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int
   , walk_(parameters, positions)
   , flexspline_stress_(parameters)
   , tooth_stress_(parameters.gear.teeth_flexspline)
-  , interface_(withUnitFriction(parameters).contact)
+  , race_creep_(parameters)
   , running_(2 * parameters.gear.teeth_flexspline)
 {
   if (!walk_.status().ok())
@@ -71,8 +70,9 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
                   widen(bending, parts.bending);
                   widen(tension, parts.tension);
                 }
-                revolution_load.interface_sliding +=
-                    step * teeth * interface_.torque(ring.shape(), ring.forces().of<WaveGeneratorContact>(), running_);
+                const RaceCreep::Rates creep = race_creep_.at(ring, running_);
+                revolution_load.interface_sliding += step * teeth * creep.sliding;
+                revolution_load.race_creep += step * teeth * creep.advance;
               });
   if (!walk_.status().ok())
   {

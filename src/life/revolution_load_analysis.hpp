@@ -7,6 +7,7 @@
 #include "life/ageing_laws.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/pitch_walk.hpp"
+#include "statics/race_creep.hpp"
 
 namespace hjt
 {
@@ -28,7 +29,7 @@ private:
   PitchWalk walk_;
   FlexsplineStress flexspline_stress_;
   ToothStress tooth_stress_;
-  InterfaceFriction interface_;
+  RaceCreep race_creep_;
   Eigen::VectorXd running_;  // of the teeth, by the wave generator's angle
 };
 }  // namespace hjt

@@ -6,6 +6,7 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "statics/flexspline_stress.hpp"
+#include "statics/gear_checks.hpp"
 #include "twin/tooth_forces.hpp"
 #include "twin/twin_impl.hpp"
 
@@ -18,6 +19,10 @@ Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
     throw ParameterError(
         "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
         "allowed for the running twin: normal");
+  }
+  if (const std::string jam = jamOf(parameters); !jam.empty())
+  {
+    throw ParameterError(jam);
   }
   impl_ = std::make_unique<Impl>(parameters, surface_source);
 }

@@ -158,6 +158,45 @@ TEST(RevolutionLoad, OfBothDirectionsOfLoadIsAlike)
   EXPECT_NEAR(forth.interface_sliding, back.interface_sliding, 0.05 * forth.interface_sliding);
 }
 
+TEST(RaceCreep, FollowsTheBendingAtTheLobesAndIsHeldBackByTheStretchedRim)
+{
+  RevolutionLoadAnalysis analysis(shippedParameters(), POSITIONS);
+  const double idle = analysis.under(0.0).race_creep;
+  const Parameters parameters = shippedParameters();
+  // The whole lever times the rate of tilt of an ellipse at its lobes, 3 w0/r: more than the mean over the contact.
+  const double at_lobes = TWO_PI * parameters.contact.slip_lever * 3.0 * parameters.gear.wave_amplitude /
+                          parameters.gear.flexspline_inner_radius;
+  EXPECT_GT(idle, 0.0);
+  EXPECT_LT(idle, at_lobes);
+  const double rated = analysis.under(67.0).race_creep;
+  EXPECT_LT(rated, idle);
+  EXPECT_LT(analysis.under(150.0).race_creep, rated);
+}
+
+TEST(RaceCreep, OfALooseRaceLagsByTheDifferenceOfCircumferences)
+{
+  const auto creepOfWorn = [](double depth)
+  {
+    Parameters parameters = shippedParameters();
+    parameters.faults.push_back({ FaultKind::INTERFACE_WEAR, depth / parameters.fault_scale.interface_wear_depth });
+    return RevolutionLoadAnalysis(parameters, POSITIONS).under(67.0).race_creep;
+  };
+  const double lag = creepOfWorn(4e-6) - creepOfWorn(6e-6);
+  EXPECT_GT(lag, TWO_PI * 2e-6);
+  EXPECT_LT(lag, 2.0 * TWO_PI * 2e-6);  // the loaded rim touches nearer to the lobes
+}
+
+TEST(RaceCreep, WithoutLeverIsThatOfTheStretchAlone)
+{
+  Parameters parameters = shippedParameters();
+  parameters.contact.slip_lever = 0.0;
+  const double creep = RevolutionLoadAnalysis(parameters, POSITIONS).under(0.0).race_creep;
+  const double strain = parameters.contact.fit / parameters.gear.flexspline_inner_radius -
+                        creep / (TWO_PI * parameters.gear.flexspline_inner_radius);
+  EXPECT_GT(strain, 1e-5);  // the wave generator stretches the rim
+  EXPECT_LT(strain, 2e-3);
+}
+
 TEST(RevolutionLoadMap, IsTheToothModelAtItsStagesAndNearItBetween)
 {
   const RatedUse& use = ratedUse();

@@ -2,10 +2,12 @@
 #include "apps/common/configuration.hpp"
 
 #include <filesystem>
+#include <iostream>
 #include <regex>
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
+#include "statics/gear_checks.hpp"
 
 namespace hjt
 {
@@ -109,6 +111,20 @@ Parameters loadParameters(const CommonOptions& options)
 {
   Parameters parameters = parseParameters(loadParameterMap(options));
   addFaults(options, parameters);
+  return parameters;
+}
+
+Parameters loadGear(const CommonOptions& options)
+{
+  Parameters parameters = loadParameters(options);
+  if (const std::string jam = jamOf(parameters); !jam.empty())
+  {
+    throw ParameterError(jam);
+  }
+  for (const std::string& warning : gearWarnings(parameters))
+  {
+    std::cerr << "joint_twin: warning: " << warning << '\n';
+  }
   return parameters;
 }
 }  // namespace hjt

@@ -52,4 +52,8 @@ void addFaults(const CommonOptions& options, Parameters& parameters);
 
 /// The same, checked, with the faults of `--fault`. @throws ParameterError.
 Parameters loadParameters(const CommonOptions& options);
+
+/// The same for a gear that is to turn: a warning on stderr for each value that does not go with the others.
+/// @throws ParameterError if its teeth jam.
+Parameters loadGear(const CommonOptions& options);
 }  // namespace hjt

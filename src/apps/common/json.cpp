@@ -101,6 +101,10 @@ std::string Json::shortText() const
   {
     return *truth ? "yes" : "no";
   }
+  if (std::holds_alternative<std::monostate>(value_))
+  {
+    return "-";
+  }
   return JsonWriter::convert(*this).dump();
 }
 

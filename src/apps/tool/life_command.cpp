@@ -155,6 +155,7 @@ const std::vector<Column<FreshPhase>> PHASE_COLUMNS{
   { "turns_per_cycle", [](const FreshPhase& fresh) { return fresh.phase.turns(); } },
   { "flank_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.flank_sliding; } },
   { "interface_sliding", [](const FreshPhase& fresh) { return fresh.revolution_load.interface_sliding; } },
+  { "race_creep", [](const FreshPhase& fresh) { return fresh.revolution_load.race_creep; } },
   { "fatigue", [](const FreshPhase& fresh) { return Table(FATIGUE_COLUMNS, fresh.fatigue).rows(); } }
 };
 

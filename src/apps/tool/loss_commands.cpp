@@ -52,7 +52,7 @@ const std::vector<Column<LossRow>> LOSS_COLUMNS{
 
 int losses(const LossesOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
+  const Parameters parameters = loadGear(options);
   const std::vector<LossRow> rows =
       analyseLosses(parameters, options.speeds, options.loads, options.positions,
                     [&options, show = showProgress("turning")](int done)
@@ -81,7 +81,7 @@ const Subcommand LOSSES{ Subject::GEAR, "losses", "friction and efficiency of st
 
 int breakaway(const PitchOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
+  const Parameters parameters = loadGear(options);
   const Breakaway result = analyseBreakaway(parameters, options.positions);
   if (!result.status.ok())
   {
@@ -113,7 +113,7 @@ int hysteresis(const HysteresisOptions& options)
     return EXIT_USAGE;
   }
   const TorsionLoop loop =
-      analyseTorsionLoop(loadParameters(options), options.amplitude, options.lost_motion_torque, options.steps);
+      analyseTorsionLoop(loadGear(options), options.amplitude, options.lost_motion_torque, options.steps);
   if (!loop.status.ok())
   {
     return notConverged("the torsion loop", loop.status);

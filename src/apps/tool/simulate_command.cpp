@@ -132,7 +132,7 @@ void run(Twin& twin, TorqueProfile& profile, Stamp end, Recorder& recorder)
 int simulate(const SimulateOptions& options)
 {
   const std::string extension = std::filesystem::path(options.out).extension().string();
-  const Parameters parameters = loadParameters(options);
+  const Parameters parameters = loadGear(options);
   requireWritable(options.out, options.force, options.profile);
   TorqueProfile profile = makeProfile(options);
   Twin twin(parameters, surfaceSource());

@@ -72,21 +72,6 @@ void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothT
   }
 }
 
-/// Warns of a gear whose teeth press against each other without load.
-void warnIfJammed(const Parameters& parameters)
-{
-  const FitCheck fit = checkFit(parameters);
-  if (fit.jams())
-  {
-    std::cerr << "joint_twin: warning: the teeth jam without load: " << fit.teeth_loaded << " of "
-              << parameters.gear.teeth_flexspline << " loaded, " << shortNumber(fit.wave_generator_force)
-              << " N on the wave generator, " << shortNumber(fit.wave_generator_force_insertion)
-              << " N without the circular spline; compare gear.wave_amplitude, gear.rim_thickness, "
-                 "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers "
-                 "of teeth\n";
-  }
-}
-
 struct InsertOptions : CommonOptions
 {
   std::string csv;
@@ -94,9 +79,8 @@ struct InsertOptions : CommonOptions
 
 int insert(const InsertOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
+  const Parameters parameters = loadGear(options);
   requireWritable(options.csv, options.force);
-  warnIfJammed(parameters);
   const InsertionResult result = analyseInsertion(parameters);
   if (!result.status.ok())
   {
@@ -205,9 +189,8 @@ double largestStress(const Parameters& parameters, const StiffnessRow& row)
 
 int stiffness(const StiffnessOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
+  const Parameters parameters = loadGear(options);
   requireWritable(options.csv, options.force);
-  warnIfJammed(parameters);
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)
   {
@@ -273,7 +256,7 @@ const std::vector<Column<TurnRow>> TURN_COLUMNS{
 int turn(const TurnOptions& options)
 {
   const std::vector<TurnRow> rows = analyseTurn(
-      loadParameters(options), options.load, options.angle_range, options.steps,
+      loadGear(options), options.load, options.angle_range, options.steps,
       [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {

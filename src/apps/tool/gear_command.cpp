@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/report.hpp"
+#include "apps/common/text_table.hpp"
+
+#include "base/number_text.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "params/field_table.hpp"
+#include "params/variants.hpp"
+#include "statics/gear_checks.hpp"
+#include "statics/gear_design.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double ARCMIN = PI / 180.0 / 60.0;
+constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
+constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
+constexpr int POSITIONS = 8;                            // of a tooth pitch
+constexpr int DIGITS = 6;                               // of a written value
+
+struct GearOptions : CommonOptions
+{
+  GearRequest request;
+  std::string out;
+};
+
+/// A figure of the catalogue beside that of the gear.
+struct Figure
+{
+  std::string name;
+  double catalogue;  // 0: it has none
+  double gear;
+  std::string unit;
+};
+const std::vector<Column<Figure>> FIGURE_COLUMNS{
+  { "name", [](const Figure& figure) { return figure.name; }, "figure" },
+  { "catalogue", [](const Figure& figure) { return figure.catalogue > 0.0 ? Json(figure.catalogue) : Json(); },
+    "catalogue" },
+  { "gear", [](const Figure& figure) { return figure.gear; }, "gear" },
+  { "unit", [](const Figure& figure) { return figure.unit; }, "unit" }
+};
+
+std::string rounded(double value)
+{
+  return numberText(decimalNumber(roundedText(value, DIGITS)).value());
+}
+
+std::string yamlValue(const ParameterValue& value)
+{
+  if (const auto* list = std::get_if<std::vector<double>>(&value.value))
+  {
+    std::string text;
+    for (const double part : *list)
+    {
+      text += (text.empty() ? "[" : ", ") + rounded(part);
+    }
+    return text + "]";
+  }
+  const auto* number = std::get_if<double>(&value.value);
+  return number ? rounded(*number) : valueText(value);
+}
+
+/// Of every parameter: meaning and unit.
+std::map<std::string, std::string> meanings(const Parameters& parameters)
+{
+  std::map<std::string, std::string> texts;
+  visitFields(parameters,
+              [&](const std::string& key, const auto& first, const auto&... rest)
+              {
+                if constexpr (sizeof...(rest) == 3)  // unit; value, range, meaning
+                {
+                  const Meaning& meaning = std::get<2>(std::tie(rest...));
+                  texts[key] = std::string(meaning.text) + " [" + first + "]";
+                }
+              });
+  return texts;
+}
+
+/// The overlay, a comment above each value. @throws InputError if it cannot be written.
+void write(const GearOptions& options, const GearDesign& design, const Parameters& parameters, const std::string& title)
+{
+  std::map<std::string, std::vector<DesignedParameter>> sections;
+  for (const DesignedParameter& parameter : design.parameters)
+  {
+    sections[parameter.key.substr(0, parameter.key.find('.'))].push_back(parameter);
+  }
+  const auto texts = meanings(parameters);
+  std::ofstream file(options.out);
+  file << "# Overlay: " << title
+       << ".\n# Made by joint_twin gear. Motor, brake, load, heat and sensors are those of the joint: "
+          "motor, brake,\n# output.*_inertia, output.torque_limit, thermal and sensors are left as configured.\n";
+  for (const auto& [section, members] : sections)
+  {
+    file << '\n' << section << ":\n";
+    for (const DesignedParameter& parameter : members)
+    {
+      file << "  # " << texts.at(parameter.key) << ". From: " << parameter.rule << ".\n  "
+           << parameter.key.substr(section.size() + 1) << ": " << yamlValue(design.map.at(parameter.key)) << '\n';
+    }
+  }
+  file.close();
+  if (!file)
+  {
+    throw InputError(options.out + ": cannot be written");
+  }
+}
+
+std::vector<Figure> figuresOf(const Parameters& designed, const GearFigures& catalogue)
+{
+  Parameters parameters = withoutHeat(designed);
+  parameters.input.temperature = CATALOGUE_TEMPERATURE;
+  std::vector<Figure> figures;
+  const std::vector<double> torques{ 0.0, catalogue.breakpoints[0], catalogue.breakpoints[1], catalogue.rated_torque,
+                                     catalogue.repeated_peak_torque };
+  const std::vector<StiffnessRow> rows = analyseStiffness(parameters, 0.0, torques);
+  for (const StiffnessRow& row : rows)
+  {
+    if (!row.status.ok())
+    {
+      throw ParameterError("no equilibrium under " + numberText(row.torque) + " N.m: " + explanationOf(row.status));
+    }
+    if (row.torque > 0.0)
+    {
+      figures.push_back({ "torsion at " + shortNumber(row.torque) + " N.m", catalogue.torsion(row.torque) / ARCMIN,
+                          -row.output_angle / ARCMIN, "arcmin" });
+    }
+  }
+  const Breakaway breakaway = analyseBreakaway(parameters, POSITIONS);
+  const auto losses =
+      analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0, catalogue.rated_torque }, POSITIONS, nullptr);
+  figures.push_back({ "starting torque", 1e3 * catalogue.starting_torque, 1e3 * breakaway.starting, "mN.m" });
+  figures.push_back({ "back-driving torque", 0.0, breakaway.back_driving, "N.m" });
+  figures.push_back(
+      { "no-load torque at 2000 rpm", 1e3 * catalogue.no_load_torque, 1e3 * losses[0].loss.gear(), "mN.m" });
+  figures.push_back({ "efficiency at the rated torque", 0.0, 100.0 * losses[1].gear_efficiency, "%" });
+  const double share = 100.0 / parameters.gear.teeth_flexspline;
+  figures.push_back({ "teeth in mesh without load", 0.0, share * rows[0].teeth_loaded, "%" });
+  figures.push_back({ "teeth in mesh at the rated torque", 0.0, share * rows[3].teeth_loaded, "%" });
+  return figures;
+}
+
+int gear(const GearOptions& options)
+{
+  ParameterMap map = defaultParameterMap(options);
+  addOverlays(options, map);
+  requireWritable(options.out, options.force);
+  const GearFigures catalogue = gearFigures(options.request);
+  const GearDesign design = designGear(map, options.request, catalogue);
+  const Parameters parameters = parseParameters(design.map);
+  write(options, design, parameters,
+        "a gear of size " + shortNumber(options.request.size) + ", ratio " + std::to_string(options.request.ratio));
+  for (const std::string& warning : gearWarnings(parameters))
+  {
+    std::cerr << "joint_twin: warning: " << warning << '\n';
+  }
+  printReport(options.json,
+              { { "catalogue", "catalogue's figures", catalogue.scaled ? "size 25 scaled" : "HFUS/CSF, TPI 275" } },
+              { { "figures", Table(FIGURE_COLUMNS, figuresOf(parameters, catalogue)) } });
+  return EXIT_DONE;
+}
+
+std::string invalidRatio(const std::string& text)
+{
+  const std::optional<double> ratio = decimalNumber(text);
+  return ratio && *ratio >= 30.0 && *ratio <= 320.0 ? "" : "a ratio is a whole number, 30 ... 320";
+}
+
+void declare(Command& command, GearOptions& options)
+{
+  command.add("--size", options.request.size, "of the gear, as catalogues count: 14, 17, 20, 25, 32 ...").range(5, 100);
+  command.add("--ratio", options.request.ratio, "with the circular spline held: half the flexspline's teeth")
+      .check(invalidRatio);
+  command.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
+  command.add("--rim-thickness", options.request.rim_thickness, "of the flexspline under the teeth [m]").positive();
+  command.add("--face-width", options.request.face_width, "length of the teeth [m]").positive();
+  command.add("--out", options.out, "overlay to write, for --config").type("FILE").required();
+  addCommonOptions(command, options);
+}
+
+const Subcommand GEAR{ Subject::GEAR, "gear", "a whole gear by its size and ratio, as a configuration overlay", declare,
+                       gear };
+}  // namespace
+}  // namespace hjt

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/gear_checks.hpp"
+
+#include <cmath>
+
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "params/variants.hpp"
+#include "statics/gear_rules.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int POSITIONS = 4;  // of a tooth pitch, for the efficiency
+
+std::string shortNumber(double value)
+{
+  return roundedText(value, 4);
+}
+
+/// The drive that is checked: nothing on it that is meant to be wrong.
+Parameters soundGear(const Parameters& parameters)
+{
+  Parameters sound = withoutHeat(withoutWeight(withoutErrors(parameters)));
+  sound.faults.clear();
+  sound.contact.law = ContactLaw::NORMAL;
+  return sound;
+}
+
+/// Adds a warning where a value is further from what it should be near than by a factor.
+class Nearness
+{
+public:
+  explicit Nearness(std::vector<std::string>& warnings) : warnings_(warnings) {}
+
+  void check(const std::string& key, double value, const std::string& unit, double expected, double factor,
+             const std::string& reason)
+  {
+    if (value > factor * expected || expected > factor * value)
+    {
+      warnings_.push_back(key + " = " + shortNumber(value) + " [" + unit + "] should be near " + shortNumber(expected) +
+                          " [" + unit + "]: " + reason);
+    }
+  }
+
+private:
+  std::vector<std::string>& warnings_;
+};
+}  // namespace
+
+std::string jamOf(const Parameters& parameters)
+{
+  const Parameters sound = soundGear(parameters);
+  const FitCheck fit = checkFit(sound);
+  if (!fit.jams())
+  {
+    return "";
+  }
+  const GearParameters& gear = sound.gear;
+  return "the teeth jam without load: " + std::to_string(fit.teeth_loaded) + " of " +
+         std::to_string(gear.teeth_flexspline) + " loaded, " + shortNumber(fit.wave_generator_force) +
+         " N on the wave generator, " + shortNumber(fit.wave_generator_force_insertion) +
+         " N without the circular spline. gear.wave_amplitude = " + shortNumber(gear.wave_amplitude) +
+         " [m] should be near " + shortNumber(fittingWaveAmplitude(gear)) +
+         " [m], gear.tip_radius_circular_spline = " + shortNumber(gear.tip_radius_circular_spline) + " [m] near " +
+         shortNumber(fittingTipRadius(gear)) +
+         " [m] for this number of teeth, radius, rim and tooth height; mesh.flank_clearance = " +
+         shortNumber(sound.mesh.flank_clearance) + " [m]";
+}
+
+std::vector<std::string> gearWarnings(const Parameters& parameters)
+{
+  const Parameters sound = soundGear(parameters);
+  const GearParameters& gear = sound.gear;
+  std::vector<std::string> warnings;
+  Nearness near(warnings);
+  near.check("gear.wave_amplitude", gear.wave_amplitude, "m", fittingWaveAmplitude(gear), 1.03,
+             "the teeth roll in their spaces then");
+  near.check("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "m", fittingTipRadius(gear),
+             1.0 + 0.25 * gear.tooth_height_flexspline / fittingTipRadius(gear),
+             "bore radius, rim and tooth height; the teeth engage to the depth of the wave then");
+  near.check("ring.bending_stiffness", sound.ring.bending_stiffness, "N.m/rad", rimBendingStiffness(sound), 2.0,
+             "that of gear.rim_thickness, life.face_width and the number of teeth");
+  near.check("ring.tension_stiffness", sound.ring.tension_stiffness, "N/m", 2.5 * rimTensionStiffness(sound), 2.5,
+             "2.5 times the section of the rim under the teeth, which bear a part");
+  const FitCheck fit = checkFit(sound);
+  if (!fit.status.ok())
+  {
+    warnings.push_back("no equilibrium without load: " + explanationOf(fit.status));
+    return warnings;
+  }
+  if (fit.teeth_loaded == 0)
+  {
+    warnings.push_back("mesh.flank_clearance = " + shortNumber(sound.mesh.flank_clearance) +
+                       " [m] leaves no tooth in contact without load: the output is free by that much. A preloaded "
+                       "gear has some 5 % of its teeth in contact");
+  }
+  if (const LossRow row =
+          analyseLosses(sound, { sound.life.rated_speed }, { sound.life.rated_torque }, POSITIONS, nullptr).front();
+      row.status.ok() && (row.gear_efficiency < 0.55 || row.gear_efficiency > 0.92))
+  {
+    warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
+                       " [N.m]: " + shortNumber(row.gear_efficiency) +
+                       " [-], out of the 0.55 ... 0.92 of such gears: look at bearing.race_preload, "
+                       "bearing.viscosity, mesh.friction_kinetic and the rated torque");
+  }
+  return warnings;
+}
+}  // namespace hjt

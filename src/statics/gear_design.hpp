@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// The gear wanted. What is left out follows from the size.
+struct GearRequest
+{
+  double size{ 25.0 };                  ///< as catalogues count: 25 has the configured dimensions [-]
+  int ratio{ 100 };                     ///< with the circular spline held: half the flexspline's teeth [-]
+  std::optional<double> bore_radius;    ///< of the flexspline [m]
+  std::optional<double> rim_thickness;  ///< [m]
+  std::optional<double> face_width;     ///< of the teeth [m]
+};
+
+/// What a maker's catalogue gives for a gear; 0: it gives no such figure.
+struct GearFigures
+{
+  std::array<double, 3> stiffness{};    ///< K1, K2, K3 of the whole gear [N.m/rad]
+  std::array<double, 2> breakpoints{};  ///< T1, T2 [N.m]
+  double rated_torque{};                ///< [N.m]
+  double average_torque{};              ///< [N.m]
+  double repeated_peak_torque{};        ///< [N.m]
+  double momentary_peak_torque{};       ///< [N.m]
+  double starting_torque{};             ///< at the wave generator, 20 degC [N.m]
+  double no_load_torque{};              ///< at the wave generator, 2000 rpm, 20 degC [N.m]
+  bool scaled{};                        ///< size and ratio are not in the catalogue: size 25 scaled
+
+  double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
+};
+
+/// Those of the family HFUS/CSF; of a size or ratio that it does not have, size 25 scaled.
+GearFigures gearFigures(const GearRequest& request);
+
+/// A parameter of the gear and the rule by which it follows from the configured gear.
+struct DesignedParameter
+{
+  std::string key;
+  std::string rule;
+};
+
+/// A gear of the family: every parameter of the configured one that depends on size, teeth or rim, by rules of
+/// similarity; then slopes of the cup, race preload and viscosity fitted to the figures.
+struct GearDesign
+{
+  ParameterMap map;  ///< whole
+  std::vector<DesignedParameter> parameters;
+};
+
+/// `configured`: HFUS-25-2SH, ratio 100, or a variant of it, whole.
+/// @throws ParameterError if the parameters leave their ranges, or the gear has no equilibrium.
+GearDesign designGear(const ParameterMap& configured, const GearRequest& request, const GearFigures& figures);
+}  // namespace hjt
