@@ -54,16 +54,25 @@ SolveStatus JointDynamics::solveAtRest() noexcept
   return result;
 }
 
+bool JointDynamics::placeOnSurface(double motor_angle, double output_angle) noexcept
+{
+  if (!meetsSurface() || !surface_->locate(motor_angle, output_angle, place_))
+  {
+    return false;
+  }
+  on_surface_ = true;
+  surface_agrees_ = false;
+  motor_angle_ = motor_angle;
+  output_angle_ = output_angle;
+  response_ = surface_->response(place_, housing_stiffness_);
+  takeSurface();
+  return true;
+}
+
 SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexcept
 {
-  if ((on_surface_ || surface_agrees_) && surface_->locate(motor_angle, output_angle, place_))
+  if (placeOnSurface(motor_angle, output_angle))
   {
-    on_surface_ = true;
-    surface_agrees_ = false;
-    motor_angle_ = motor_angle;
-    output_angle_ = output_angle;
-    response_ = surface_->response(place_, housing_stiffness_);
-    takeSurface();
     return {};
   }
   if (on_surface_)

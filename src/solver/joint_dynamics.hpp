@@ -43,6 +43,10 @@ public:
   /// Ring in equilibrium at these angles. On failure the last good ring stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
+  /// The same by the surface, where it is in use or agrees with the ring. False, and nothing done, elsewhere.
+  bool placeOnSurface(double motor_angle, double output_angle) noexcept;
+  bool meetsSurface() const noexcept { return on_surface_ || surface_agrees_; }
+
   /// The friction that remembers has come to the present ring for good. @returns what the cup's dissipated on the way
   /// [J].
   double accept() noexcept;
@@ -69,6 +73,11 @@ public:
     }
     return stiffness;
   }
+
+  /// Of the rim's mean rotation by motor and output angle, while the cup's friction has a state [-].
+  const Eigen::Vector2d& cupRates() const noexcept { return cup_rates_; }
+  double cupStiffness() const noexcept { return now_.cup.stiffness; }  ///< of its elements that do not slip [N.m/rad]
+  double slippedEnergy() const noexcept { return now_.cup.slipped; }   ///< of them since the last `accept` [J]
 
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;

@@ -27,10 +27,15 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
         std::to_string(dynamics_.status.residual) + " N)");
   }
-  divideStep(parameters);
+  const double frequency = divideStep(parameters);
+  if (kind_ == StepperKind::ADAPTIVE)
+  {
+    adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), frequency);
+  }
 }
 
-void JointStepper::divideStep(const Parameters& parameters)
+/// @returns how fast the joint can swing [rad/s].
+double JointStepper::divideStep(const Parameters& parameters)
 {
   constexpr double AIM = 0.8 * MAX_PHASE_ADVANCE;  // of a substep: under load friction stiffens the joint further [rad]
   constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
@@ -80,10 +85,22 @@ void JointStepper::divideStep(const Parameters& parameters)
       throw ParameterError(text.str());
     }
   }
+  return frequency;
+}
+
+void JointStepper::useSurface(const ResponseSurface* surface) noexcept
+{
+  if (marches_)
+  {
+    leaveMarch();
+  }
+  rest_steps_ = 0;
+  dynamics_.useSurface(surface);
 }
 
 bool JointStepper::reset() noexcept
 {
+  marches_ = false;
   dynamics_.inputs = {};
   const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
@@ -112,7 +129,7 @@ bool JointStepper::updateModel() noexcept
   const Eigen::Vector2d torque = dynamics_.torque();
   const bool good = dynamics_.updateModel().ok();
   released_ += stored - dynamics_.storedEnergy();
-  if (kind_ == StepperKind::LEAPFROG)
+  if (kind_ != StepperKind::RUNGE_KUTTA4)
   {
     // The last kick, half of which belongs after this instant, was still by the old torque.
     released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
@@ -129,27 +146,86 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
   }
   dynamics_.status = {};
   bool good = true;
-  for (int i = 0; good && i < substeps_; ++i)
+  double left = step_;
+  if (!(adaptive_ && march(inputs, left)))
   {
-    if (i == substeps_ / 2)
+    const double length = left == step_ ? substep_ : left / substeps_;
+    for (int i = 0; good && i < substeps_; ++i)
     {
-      dynamics_.inputs = inputs;
+      if (i == substeps_ / 2)
+      {
+        dynamics_.inputs = inputs;
+      }
+      good = substep(length);
     }
-    good = substep();
+    dynamics_.inputs = inputs;
   }
-  dynamics_.inputs = inputs;
   const bool rests = good && x_[MOTOR_SPEED] == 0.0 && std::abs(x_[OUTPUT_SPEED]) <= REST_SPEED;
   rest_steps_ = rests ? rest_steps_ + 1 : 0;
   return good;
 }
 
-bool JointStepper::substep() noexcept
+/// The step by the adaptive stepper, as far as it goes. False: the last `left` [s] of it are the leapfrog's.
+bool JointStepper::march(const JointInputs& inputs, double& left) noexcept
+{
+  if (!marches_)
+  {
+    if (!dynamics_.meetsSurface() || !adaptive_->covers(dynamics_.inputs) || !adaptive_->covers(inputs) ||
+        !dynamics_.placeOnSurface(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]))
+    {
+      return false;
+    }
+    leapfrog_.comeBack(x_);
+    marches_ = true;
+    adaptive_->start(x_);
+  }
+  const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
+  const bool arrived = adaptive_->advance(step_, x_, left);
+  speeds_ = x_.segment<2>(MOTOR_SPEED);
+  throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
+  if (!arrived)
+  {
+    leaveMarch();
+    return false;
+  }
+  friction_ = adaptive_->frictionTorque();
+  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
+  balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - dissipatedEnergy() - kinetic;
+  const JointInputs& last = dynamics_.inputs;
+  if (inputs.motor_torque != last.motor_torque || inputs.load_torque != last.load_torque ||
+      inputs.brake_engaged != last.brake_engaged || inputs.temperature != last.temperature)
+  {
+    dynamics_.inputs = inputs;
+    if (adaptive_->covers(inputs))
+    {
+      adaptive_->start(x_);
+    }
+    else
+    {
+      leaveMarch();
+    }
+  }
+  return true;
+}
+
+/// On as the leapfrog goes, from where the march has come to.
+void JointStepper::leaveMarch() noexcept
+{
+  marches_ = false;
+  if (dynamics_.placeOnSurface(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]))
+  {
+    x_[DISSIPATED] += dynamics_.accept();
+    leapfrog_.goAhead(dynamics_, x_, substep_);
+  }
+}
+
+bool JointStepper::substep(double length) noexcept
 {
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
   bool good = true;
-  if (kind_ == StepperKind::LEAPFROG)
+  if (kind_ != StepperKind::RUNGE_KUTTA4)
   {
-    leapfrog_.do_step(dynamics_, x_, 0.0, substep_);
+    leapfrog_.do_step(dynamics_, x_, 0.0, length);
     good = dynamics_.status.ok();
     speeds_ = leapfrog_.speeds();
     friction_ = leapfrog_.frictionTorque();
@@ -157,16 +233,16 @@ bool JointStepper::substep() noexcept
   }
   else
   {
-    good = stepRungeKutta();
+    good = stepRungeKutta(length);
   }
   throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
   return good;
 }
 
-bool JointStepper::stepRungeKutta() noexcept
+bool JointStepper::stepRungeKutta(double length) noexcept
 {
   const JointState start = x_;
-  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, substep_);
+  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, length);
   if (!dynamics_.status.ok() || !dynamics_.place(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]).ok())
   {
     x_ = start;
@@ -186,6 +262,10 @@ bool JointStepper::stepRungeKutta() noexcept
 
 double JointStepper::phaseAdvance() const noexcept
 {
+  if (marches_)
+  {
+    return 0.0;
+  }
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d inertia = dynamics_.model().inertia();
   const Eigen::Matrix2d friction = dynamics_.frictionStiffness();

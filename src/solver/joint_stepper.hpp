@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
 
 namespace hjt
 {
 /// Marches the joint with the configured stepper and keeps its energy ledger.
+///
+/// `adaptive` goes in steps of its own length while the ring is on the response surface, and as the leapfrog elsewhere.
+/// Inputs then act from their instant on, not from half a step before it.
 class JointStepper
 {
 public:
@@ -24,6 +30,8 @@ public:
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
   JointStepper(const Parameters& parameters, const JointModel& model);
+  JointStepper(const JointStepper&) = delete;
+  JointStepper& operator=(const JointStepper&) = delete;
 
   /// At rest where the joint has settled. @returns false if it has not.
   bool reset() noexcept;
@@ -44,21 +52,22 @@ public:
   double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
 
   /// See JointDynamics.
-  void useSurface(const ResponseSurface* surface) noexcept
-  {
-    rest_steps_ = 0;
-    dynamics_.useSurface(surface);
-  }
+  void useSurface(const ResponseSurface* surface) noexcept;
 
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
-  double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
-  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
-  int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
-  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness [rad].
+  /// By all friction [J].
+  double dissipatedEnergy() const noexcept
+  {
+    return x_[joint_state::DISSIPATED] + (marches_ ? dynamics_.slippedEnergy() : 0.0);
+  }
+  double energyThroughput() const noexcept { return throughput_; }    ///< sum of |work| of motor, load, friction [J]
+  int substeps() const noexcept { return marches_ ? 1 : substeps_; }  ///< 1 ... MAX_SUBSTEPS
+  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness; 0 in steps of
+  /// their own length, whose error is controlled [rad].
   double phaseAdvance() const noexcept;
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
@@ -66,10 +75,12 @@ public:
 private:
   using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
                                                            boost::numeric::odeint::vector_space_algebra>;
-  bool substep() noexcept;
-  bool stepRungeKutta() noexcept;
+  bool substep(double length) noexcept;
+  bool march(const JointInputs& inputs, double& left) noexcept;
+  void leaveMarch() noexcept;
+  bool stepRungeKutta(double length) noexcept;
   bool staysAtRest(const JointInputs& inputs) const noexcept;
-  void divideStep(const Parameters& parameters);
+  double divideStep(const Parameters& parameters);
 
   StepperKind kind_;
   int rest_steps_{};  // in a row at whose end the joint was at rest
@@ -79,6 +90,8 @@ private:
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
   RungeKutta4 runge_kutta_;
+  std::optional<AdaptiveStepper> adaptive_;
+  bool marches_{};  // by it at present
   JointState x_{ JointState::Zero() };
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };

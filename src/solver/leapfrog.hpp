@@ -30,6 +30,11 @@ public:
 
   void do_step(JointDynamics& system, JointState& x, double t, double dt) noexcept;
 
+  /// From speeds at the instant of the angles to those half a step ahead, and back: half of a kick, with half of its
+  /// work. Forth at the ring in place; back from the last step.
+  void goAhead(JointDynamics& system, JointState& x, double dt) noexcept;
+  void comeBack(JointState& x) const noexcept;
+
   /// Speeds at the instant of the angles, mean of before and after the kick [rad/s].
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }
 
@@ -43,5 +48,6 @@ private:
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};
+  Eigen::Vector3d work_{ 0.0, 0.0, 0.0 };  // of the last kick, in the order of the state [J]
 };
 }  // namespace hjt

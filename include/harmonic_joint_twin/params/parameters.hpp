@@ -211,11 +211,13 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the joint is marched: one ring solve a step, staggered; or the classical Runge-Kutta of Boost.odeint, four.
+/// How the joint is marched: one ring solve a step, staggered; the classical Runge-Kutta of Boost.odeint, four; or, on
+/// the response surface, steps of their own length by an error tolerance.
 enum class StepperKind
 {
   LEAPFROG,
-  RUNGE_KUTTA4
+  RUNGE_KUTTA4,
+  ADAPTIVE
 };
 
 /// By what the ring's equilibrium is found: always all teeth, or a response surface where one holds.
@@ -229,6 +231,7 @@ struct SolverParameters
 {
   double rate{};
   StepperKind stepper{};
+  double tolerance{};
   double force_tolerance{};
   int max_iterations{};
   int max_step_cuts{};

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/adaptive_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace hjt
+{
+using namespace joint_state;
+
+namespace
+{
+constexpr double SHORTEST = 1e-10;  // step [s]
+constexpr double FIRST = 1e-5;      // step tried after a start [s]
+constexpr int MOST_STEPS = 10000;   // to an instant
+
+int signOf(double value) noexcept
+{
+  return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+}
+
+Eigen::Vector4d perUnit(double tolerance, double ratio, double frequency) noexcept
+{
+  return Eigen::Vector4d(ratio, 1.0, ratio * frequency, frequency).cwiseInverse() / tolerance;
+}
+}  // namespace
+
+AdaptiveStepper::AdaptiveStepper(JointDynamics& dynamics, double tolerance, double ratio, double frequency) noexcept
+  : dynamics_(dynamics)
+  , controlled_(ErrorChecker{ perUnit(tolerance, ratio, frequency) },
+                boost::numeric::odeint::default_step_adjuster<double, double>(MAX_PHASE / frequency))
+  , speed_tolerance_(tolerance * frequency)
+{
+}
+
+bool AdaptiveStepper::covers(const JointInputs& inputs) const noexcept
+{
+  const JointModel& model = dynamics_.model();
+  return !model.cup_friction.isTerm() && !(model.brake.hasPlay() && inputs.brake_engaged);
+}
+
+void AdaptiveStepper::start(JointState& x) noexcept
+{
+  x[DISSIPATED] += dynamics_.accept();
+  end_ = x;
+  start_ = x;
+  at_ = 0.0;
+  length_ = 0.0;
+  next_ = FIRST;
+  event_ = true;
+}
+
+bool AdaptiveStepper::advance(double length, JointState& x, double& left) noexcept
+{
+  steps_ = 0;
+  at_ += length;
+  while (at_ > length_)
+  {
+    at_ -= length_;
+    if (steps_ == MOST_STEPS || !takeStep())
+    {
+      x = steps_ == MOST_STEPS ? end_ : start_;
+      left = at_;
+      return false;
+    }
+  }
+  interpolate(at_, x);
+  State unused;
+  (*this)(x, unused, 0.0);
+  left = 0.0;
+  return true;
+}
+
+/// The next step, from the end of the one before.
+bool AdaptiveStepper::takeStep() noexcept
+{
+  if (!place(end_))
+  {
+    start_ = end_;
+    return false;
+  }
+  cup_rate_ = cupRate(end_);
+  end_[DISSIPATED] += dynamics_.accept();
+  start_ = end_;
+  if (event_)
+  {
+    chooseModes();
+    event_ = false;
+  }
+  start_rate_ = end_rate_;
+  if (mode_[0] == 0 && mode_[1] == 0)
+  {
+    length_ = whole_ = std::numeric_limits<double>::infinity();
+    return true;
+  }
+  double time = 0.0;
+  while (time == 0.0)
+  {
+    const double tried = next_;
+    left_surface_ = false;
+    const bool good = controlled_.try_step(std::ref(*this), start_, start_rate_, time, end_, end_rate_, next_) ==
+                          boost::numeric::odeint::success &&
+                      !left_surface_ && end_.allFinite();
+    if (left_surface_)
+    {
+      next_ = 0.25 * tried;
+    }
+    if (!good)
+    {
+      time = 0.0;
+      if (!(next_ > SHORTEST))
+      {
+        return false;
+      }
+    }
+  }
+  ++steps_;
+  whole_ = length_ = time;
+  endAtEvent();
+  return true;
+}
+
+/// Ends the step at the first event in it, if there is one.
+void AdaptiveStepper::endAtEvent() noexcept
+{
+  State x;
+  State rate;
+  int stopped = -1;
+  double end = whole_;
+  const Eigen::Vector2d excess = push_.cwiseAbs() - strength_;
+  const double turned = cupRate(end_);
+  const double stiffness = dynamics_.cupStiffness();
+  const double by_output = std::abs(dynamics_.cupRates()[1]);
+  for (int i = 0; i < 2; ++i)
+  {
+    const int mode = mode_[static_cast<std::size_t>(i)];
+    const double speed = mode * end_[MOTOR_SPEED + i];
+    if (speed < 0.0 && (i == 0 || strength_[1] > 0.0))
+    {
+      const auto forward = [&](double time)
+      {
+        interpolate(time, x);
+        return mode * x[MOTOR_SPEED + i];
+      };
+      if (end < whole_ && forward(end) >= 0.0)
+      {
+        continue;
+      }
+      const double begin = std::max(mode * start_[MOTOR_SPEED + i], std::numeric_limits<double>::min());
+      end = firstZero(forward, end, begin, end < whole_ ? forward(end) : speed);
+      stopped = i;
+      event_ = true;
+    }
+    else if (mode == 0 && excess[i] > 0.0)
+    {
+      const auto held = [&](double time)
+      {
+        interpolate(time, x);
+        (*this)(x, rate, time);
+        return strength_[i] - std::abs(push_[i]);
+      };
+      const double at_end = end < whole_ ? held(end) : -excess[i];
+      if (at_end < 0.0)
+      {
+        end = firstZero(held, end, std::max(held(0.0), 0.0), at_end);
+        stopped = -1;
+        event_ = true;
+      }
+    }
+  }
+  if (turned * cup_rate_ < 0.0)
+  {
+    // The sliders are turned from end to end of a step. Where the rim goes beyond an end by more than counts, the step
+    // ends there.
+    const double beyond = 0.5 * whole_ * std::min(std::abs(turned), std::abs(cup_rate_));
+    const double kick = stiffness * by_output * beyond * whole_ / dynamics_.model().inertia()[1];
+    if (kick > speed_tolerance_)
+    {
+      const auto forward = [&](double time)
+      {
+        interpolate(time, x);
+        return place(x) ? signOf(cup_rate_) * cupRate(x) : 0.0;
+      };
+      const double at_end = end < whole_ ? forward(end) : -std::abs(turned);
+      if (at_end < 0.0)
+      {
+        end = firstZero(forward, end, std::abs(cup_rate_), at_end);
+        stopped = -1;
+        event_ = true;
+      }
+    }
+  }
+  if (event_)
+  {
+    interpolate(end, end_);
+    length_ = end;
+    next_ = std::min(next_, whole_);
+    if (stopped >= 0)
+    {
+      end_[MOTOR_SPEED + stopped] = 0.0;
+    }
+  }
+}
+
+/// Which way motor and output slide on from the start of a step, and the rates there.
+void AdaptiveStepper::chooseModes() noexcept
+{
+  mode_ = { signOf(start_[MOTOR_SPEED]), signOf(start_[OUTPUT_SPEED]) };
+  for (int i = 0; i < 2; ++i)
+  {
+    (*this)(start_, end_rate_, 0.0);
+    if (start_[MOTOR_SPEED + i] == 0.0 && std::abs(push_[i]) > strength_[i])
+    {
+      mode_[static_cast<std::size_t>(i)] = signOf(push_[i]);
+    }
+  }
+  (*this)(start_, end_rate_, 0.0);
+}
+
+/// Of a function that is positive at the start of the step and negative at `end`, by regula falsi (Illinois): a place
+/// just behind its zero.
+template <class Function>
+double AdaptiveStepper::firstZero(Function&& function, double end, double at_start, double at_end) const noexcept
+{
+  constexpr int MOST = 40;
+  constexpr double ENOUGH = 1e-9;  // of the step
+  double low = 0.0;
+  double high = end;
+  int side = 0;
+  for (int i = 0; i < MOST && high - low > ENOUGH * whole_; ++i)
+  {
+    const double share = std::clamp(at_start / (at_start - at_end), 1e-3, 0.999);
+    const double middle = low + share * (high - low);
+    const double value = function(middle);
+    if (value < 0.0)
+    {
+      high = middle;
+      at_end = value;
+      at_start *= side < 0 ? 0.5 : 1.0;
+      side = -1;
+    }
+    else
+    {
+      low = middle;
+      at_start = value;
+      at_end *= side > 0 ? 0.5 : 1.0;
+      side = 1;
+      if (value == 0.0)
+      {
+        return middle;
+      }
+    }
+  }
+  return high;
+}
+
+void AdaptiveStepper::interpolate(double time, JointState& x) const noexcept
+{
+  if (time >= length_ || time <= 0.0 || !std::isfinite(whole_))
+  {
+    x = time > 0.0 ? end_ : start_;
+    return;
+  }
+  controlled_.stepper().calc_state(time, x, start_, start_rate_, 0.0, end_, end_rate_, whole_);
+}
+
+bool AdaptiveStepper::place(const JointState& x) noexcept
+{
+  return dynamics_.placeOnSurface(x[MOTOR_ANGLE], x[OUTPUT_ANGLE]);
+}
+
+/// Of the rim, at the ring in place [rad/s].
+double AdaptiveStepper::cupRate(const JointState& x) const noexcept
+{
+  return dynamics_.cupRates().dot(x.segment<2>(MOTOR_SPEED));
+}
+
+void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double) noexcept
+{
+  rate.setZero();
+  if (!place(x))
+  {
+    left_surface_ = true;
+    return;
+  }
+  const Eigen::Vector2d speeds = x.segment<2>(MOTOR_SPEED);
+  dynamics_.updateFriction(speeds);
+  const JointFriction& friction = dynamics_.friction();
+  const double follow = std::abs(dynamics_.velocityRatio());
+  const bool motor_sticks = mode_[0] == 0;
+  strength_.setZero();
+  Eigen::Vector2d drag = -(friction.viscous * speeds);
+  drag[0] += dynamics_.preslidingTorque();
+  for (const FrictionTerm& term : friction.terms)
+  {
+    if (term.slip[1] == 0.0)
+    {
+      strength_[0] += term.strength * std::abs(term.slip[0]);
+    }
+    else if (term.slip[0] == 0.0)
+    {
+      strength_[1] += term.strength * std::abs(term.slip[1]);
+    }
+    else if (motor_sticks)
+    {
+      // A flank that the output drags along pushes the motor; one at rest helps to hold it.
+      strength_[1] += term.strength * std::abs(term.slip[1]);
+      strength_[0] += mode_[1] == 0 ? term.strength * std::abs(term.slip[0]) : 0.0;
+      drag[0] -= mode_[1] * signOf(term.slip[1]) * term.strength * term.slip[0];
+    }
+    else
+    {
+      const double slip = term.slip.dot(speeds);
+      const double width = FLANK_WIDTH * (std::abs(term.slip[0]) + follow * std::abs(term.slip[1]));
+      drag -= (term.strength * slip / std::sqrt(slip * slip + width * width)) * term.slip;
+    }
+  }
+  const Eigen::Vector2d torque = dynamics_.torque();
+  push_ = torque + drag;
+  for (int i = 0; i < 2; ++i)
+  {
+    const int mode = mode_[static_cast<std::size_t>(i)];
+    drag[i] -= mode != 0 ? mode * strength_[i] : std::clamp(push_[i], -strength_[i], strength_[i]);
+    rate[MOTOR_ANGLE + i] = speeds[i];
+    rate[MOTOR_SPEED + i] = mode != 0 ? (torque[i] + drag[i]) / dynamics_.model().inertia()[i] : 0.0;
+  }
+  rate[MOTOR_WORK] = dynamics_.driveTorque() * speeds[0];
+  rate[LOAD_WORK] = dynamics_.inputs.load_torque * speeds[1];
+  rate[DISSIPATED] = -drag.dot(speeds);
+  drag_ = drag;
+}
+}  // namespace hjt
