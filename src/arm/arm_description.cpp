@@ -70,6 +70,7 @@ public:
     }
   }
 
+  bool has(const char* key) const { return node_[key].IsDefined(); }
   const std::string& place() const { return place_; }
 
 private:
@@ -79,7 +80,7 @@ private:
 
 ArmJoint readJoint(const std::string& place, const YAML::Node& node)
 {
-  const Section section(place, node, { "name", "short_name", "overlays", "parameters" });
+  const Section section(place, node, { "name", "short_name", "overlays", "parameters", "limits", "check_up" });
   ArmJoint joint;
   joint.name = section.value<std::string>("name");
   joint.short_name = section.value<std::string>("short_name");
@@ -87,6 +88,16 @@ ArmJoint readJoint(const std::string& place, const YAML::Node& node)
   for (const auto& entry : section.at("parameters"))
   {
     joint.parameters.push_back(entry.first.Scalar() + "=" + entry.second.Scalar());
+  }
+  if (section.has("limits"))
+  {
+    const Section limits(place + ": limits", section.at("limits"), { "speed", "torque" });
+    joint.speed_limit = limits.value<double>("speed");
+    joint.torque_limit = limits.value<double>("torque");
+  }
+  if (section.has("check_up"))
+  {
+    joint.check_up = section.value<std::vector<double>>("check_up");
   }
   return joint;
 }
@@ -121,6 +132,13 @@ ArmDescription readArmDescription(const std::string& path)
   if (arm.joints.empty())
   {
     throw ParameterError(path + ": joints is an empty list");
+  }
+  for (const ArmJoint& joint : arm.joints)
+  {
+    if (!joint.check_up.empty() && joint.check_up.size() != arm.joints.size())
+    {
+      throw ParameterError(path + ": check_up of " + joint.name + " must have an angle for each joint");
+    }
   }
   return arm;
 }

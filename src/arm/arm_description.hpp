@@ -14,6 +14,9 @@ struct ArmJoint
   std::string short_name;               ///< of files and namespaces
   std::vector<std::string> overlays;    ///< configuration files of its drive, later wins
   std::vector<std::string> parameters;  ///< section.key=value, over the overlays
+  double speed_limit{};                 ///< 0: none given [rad/s]
+  double torque_limit{};                ///< at the output, 0: none given [N.m]
+  std::vector<double> check_up;         ///< angles of all joints where its check-up begins; empty: none [rad]
 };
 
 /// Mass at the tip of an arm.

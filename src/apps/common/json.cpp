@@ -101,7 +101,7 @@ std::string Json::shortText() const
   {
     return *truth ? "yes" : "no";
   }
-  if (std::holds_alternative<std::monostate>(value_))
+  if (std::holds_alternative<std::nullptr_t>(value_))
   {
     return "-";
   }

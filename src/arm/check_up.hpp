@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "arm/arm_description.hpp"
+#include "arm/arm_dynamics.hpp"
+
+namespace hjt
+{
+/// Straight move of all joints together, the speed over time a trapezoid, as URScript's movej.
+struct ArmMove
+{
+  std::vector<double> target;  ///< angles of all joints [rad]
+  double speed{};              ///< of the joint that goes farthest, at most [rad/s]
+  double acceleration{};       ///< of that joint [rad/s^2]
+};
+
+/// Where the arm stands before the first move.
+using ArmPose = std::vector<double>;
+
+/// An arm at one time of a motion.
+struct ArmInstant
+{
+  double time{};                    ///< [s]
+  std::vector<JointMotion> joints;  ///< all
+  std::vector<double> torques;      ///< that make the motion, at the outputs [N.m]
+};
+
+/// The motion in which a joint's faults are looked for: slow one way and the other over all of its stroke, for stiffness
+/// and friction by load; to and fro where the load goes through zero, for clearance and loop; fast. The joint moves
+/// alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose.
+std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
+
+/// The moves at the times k `period` [s], at rest before and after. @throws ParameterError naming the joint that goes
+/// beyond the limit of its speed or its torque; where the arm's file gives none, there is none.
+std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
+                                    double period);
+}  // namespace hjt
