@@ -15,7 +15,8 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-constexpr double LARGE = 1e6;  // of any value of a waveform
+constexpr double LARGE = 1e6;      // of any value of a waveform
+constexpr double BANDWIDTH = 8.0;  // of the speed control [Hz]
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
@@ -25,21 +26,51 @@ std::string fileOf(const PlanNode& csv)
   return PlanValues().text(csv, "file");
 }
 
+/// One fault into the configuration: what grows as a staircase.
+void addFault(const GrowingFault& growing, const std::string& origin, ParameterMap& map, int& count)
+{
+  constexpr int STEPS = 40;
+  const int steps = growing.ramp > 0.0 ? STEPS : 1;
+  for (int step = 1; step <= steps; ++step)
+  {
+    const double share = static_cast<double>(step) / steps;
+    const double delay = growing.ramp > 0.0 ? growing.ramp * (share - 0.5 / steps) : 0.0;
+    const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
+    map[key + "kind"] = { std::string(describe(growing.fault.kind).name), origin };
+    map[key + "severity"] = { share * growing.fault.severity, origin };
+    map[key + "place"] = { static_cast<std::int64_t>(growing.fault.place), origin };
+    map[key + "onset"] = { growing.fault.onset + delay, origin };
+  }
+}
+
 /// A class' list of faults in place of any other.
-void setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
+std::vector<GrowingFault> setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
 {
   eraseFaults(map);
-  for (const auto& [number, fault] : list.entries)
+  std::vector<GrowingFault> faults;
+  int count = 0;
+  for (const auto& [number, node] : list.entries)
   {
-    if (fault.kind != Kind::MAP || fault.entries.empty())
+    if (node.kind != Kind::MAP || node.entries.empty())
     {
-      fault.refuse("must be {kind: ..., severity: ..., place: ..., onset: ...}");
+      node.refuse("must be {kind: ..., severity: ..., place: ..., onset: ..., ramp: ...}");
     }
-    for (const auto& [key, node] : fault.entries)
+    allowOnly(node, { "kind", "severity", "place", "onset", "ramp" });
+    const std::optional<FaultKind> kind = faultNamed(values.text(node, "kind"));
+    if (!kind)
     {
-      map[std::string(FAULTS) + "." + number + "." + key] = { values.value(node).value, node.origin };
+      required(node, "kind").refuse("is no fault; there are " + faultNames());
     }
+    GrowingFault growing;
+    growing.fault.kind = *kind;
+    growing.fault.severity = values.number(node, "severity", "-", { 0.0, 1.0 });
+    growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
+    growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
+    growing.ramp = values.number(node, "ramp", "s", { 0.0, 1e9 }, 0.0);
+    addFault(growing, node.origin, map, count);
+    faults.push_back(growing);
   }
+  return faults;
 }
 
 /// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
@@ -107,9 +138,9 @@ Plan::Plan(const std::string& path, ParameterMap base)
 {
   allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "duty", "classes", "record" });
   const PlanValues values;
-  name_ = values.text(root_, "name");
-  seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }));
-  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }));
+  name_ = values.text(root_, "name", std::filesystem::path(path).stem().string());
+  seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }, 1));
+  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }, 1));
   visitTables(required(root_, "duty", Kind::LIST),
               [this](const PlanNode& csv)
               {
@@ -222,14 +253,23 @@ RunSpec Plan::run(std::uint64_t number) const
     required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
   }
   allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load", "temperature" });
-  spec.duty_name = values.text(*block.duty, "name");
+  spec.duty_name = values.text(*block.duty, "name", "duty");
   spec.duty = dutyOf(*block.duty, values);
+  constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
+  spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
   ParameterMap map = settingsOf(values, number);
   if (root_.find("classes") != nullptr)
   {
-    setFaults(block.fault_class->second, values, map);
+    spec.faults = setFaults(block.fault_class->second, values, map);
   }
   spec.parameters = parseParameters(map);
+  if (root_.find("classes") == nullptr)
+  {
+    for (const Fault& fault : spec.parameters.faults)
+    {
+      spec.faults.push_back({ fault, 0.0 });
+    }
+  }
   checkRates(spec.parameters);
   return spec;
 }
@@ -269,7 +309,7 @@ RunDuty Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
   else
   {
     cycle.speed = waveform(duty, "speed", "rad/s", values);
-    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 });
+    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 }, BANDWIDTH);
   }
   if (duty.find("load") != nullptr)
   {

@@ -22,6 +22,19 @@ namespace hjt
 {
 nlohmann::ordered_json jsonOf(const ParameterValue& value);
 
+/// A fault of a run: from its onset on it grows evenly to its severity.
+struct GrowingFault
+{
+  Fault fault;
+  double ramp{};  ///< time of growth; 0: at once [s]
+
+  double severityAt(double time) const  ///< `time` since the start [s]
+  {
+    const double gone = time - fault.onset;
+    return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;
+  }
+};
+
 /// One run of a plan, with nothing left open.
 struct RunSpec
 {
@@ -29,8 +42,9 @@ struct RunSpec
   std::string fault_class;
   std::string duty_name;
   std::uint64_t repeat{};
-  double duration{};  ///< [s]
-  Parameters parameters;
+  double duration{};      ///< [s]
+  Parameters parameters;  ///< what grows stands in its faults as a staircase
+  std::vector<GrowingFault> faults;
   RunDuty duty;
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -311,15 +312,22 @@ int run(const IndicatorsOptions& given)
   return interruptSignal() != 0 ? EXIT_BY_SIGNAL + interruptSignal() : static_cast<int>(EXIT_DONE);
 }
 
+/// Of a file's name; empty if nothing is wrong.
+std::string wrongRecording(const std::string& path)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".bag" || ending == ".csv" || ending == ".h5" ? "" : "'" + path + "' must end in .bag, .csv or .h5";
+}
+
 void declare(Command& command, IndicatorsOptions& options)
 {
   command.add("recordings", options.recordings, "one recording, or several of the same joint")
       .required()
-      .type("IN.csv|IN.bag")
-      .bagOrCsv();
+      .type("IN.csv|IN.bag|IN.h5")
+      .check(wrongRecording);
   command.add("--model", options.model, "the twin's own recording of the same run: its indicators are taken off")
-      .type("FILE.csv|FILE.bag")
-      .bagOrCsv();
+      .type("FILE.csv|FILE.bag|FILE.h5")
+      .check(wrongRecording);
   command.flag("--windows", options.windows,
                "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
   command.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
@@ -332,13 +340,17 @@ void declare(Command& command, IndicatorsOptions& options)
   SignalSource& source = options.source;
   const auto column = [&command](const char* name, std::string& field, const char* meaning)
   { command.add(name, field, meaning).type("COLUMN"); };
-  column("--time", source.time, "CSV: time [s]");
-  column("--motor-torque", source.motor_torque, "CSV: motor torque, or current with --torque-scale");
-  column("--motor-angle", source.motor_angle, "CSV: motor encoder [rad]");
-  column("--output-angle", source.output_angle, "CSV: output encoder [rad]");
-  column("--motor-velocity", source.motor_velocity, "CSV: motor speed [rad/s]; else differences of the angle");
-  column("--load-torque", source.load_torque, "CSV: load torque at the output, > 0 resists positive motion [N.m]");
-  column("--temperature", source.temperature, "CSV: temperature [degC]");
+  column("--time", source.time, "CSV, HDF5: time [s]");
+  column("--motor-torque", source.motor_torque,
+         "CSV, HDF5: motor torque, or current with --torque-scale; default: motor_torque_reading, else "
+         "motor_torque");
+  column("--motor-angle", source.motor_angle, "CSV, HDF5: motor encoder [rad]");
+  column("--output-angle", source.output_angle, "CSV, HDF5: output encoder [rad]");
+  column("--motor-velocity", source.motor_velocity, "CSV, HDF5: motor speed [rad/s]; else differences of the angle");
+  column("--load-torque", source.load_torque,
+         "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]");
+  column("--temperature", source.temperature,
+         "CSV, HDF5: temperature [degC]; default: housing_temperature, else temperature");
   command.add("--torque-scale", options.torque_scale,
               "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
               "telemetry.torque_per_current / ratio [N.m/A]");
