@@ -20,6 +20,9 @@ constexpr double BANDWIDTH = 8.0;  // of the speed control [Hz]
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
+/// Of the runs of a plan of lives.
+const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
+constexpr const char* SET = "set.";  // before what is drawn for each drive
 
 std::string fileOf(const PlanNode& csv)
 {
@@ -43,12 +46,21 @@ void addFault(const GrowingFault& growing, const std::string& origin, ParameterM
   }
 }
 
-/// A class' list of faults in place of any other.
-std::vector<GrowingFault> setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
+/// These faults in place of any other.
+void setFaults(const std::vector<GrowingFault>& faults, const std::string& origin, ParameterMap& map)
 {
   eraseFaults(map);
-  std::vector<GrowingFault> faults;
   int count = 0;
+  for (const GrowingFault& fault : faults)
+  {
+    addFault(fault, origin, map, count);
+  }
+}
+
+/// A class' list of faults.
+std::vector<GrowingFault> faultsOf(const PlanNode& list, const PlanValues& values)
+{
+  std::vector<GrowingFault> faults;
   for (const auto& [number, node] : list.entries)
   {
     if (node.kind != Kind::MAP || node.entries.empty())
@@ -67,7 +79,6 @@ std::vector<GrowingFault> setFaults(const PlanNode& list, const PlanValues& valu
     growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
     growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
     growing.ramp = values.number(node, "ramp", "s", { 0.0, 1e9 }, 0.0);
-    addFault(growing, node.origin, map, count);
     faults.push_back(growing);
   }
   return faults;
@@ -136,7 +147,7 @@ std::vector<std::string> Plan::overlays(const std::string& path)
 Plan::Plan(const std::string& path, ParameterMap base)
   : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path)), base_(std::move(base))
 {
-  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "duty", "classes", "record" });
+  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "lives", "duty", "classes", "record" });
   const PlanValues values;
   name_ = values.text(root_, "name", std::filesystem::path(path).stem().string());
   seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }, 1));
@@ -150,7 +161,11 @@ Plan::Plan(const std::string& path, ParameterMap base)
                 tables_[csv.path] = TableWaveform::read(file, column);
               });
   recording_ = readRecording(required(root_, "record", Kind::MAP));
-  makeBlocks();
+  root_.find("lives") != nullptr ? makeLives() : makeBlocks();
+  if (runs_ == 0)
+  {
+    root_.find("duty")->refuse("must have at least one duty cycle");
+  }
 }
 
 void Plan::collect(const PlanNode& node, std::vector<const Variable*>& into)
@@ -191,49 +206,88 @@ void Plan::makeBlocks()
   {
     classes.push_back(&HEALTHY);
   }
-  double total = 0.0;
   for (const PlanNode::Entry* fault_class : classes)
   {
     for (const auto& [key, duty] : root_.find("duty")->entries)
     {
-      Block block{ fault_class, &duty, {}, runs_, repeats_ };
-      collect(required(root_, "duration"), block.variables);
-      if (root_.find("set") != nullptr)
-      {
-        collect(required(root_, "set", Kind::MAP), block.variables);
-      }
-      collect(duty, block.variables);
-      collect(fault_class->second, block.variables);
+      addBlock(*fault_class, duty);
+      Block& block = blocks_.back();
+      block.first = runs_;
       double size = static_cast<double>(repeats_);
       for (const Variable* variable : block.variables)
       {
         size *= static_cast<double>(variable->gridSize());
         block.size *= variable->gridSize();
       }
-      total += size;
-      if (total > MAX_RUNS)
+      if (static_cast<double>(runs_) + size > MAX_RUNS)
       {
         root_.refuse("has more than " + numberText(MAX_RUNS) + " runs");
       }
       runs_ += block.size;
-      blocks_.push_back(block);
     }
-  }
-  if (runs_ == 0)
-  {
-    root_.find("duty")->refuse("must have at least one duty cycle");
   }
 }
 
-RunSpec Plan::run(std::uint64_t number) const
+void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
 {
-  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
-                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
-  const Block& block = *(after - 1);
-  RunSpec spec;
-  spec.run = number;
-  spec.fault_class = block.fault_class->first;
-  std::uint64_t rest = number - block.first;
+  Block block{ &fault_class, &duty, {}, 0, repeats_ };
+  collect(required(root_, "duration"), block.variables);
+  if (root_.find("set") != nullptr)
+  {
+    collect(required(root_, "set", Kind::MAP), block.variables);
+  }
+  collect(duty, block.variables);
+  collect(fault_class.second, block.variables);
+  blocks_.push_back(block);
+}
+
+void Plan::makeLives()
+{
+  for (const char* other : { "classes", "repeats" })
+  {
+    if (root_.find(other) != nullptr)
+    {
+      root_.find(other)->refuse("has no place in a plan of lives: each check-up has the faults of the drive's wear");
+    }
+  }
+  // The laws of ageing take the drive that is the same in all lives.
+  ParameterMap nominal = base_;
+  if (const PlanNode* settings = root_.find("set"))
+  {
+    for (const auto& [key, node] : settings->entries)
+    {
+      if (!Variable::stands(node))
+      {
+        nominal[key] = { PlanValues().value(node).value, node.origin };
+      }
+    }
+  }
+  eraseFaults(nominal);
+  lives_ =
+      std::make_unique<const Lives>(required(root_, "lives", Kind::MAP), parseParameters(nominal), directory_, seed_);
+  const std::vector<PlanNode::Entry>& duties = root_.find("duty")->entries;
+  for (const auto& [key, duty] : duties)
+  {
+    addBlock(LIFE, duty);
+    Block& block = blocks_.back();
+    block.first = blocks_.size() - 1;
+    block.size = lives_->checkUps();
+    block.apart = duties.size();
+    for (const Variable* variable : block.variables)
+    {
+      if (variable->gridSize() > 1)
+      {
+        variable->node().refuse("has no place in a plan of lives: draw it, or fix it");
+      }
+    }
+  }
+  runs_ = lives_->checkUps() * duties.size();
+}
+
+/// All that varies, with its value in a run; into the run too.
+PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
+{
+  std::uint64_t rest = lives_ ? 0 : number - block.first;
   spec.repeat = rest % repeats_;
   rest /= repeats_;
   PlanValues values;
@@ -241,11 +295,25 @@ RunSpec Plan::run(std::uint64_t number) const
   for (std::size_t i = block.variables.size(); i-- > 0;)
   {
     const Variable& variable = *block.variables[i];
-    const ParameterValue value = variable.value(seed_, number, rest % variable.gridSize());
+    const bool of_drive = lives_ && variable.node().path.rfind(SET, 0) == 0;
+    const std::uint64_t draw = of_drive ? lives_->driveAt(number / blocks_.size()) : number;
+    const ParameterValue value = variable.value(seed_, draw, rest % variable.gridSize());
     rest /= variable.gridSize();
     values.set(variable.node(), value);
     spec.variables[i] = { variable.node().path, value };
   }
+  return values;
+}
+
+RunSpec Plan::run(std::uint64_t number) const
+{
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
+                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
+  const Block& block = lives_ ? blocks_[number % blocks_.size()] : *(after - 1);
+  RunSpec spec;
+  spec.run = number;
+  spec.fault_class = block.fault_class->first;
+  const PlanValues values = valuesOf(block, number, spec);
   constexpr Range DURATION{ 1e-3, 1e6 };
   spec.duration = values.number(root_, "duration", "s", DURATION);
   if (spec.duration <= recording_.start)
@@ -258,12 +326,17 @@ RunSpec Plan::run(std::uint64_t number) const
   constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
   spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
   ParameterMap map = settingsOf(values, number);
-  if (root_.find("classes") != nullptr)
+  const bool given = lives_ || root_.find("classes") != nullptr;
+  if (given)
   {
-    spec.faults = setFaults(block.fault_class->second, values, map);
+    const std::uint64_t check_up = number / blocks_.size();
+    spec.faults = lives_ ? lives_->faultsAt(check_up) : faultsOf(block.fault_class->second, values);
+    setFaults(spec.faults, block.fault_class->second.origin, map);
+    const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
+    spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
   }
   spec.parameters = parseParameters(map);
-  if (root_.find("classes") == nullptr)
+  if (!given)
   {
     for (const Fault& fault : spec.parameters.faults)
     {
@@ -383,6 +456,11 @@ std::vector<std::string> Plan::variableNames() const
   {
     names.push_back(variable->node().path);
   }
+  if (lives_)
+  {
+    const std::vector<std::string> labels = Lives::labelNames();
+    names.insert(names.end(), labels.begin(), labels.end());
+  }
   return names;
 }
 
@@ -392,6 +470,10 @@ nlohmann::ordered_json Plan::snapshot() const
   for (const auto& [path, rows] : tables_)
   {
     tables[path] = *rows;
+  }
+  if (lives_)
+  {
+    tables["lives"] = lives_->duties();
   }
   nlohmann::ordered_json base = nlohmann::ordered_json::object();
   for (const auto& [key, value] : base_)

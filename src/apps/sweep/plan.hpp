@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/sweep/growing_fault.hpp"
+#include "apps/sweep/lives.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
 #include "apps/sweep/recording.hpp"
@@ -21,19 +23,6 @@
 namespace hjt
 {
 nlohmann::ordered_json jsonOf(const ParameterValue& value);
-
-/// A fault of a run: from its onset on it grows evenly to its severity.
-struct GrowingFault
-{
-  Fault fault;
-  double ramp{};  ///< time of growth; 0: at once [s]
-
-  double severityAt(double time) const  ///< `time` since the start [s]
-  {
-    const double gone = time - fault.onset;
-    return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;
-  }
-};
 
 /// One run of a plan, with nothing left open.
 struct RunSpec
@@ -52,7 +41,8 @@ struct RunSpec
 /// A plan of many runs: what is fixed, laid out on grids and drawn.
 ///
 /// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
-/// fastest, then the repeats. After construction all members may be called from any thread.
+/// fastest, then the repeats. A plan of lives: life by life, check-up by check-up, duty cycle by duty cycle; what `set`
+/// draws is drawn for each drive. After construction all members may be called from any thread.
 class Plan
 {
 public:
@@ -79,8 +69,13 @@ public:
     std::vector<const Variable*> variables;
     std::uint64_t first;  ///< run
     std::uint64_t size;
+    std::uint64_t apart{ 1 };  ///< from one run to the next
+
+    std::uint64_t last() const { return first + (size - 1) * apart; }
   };
   const std::vector<Block>& blocks() const { return blocks_; }
+
+  const Lives* lives() const { return lives_.get(); }  ///< none: a plan of other runs
 
   /// Paths of all that varies, in the order of the plan.
   std::vector<std::string> variableNames() const;
@@ -91,6 +86,9 @@ public:
 private:
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
+  void addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty);
+  void makeLives();
+  PlanValues valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const;
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
   RunDuty dutyOf(const PlanNode& duty, const PlanValues& values) const;
   std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
@@ -105,6 +103,7 @@ private:
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
   Recording recording_;
+  std::unique_ptr<const Lives> lives_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;
   std::map<std::string, std::shared_ptr<const TableWaveform::Rows>> tables_;  // by file and column

@@ -226,10 +226,12 @@ RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source)
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point begin)
   { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  RunCost cost;
+  const Clock::time_point first_begin = Clock::now();
   Twin first(spec.parameters, surface_source);  // may have to build its surface, once for all runs
+  cost.surface = since(first_begin);
   const Clock::time_point begin = Clock::now();
   Twin twin(spec.parameters, surface_source);
-  RunCost cost;
   cost.start = since(begin);
   twin.reset(SIMULATION_EPOCH);
   DutyFeeder feeder(spec.duty, twin);
