@@ -10,9 +10,11 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include "apps/common/motion_options.hpp"
 #include "apps/sweep/run_file.hpp"
 
 #include "base/number_table.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
 #include "ros_io/checked_message.hpp"
@@ -187,5 +189,59 @@ void readSignals(const std::string& path, const SignalSource& source, const Take
   const std::string extension = std::filesystem::path(path).extension().string();
   const auto read = extension == ".bag" ? readBag : extension == ".h5" ? readRun : readTable;
   read(path, source, take);
+}
+
+SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
+{
+  const bool robot = !options.joint.empty();
+  const std::optional<UrJoint> known = findUrJoint(options.joint);
+  SignalSource source = options.source;
+  source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
+  source.states_topic =
+      options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
+  source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  source.torque_scale = options.torque_scale.value_or(
+      robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
+  return source;
+}
+
+std::string wrongSignalFile(const std::string& path)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".bag" || ending == ".csv" || ending == ".h5" ? "" : "'" + path + "' must end in .bag, .csv or .h5";
+}
+
+void addSignalOptions(Command& command, SignalOptions& options)
+{
+  command.add("recordings", options.recordings, "one recording, or several of the same joint")
+      .required()
+      .type("IN.csv|IN.bag|IN.h5")
+      .check(wrongSignalFile);
+  command.add("--joint", options.joint,
+              "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
+              "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
+  SignalSource& source = options.source;
+  const auto column = [&command](const char* name, std::string& field, const char* meaning)
+  { command.add(name, field, meaning).type("COLUMN"); };
+  column("--time", source.time, "CSV, HDF5: time [s]");
+  column("--motor-torque", source.motor_torque,
+         "CSV, HDF5: motor torque, or current with --torque-scale; default: motor_torque_reading, else "
+         "motor_torque");
+  column("--motor-angle", source.motor_angle, "CSV, HDF5: motor encoder [rad]");
+  column("--output-angle", source.output_angle, "CSV, HDF5: output encoder [rad]");
+  column("--motor-velocity", source.motor_velocity, "CSV, HDF5: motor speed [rad/s]; else differences of the angle");
+  column("--load-torque", source.load_torque,
+         "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]");
+  column("--temperature", source.temperature,
+         "CSV, HDF5: temperature [degC]; default: housing_temperature, else temperature");
+  command.add("--torque-scale", options.torque_scale,
+              "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
+              "telemetry.torque_per_current / ratio [N.m/A]");
+  command
+      .add("--states-topic", options.states_topic,
+           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
+      .type("TOPIC");
+  command.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
+  addNamespaceOption(command, options.joint_namespace);
 }
 }  // namespace hjt

@@ -2,9 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "apps/common/configuration.hpp"
 
 #include "health/signal_sample.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {
@@ -34,4 +39,24 @@ struct SignalSource
 /// @throws InputError
 void readSignals(const std::string& path, const SignalSource& source,
                  const std::function<bool(const SignalSample&)>& take);
+
+/// Recordings of one joint on the command line, and where in them its signals lie.
+struct SignalOptions : CommonOptions
+{
+  std::vector<std::string> recordings;
+  std::string joint_namespace{ DEFAULT_NAMESPACE };
+  std::string joint;
+  std::optional<std::string> states_topic;
+  std::optional<std::string> load_topic;
+  std::optional<double> torque_scale;
+  SignalSource source;
+};
+
+void addSignalOptions(Command& command, SignalOptions& options);
+
+/// What is wrong with the name of a recording; empty if nothing is.
+std::string wrongSignalFile(const std::string& path);
+
+/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+SignalSource signalSource(const SignalOptions& options, const Parameters& parameters);
 }  // namespace hjt
