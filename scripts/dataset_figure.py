@@ -13,7 +13,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy  # noqa: E402
 
 
 def read_index(directory):
@@ -26,9 +25,7 @@ def read_column(directory, row, group, column):
     """(time [s], values, unit) of one run."""
     with h5py.File(os.path.join(directory, row["file"]), "r") as file:
         data = file[group][column]
-        rate = file[group].attrs["sample_rate"]
-        time = file[group].attrs["first_time"] + numpy.arange(len(data)) / rate
-        return time, data[:], data.attrs["unit"].decode()
+        return file[group]["time"][:], data[:], data.attrs["unit"]
 
 
 def main():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin life` as its user meets it."""
 import csv
+import math
 
 import tool
 
@@ -73,6 +74,24 @@ class Life(tool.ToolTest):
         self.fail_with(1, ["never turns"], "life", "age", self.duty("10,0,67,40\n"))
         self.fail_with(1, ["temperature"], "life", "age",
                        self.write("duty.csv", "duration,motor_speed,load_torque\n1,2,3\n"))
+
+    def test_remaining_life_of_a_recorded_joint(self):
+        speed = 209.43951023931953
+        rows = [f"{0.01 * i:.2f},{0.01 * speed * i:.8f},0.9,67,40" for i in range(1001)]
+        self.write("work.csv", "time,motor_angle_encoder,motor_torque,load_torque,temperature\n" + "\n".join(rows))
+        half, new = (self.succeed_json("remaining", "work.csv", "--hours", hours, *more)
+                     for hours, more in [(20000.0, ["--use-record", "use.csv"]), (1.0, [])])
+        self.assertAlmostEqual(half["hours"], 20000.0, delta=1e-6)
+        self.assertAlmostEqual(half["turns"], 20000.0 * 3600.0 * speed / (2.0 * math.pi), delta=1e-3 * half["turns"])
+        self.assertTrue(0.0 < half["remaining_q10"] < half["remaining_q50"] < half["remaining_q90"])
+        # Those that last so long are not those that wear fast.
+        self.assertGreater(half["hours"] + half["remaining_q50"], new["remaining_q50"])
+        self.assertEqual(new["nearest"], "bearing")
+        self.assertLess(new["remaining_q50"], 38500.0)  # of the bearing alone, docs/life.md
+        age = self.succeed_json("life", "age", "use.csv", "--grease-changes", "--hours", 20000.0)
+        self.assertAlmostEqual(age["turns"], half["turns"], delta=1e-3 * half["turns"])
+        self.fail_with(1, ["the motor does not turn"], "remaining", self.write(
+            "rest.csv", "time,motor_angle_encoder,motor_torque\n0,1,0\n1,1,0\n"))
 
 
 if __name__ == "__main__":

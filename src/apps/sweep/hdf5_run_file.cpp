@@ -2,6 +2,7 @@
 #include "apps/sweep/hdf5_run_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <mutex>
@@ -16,6 +17,8 @@ namespace hjt
 namespace
 {
 constexpr hsize_t ROWS_IN_CHUNK = 4096;
+constexpr const char* TIME = "time";
+constexpr const char* SEVERITY = "severity";
 
 /// The library may serve one thread at a time.
 std::unique_lock<std::mutex> lockLibrary()
@@ -45,12 +48,16 @@ Hdf5Handle textType(std::size_t length)
   return type;
 }
 
+/// As an attribute of variable length: readers give that as text, one of fixed length as bytes.
 void writeText(hid_t object, const char* name, const std::string& text)
 {
-  const Hdf5Handle type = textType(text.size());
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
   const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Hdf5Handle attribute(H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  H5Awrite(attribute.get(), type.get(), text.empty() ? "\0" : text.data());
+  const char* const content = text.c_str();
+  H5Awrite(attribute.get(), type.get(), &content);
 }
 
 void writeNumber(hid_t object, const char* name, double value)
@@ -94,15 +101,17 @@ struct FaultRow
   double severity;
   std::int32_t place;
   double onset;
+  double ramp;
 };
 
-bool writeFaults(hid_t file, const std::vector<Fault>& faults)
+bool writeFaults(hid_t file, const std::vector<GrowingFault>& faults)
 {
   std::vector<FaultRow> rows(faults.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    rows[i] = { {}, faults[i].severity, faults[i].place, faults[i].onset };
-    std::string(describe(faults[i].kind).name).copy(rows[i].kind, sizeof(rows[i].kind));
+    const Fault& fault = faults[i].fault;
+    rows[i] = { {}, fault.severity, fault.place, fault.onset, faults[i].ramp };
+    std::string(describe(fault.kind).name).copy(rows[i].kind, sizeof(rows[i].kind));
   }
   const Hdf5Handle name = textType(sizeof(FaultRow::kind));
   const Hdf5Handle memory(H5Tcreate(H5T_COMPOUND, sizeof(FaultRow)), H5Tclose);
@@ -110,6 +119,7 @@ bool writeFaults(hid_t file, const std::vector<Fault>& faults)
   H5Tinsert(memory.get(), "severity", offsetof(FaultRow, severity), H5T_NATIVE_DOUBLE);
   H5Tinsert(memory.get(), "place", offsetof(FaultRow, place), H5T_NATIVE_INT32);
   H5Tinsert(memory.get(), "onset", offsetof(FaultRow, onset), H5T_NATIVE_DOUBLE);
+  H5Tinsert(memory.get(), "ramp", offsetof(FaultRow, ramp), H5T_NATIVE_DOUBLE);
   const Hdf5Handle packed(H5Tcopy(memory.get()), H5Tclose);
   H5Tpack(packed.get());
   const hsize_t count = rows.size();
@@ -117,7 +127,7 @@ bool writeFaults(hid_t file, const std::vector<Fault>& faults)
   const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
   const Hdf5Handle dataset(
       H5Dcreate2(file, "faults", packed.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
-  writeText(dataset.get(), "unit", "severity [-], 0 ... 1; place: tooth, segment or ball, -1 all; onset [s]");
+  writeText(dataset.get(), "unit", "severity [-], 0 ... 1; place: tooth, segment or ball, -1 all; onset, ramp [s]");
   return dataset.valid() &&
          (rows.empty() || H5Dwrite(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
 }
@@ -139,7 +149,7 @@ Hdf5Handle::~Hdf5Handle()
 }
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
-  : path_(std::move(path)), temporary_(path_ + ".part"), indicators_(recording.indicators)
+  : path_(std::move(path)), temporary_(path_ + ".part"), faults_(spec.faults), indicators_(recording.indicators)
 {
   const auto lock = lockLibrary();
   const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
@@ -148,7 +158,7 @@ Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const 
   {
     fail();
   }
-  if (!writeFaults(file_.get(), spec.parameters.faults) ||
+  if (!writeFaults(file_.get(), faults_) ||
       !writeTextDataset(file_.get(), "parameters", describeParameters(spec.parameters)))
   {
     fail();
@@ -194,9 +204,9 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
   writeText(place.get(), "sample_rate_unit", "Hz");
   writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
   writeText(place.get(), "first_time_unit", "s");
-  for (const RunColumn* column : recorded.columns)
+  const auto add = [&](const RunColumn* column, const std::array<const char*, 3>& text, hid_t type)
   {
-    const bool per_tooth = column->per_tooth != nullptr;
+    const bool per_tooth = column != nullptr && column->per_tooth != nullptr;
     const std::size_t width = per_tooth ? static_cast<std::size_t>(twin.parameters().gear.teeth_flexspline) : 1;
     const hsize_t extent[2] = { rows, width };
     const hsize_t chunk[2] = { group.rows_in_block, width };
@@ -210,16 +220,22 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
       H5Pset_deflate(creation.get(), static_cast<unsigned>(deflate));
     }
     const Hdf5Handle space(H5Screate_simple(rank, extent, most), H5Sclose);
-    Hdf5Handle dataset(H5Dcreate2(place.get(), column->name, group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE,
-                                  space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+    Hdf5Handle dataset(H5Dcreate2(place.get(), text[0], type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
                        H5Dclose);
     check(dataset.get());
-    writeText(dataset.get(), "unit", column->unit);
-    writeText(dataset.get(), "meaning", column->meaning);
+    writeText(dataset.get(), "unit", text[1]);
+    writeText(dataset.get(), "meaning", text[2]);
     group.per_tooth = group.per_tooth || per_tooth;
     group.columns.push_back({ column, std::move(dataset), width, {} });
     group.columns.back().block.reserve(group.rows_in_block * width);
+  };
+  for (const RunColumn* column : recorded.columns)
+  {
+    add(column, { column->name, column->unit, column->meaning }, group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE);
   }
+  // Behind the columns, in this order.
+  add(nullptr, { TIME, "s", "since the start of the run" }, H5T_IEEE_F64LE);
+  add(nullptr, { SEVERITY, "-", "of the run's faults, the largest at this instant; 0: sound" }, H5T_IEEE_F32LE);
   groups_.push_back(std::move(group));
 }
 
@@ -241,9 +257,14 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
     {
       twin.toothForces(teeth_);
     }
+    const double time = toSeconds(now - begin_);
     for (ColumnData& data : group.columns)
     {
-      if (data.column->per_tooth != nullptr)
+      if (data.column == nullptr)
+      {
+        data.block.push_back(&data == &group.columns.back() ? severityAt(time) : time);
+      }
+      else if (data.column->per_tooth != nullptr)
       {
         const std::vector<double>& row = teeth_.*data.column->per_tooth;
         data.block.insert(data.block.end(), row.begin(), row.end());
@@ -260,12 +281,22 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
   }
 }
 
+double Hdf5RunFile::severityAt(double time) const
+{
+  double largest = 0.0;
+  for (const GrowingFault& growing : faults_)
+  {
+    largest = std::max(largest, growing.severityAt(time));
+  }
+  return largest;
+}
+
 void Hdf5RunFile::flush(Group& group)
 {
   const auto lock = lockLibrary();
   for (ColumnData& data : group.columns)
   {
-    const int rank = data.column->per_tooth != nullptr ? 2 : 1;
+    const int rank = data.column != nullptr && data.column->per_tooth != nullptr ? 2 : 1;
     const hsize_t first[2] = { group.written, 0 };
     const hsize_t count[2] = { group.buffered, data.width };
     const Hdf5Handle space(H5Dget_space(data.dataset.get()), H5Sclose);
@@ -293,7 +324,13 @@ void Hdf5RunFile::writeIndicators()
     check(writeRows(group.get(), name, unit, rows));
   };
   using W = const SignalIndicators&;
-  write("window_end", "s", [this](W w) { return toSeconds(w.stamp - begin_); });
+  const auto end_of = [this](W w) { return toSeconds(w.stamp - begin_); };
+  const double first = toSeconds(from_ - begin_);
+  // A window begins where the one before ends.
+  write("window_start", "s",
+        [&](W w) { return w.windows > 1 ? end_of(windows_[static_cast<std::size_t>(w.windows - 2)]) : first; });
+  write("window_end", "s", end_of);
+  write("window_severity", "-", [&](W w) { return severityAt(end_of(w)); });
   write("window_turns", "-", [](W w) { return w.turns; });
   write("window_speed", "rad/s", [](W w) { return w.point.speed; });
   write("window_direction", "-", [](W w) { return w.point.direction; });
@@ -366,6 +403,55 @@ std::string Hdf5RunFile::readRecord(const std::string& path)
   std::string text(H5Tget_size(type.get()), '\0');
   const bool read = H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
   return read ? text : std::string();
+}
+
+Columns Hdf5RunFile::readColumns(const std::string& path, const std::vector<std::string>& holding)
+{
+  const auto lock = lockLibrary();
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.valid())
+  {
+    throw InputError(path + " cannot be read as HDF5");
+  }
+  const auto names = [](hid_t group)
+  {
+    std::vector<std::string> found;
+    const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t
+    {
+      static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+      return 0;
+    };
+    H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &found);
+    return found;
+  };
+  for (const std::string& name : names(file.get()))
+  {
+    const Hdf5Handle group(H5Gopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.valid() || std::none_of(holding.begin(), holding.end(),
+                                       [&](const std::string& wanted)
+                                       { return H5Lexists(group.get(), wanted.c_str(), H5P_DEFAULT) > 0; }))
+    {
+      continue;
+    }
+    Columns columns;
+    for (const std::string& column : names(group.get()))
+    {
+      const Hdf5Handle dataset(H5Dopen2(group.get(), column.c_str(), H5P_DEFAULT), H5Dclose);
+      const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
+      if (H5Sget_simple_extent_ndims(space.get()) != 1)
+      {
+        continue;  // a number for each tooth
+      }
+      std::vector<double> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
+      if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)
+      {
+        throw InputError(path + ": " + name + "/" + column + " cannot be read");
+      }
+      columns[column] = std::move(rows);
+    }
+    return columns;
+  }
+  return {};
 }
 
 hid_t Hdf5RunFile::check(hid_t result) const

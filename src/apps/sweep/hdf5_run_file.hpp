@@ -31,8 +31,8 @@ private:
   Close close_{};
 };
 
-/// A run as an HDF5 file: a group for each rate with a data set a column, the indicators of each window, the faults,
-/// the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
+/// A run as an HDF5 file: a group for each rate with a data set a column, time and severity, the indicators of each
+/// window, the faults, the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
 class Hdf5RunFile : public RunFile
 {
 public:
@@ -43,11 +43,12 @@ public:
   void finish(const nlohmann::ordered_json& record) override;
 
   static std::string readRecord(const std::string& path);  ///< empty if there is none
+  static Columns readColumns(const std::string& path, const std::vector<std::string>& holding);
 
 private:
   struct ColumnData
   {
-    const RunColumn* column;
+    const RunColumn* column;  // none: time or severity
     Hdf5Handle dataset;
     std::size_t width;  // numbers a row
     std::vector<double> block;
@@ -64,6 +65,7 @@ private:
   };
 
   void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start, int deflate);
+  double severityAt(double time) const;
   void flush(Group& group);
   void writeIndicators();
   void close() noexcept;
@@ -75,6 +77,7 @@ private:
   Hdf5Handle file_;
   Stamp from_{};  // recorded are instants after this one
   Stamp begin_{};
+  std::vector<GrowingFault> faults_;
   ToothForces teeth_;
   std::vector<Group> groups_;
   bool indicators_;

@@ -15,31 +15,73 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-constexpr double LARGE = 1e6;  // of any value of a waveform
+constexpr double LARGE = 1e6;      // of any value of a waveform
+constexpr double BANDWIDTH = 8.0;  // of the speed control [Hz]
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
+/// Of the runs of a plan of lives.
+const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
+constexpr const char* SET = "set.";  // before what is drawn for each drive
 
 std::string fileOf(const PlanNode& csv)
 {
   return PlanValues().text(csv, "file");
 }
 
-/// A class' list of faults in place of any other.
-void setFaults(const PlanNode& list, const PlanValues& values, ParameterMap& map)
+/// One fault into the configuration: what grows as a staircase.
+void addFault(const GrowingFault& growing, const std::string& origin, ParameterMap& map, int& count)
+{
+  constexpr int STEPS = 40;
+  const int steps = growing.ramp > 0.0 ? STEPS : 1;
+  for (int step = 1; step <= steps; ++step)
+  {
+    const double share = static_cast<double>(step) / steps;
+    const double delay = growing.ramp > 0.0 ? growing.ramp * (share - 0.5 / steps) : 0.0;
+    const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
+    map[key + "kind"] = { std::string(describe(growing.fault.kind).name), origin };
+    map[key + "severity"] = { share * growing.fault.severity, origin };
+    map[key + "place"] = { static_cast<std::int64_t>(growing.fault.place), origin };
+    map[key + "onset"] = { growing.fault.onset + delay, origin };
+  }
+}
+
+/// These faults in place of any other.
+void setFaults(const std::vector<GrowingFault>& faults, const std::string& origin, ParameterMap& map)
 {
   eraseFaults(map);
-  for (const auto& [number, fault] : list.entries)
+  int count = 0;
+  for (const GrowingFault& fault : faults)
   {
-    if (fault.kind != Kind::MAP || fault.entries.empty())
-    {
-      fault.refuse("must be {kind: ..., severity: ..., place: ..., onset: ...}");
-    }
-    for (const auto& [key, node] : fault.entries)
-    {
-      map[std::string(FAULTS) + "." + number + "." + key] = { values.value(node).value, node.origin };
-    }
+    addFault(fault, origin, map, count);
   }
+}
+
+/// A class' list of faults.
+std::vector<GrowingFault> faultsOf(const PlanNode& list, const PlanValues& values)
+{
+  std::vector<GrowingFault> faults;
+  for (const auto& [number, node] : list.entries)
+  {
+    if (node.kind != Kind::MAP || node.entries.empty())
+    {
+      node.refuse("must be {kind: ..., severity: ..., place: ..., onset: ..., ramp: ...}");
+    }
+    allowOnly(node, { "kind", "severity", "place", "onset", "ramp" });
+    const std::optional<FaultKind> kind = faultNamed(values.text(node, "kind"));
+    if (!kind)
+    {
+      required(node, "kind").refuse("is no fault; there are " + faultNames());
+    }
+    GrowingFault growing;
+    growing.fault.kind = *kind;
+    growing.fault.severity = values.number(node, "severity", "-", { 0.0, 1.0 });
+    growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
+    growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
+    growing.ramp = values.number(node, "ramp", "s", { 0.0, 1e9 }, 0.0);
+    faults.push_back(growing);
+  }
+  return faults;
 }
 
 /// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
@@ -105,11 +147,11 @@ std::vector<std::string> Plan::overlays(const std::string& path)
 Plan::Plan(const std::string& path, ParameterMap base)
   : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path)), base_(std::move(base))
 {
-  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "duty", "classes", "record" });
+  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "lives", "duty", "classes", "record" });
   const PlanValues values;
-  name_ = values.text(root_, "name");
-  seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }));
-  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }));
+  name_ = values.text(root_, "name", std::filesystem::path(path).stem().string());
+  seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }, 1));
+  repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }, 1));
   visitTables(required(root_, "duty", Kind::LIST),
               [this](const PlanNode& csv)
               {
@@ -119,7 +161,11 @@ Plan::Plan(const std::string& path, ParameterMap base)
                 tables_[csv.path] = TableWaveform::read(file, column);
               });
   recording_ = readRecording(required(root_, "record", Kind::MAP));
-  makeBlocks();
+  root_.find("lives") != nullptr ? makeLives() : makeBlocks();
+  if (runs_ == 0)
+  {
+    root_.find("duty")->refuse("must have at least one duty cycle");
+  }
 }
 
 void Plan::collect(const PlanNode& node, std::vector<const Variable*>& into)
@@ -160,49 +206,88 @@ void Plan::makeBlocks()
   {
     classes.push_back(&HEALTHY);
   }
-  double total = 0.0;
   for (const PlanNode::Entry* fault_class : classes)
   {
     for (const auto& [key, duty] : root_.find("duty")->entries)
     {
-      Block block{ fault_class, &duty, {}, runs_, repeats_ };
-      collect(required(root_, "duration"), block.variables);
-      if (root_.find("set") != nullptr)
-      {
-        collect(required(root_, "set", Kind::MAP), block.variables);
-      }
-      collect(duty, block.variables);
-      collect(fault_class->second, block.variables);
+      addBlock(*fault_class, duty);
+      Block& block = blocks_.back();
+      block.first = runs_;
       double size = static_cast<double>(repeats_);
       for (const Variable* variable : block.variables)
       {
         size *= static_cast<double>(variable->gridSize());
         block.size *= variable->gridSize();
       }
-      total += size;
-      if (total > MAX_RUNS)
+      if (static_cast<double>(runs_) + size > MAX_RUNS)
       {
         root_.refuse("has more than " + numberText(MAX_RUNS) + " runs");
       }
       runs_ += block.size;
-      blocks_.push_back(block);
     }
-  }
-  if (runs_ == 0)
-  {
-    root_.find("duty")->refuse("must have at least one duty cycle");
   }
 }
 
-RunSpec Plan::run(std::uint64_t number) const
+void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
 {
-  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
-                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
-  const Block& block = *(after - 1);
-  RunSpec spec;
-  spec.run = number;
-  spec.fault_class = block.fault_class->first;
-  std::uint64_t rest = number - block.first;
+  Block block{ &fault_class, &duty, {}, 0, repeats_ };
+  collect(required(root_, "duration"), block.variables);
+  if (root_.find("set") != nullptr)
+  {
+    collect(required(root_, "set", Kind::MAP), block.variables);
+  }
+  collect(duty, block.variables);
+  collect(fault_class.second, block.variables);
+  blocks_.push_back(block);
+}
+
+void Plan::makeLives()
+{
+  for (const char* other : { "classes", "repeats" })
+  {
+    if (root_.find(other) != nullptr)
+    {
+      root_.find(other)->refuse("has no place in a plan of lives: each check-up has the faults of the drive's wear");
+    }
+  }
+  // The laws of ageing take the drive that is the same in all lives.
+  ParameterMap nominal = base_;
+  if (const PlanNode* settings = root_.find("set"))
+  {
+    for (const auto& [key, node] : settings->entries)
+    {
+      if (!Variable::stands(node))
+      {
+        nominal[key] = { PlanValues().value(node).value, node.origin };
+      }
+    }
+  }
+  eraseFaults(nominal);
+  lives_ =
+      std::make_unique<const Lives>(required(root_, "lives", Kind::MAP), parseParameters(nominal), directory_, seed_);
+  const std::vector<PlanNode::Entry>& duties = root_.find("duty")->entries;
+  for (const auto& [key, duty] : duties)
+  {
+    addBlock(LIFE, duty);
+    Block& block = blocks_.back();
+    block.first = blocks_.size() - 1;
+    block.size = lives_->checkUps();
+    block.apart = duties.size();
+    for (const Variable* variable : block.variables)
+    {
+      if (variable->gridSize() > 1)
+      {
+        variable->node().refuse("has no place in a plan of lives: draw it, or fix it");
+      }
+    }
+  }
+  runs_ = lives_->checkUps() * duties.size();
+}
+
+/// All that varies, with its value in a run; into the run too.
+PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
+{
+  std::uint64_t rest = lives_ ? 0 : number - block.first;
   spec.repeat = rest % repeats_;
   rest /= repeats_;
   PlanValues values;
@@ -210,11 +295,25 @@ RunSpec Plan::run(std::uint64_t number) const
   for (std::size_t i = block.variables.size(); i-- > 0;)
   {
     const Variable& variable = *block.variables[i];
-    const ParameterValue value = variable.value(seed_, number, rest % variable.gridSize());
+    const bool of_drive = lives_ && variable.node().path.rfind(SET, 0) == 0;
+    const std::uint64_t draw = of_drive ? lives_->driveAt(number / blocks_.size()) : number;
+    const ParameterValue value = variable.value(seed_, draw, rest % variable.gridSize());
     rest /= variable.gridSize();
     values.set(variable.node(), value);
     spec.variables[i] = { variable.node().path, value };
   }
+  return values;
+}
+
+RunSpec Plan::run(std::uint64_t number) const
+{
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
+                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
+  const Block& block = lives_ ? blocks_[number % blocks_.size()] : *(after - 1);
+  RunSpec spec;
+  spec.run = number;
+  spec.fault_class = block.fault_class->first;
+  const PlanValues values = valuesOf(block, number, spec);
   constexpr Range DURATION{ 1e-3, 1e6 };
   spec.duration = values.number(root_, "duration", "s", DURATION);
   if (spec.duration <= recording_.start)
@@ -222,14 +321,28 @@ RunSpec Plan::run(std::uint64_t number) const
     required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
   }
   allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load", "temperature" });
-  spec.duty_name = values.text(*block.duty, "name");
+  spec.duty_name = values.text(*block.duty, "name", "duty");
   spec.duty = dutyOf(*block.duty, values);
+  constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
+  spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
   ParameterMap map = settingsOf(values, number);
-  if (root_.find("classes") != nullptr)
+  const bool given = lives_ || root_.find("classes") != nullptr;
+  if (given)
   {
-    setFaults(block.fault_class->second, values, map);
+    const std::uint64_t check_up = number / blocks_.size();
+    spec.faults = lives_ ? lives_->faultsAt(check_up) : faultsOf(block.fault_class->second, values);
+    setFaults(spec.faults, block.fault_class->second.origin, map);
+    const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
+    spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
   }
   spec.parameters = parseParameters(map);
+  if (!given)
+  {
+    for (const Fault& fault : spec.parameters.faults)
+    {
+      spec.faults.push_back({ fault, 0.0 });
+    }
+  }
   checkRates(spec.parameters);
   return spec;
 }
@@ -269,7 +382,7 @@ RunDuty Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
   else
   {
     cycle.speed = waveform(duty, "speed", "rad/s", values);
-    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 });
+    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 }, BANDWIDTH);
   }
   if (duty.find("load") != nullptr)
   {
@@ -343,6 +456,11 @@ std::vector<std::string> Plan::variableNames() const
   {
     names.push_back(variable->node().path);
   }
+  if (lives_)
+  {
+    const std::vector<std::string> labels = Lives::labelNames();
+    names.insert(names.end(), labels.begin(), labels.end());
+  }
   return names;
 }
 
@@ -352,6 +470,10 @@ nlohmann::ordered_json Plan::snapshot() const
   for (const auto& [path, rows] : tables_)
   {
     tables[path] = *rows;
+  }
+  if (lives_)
+  {
+    tables["lives"] = lives_->duties();
   }
   nlohmann::ordered_json base = nlohmann::ordered_json::object();
   for (const auto& [key, value] : base_)

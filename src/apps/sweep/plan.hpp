@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/sweep/growing_fault.hpp"
+#include "apps/sweep/lives.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
 #include "apps/sweep/recording.hpp"
@@ -29,8 +31,9 @@ struct RunSpec
   std::string fault_class;
   std::string duty_name;
   std::uint64_t repeat{};
-  double duration{};  ///< [s]
-  Parameters parameters;
+  double duration{};      ///< [s]
+  Parameters parameters;  ///< what grows stands in its faults as a staircase
+  std::vector<GrowingFault> faults;
   RunDuty duty;
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
@@ -38,7 +41,8 @@ struct RunSpec
 /// A plan of many runs: what is fixed, laid out on grids and drawn.
 ///
 /// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
-/// fastest, then the repeats. After construction all members may be called from any thread.
+/// fastest, then the repeats. A plan of lives: life by life, check-up by check-up, duty cycle by duty cycle; what `set`
+/// draws is drawn for each drive. After construction all members may be called from any thread.
 class Plan
 {
 public:
@@ -65,8 +69,13 @@ public:
     std::vector<const Variable*> variables;
     std::uint64_t first;  ///< run
     std::uint64_t size;
+    std::uint64_t apart{ 1 };  ///< from one run to the next
+
+    std::uint64_t last() const { return first + (size - 1) * apart; }
   };
   const std::vector<Block>& blocks() const { return blocks_; }
+
+  const Lives* lives() const { return lives_.get(); }  ///< none: a plan of other runs
 
   /// Paths of all that varies, in the order of the plan.
   std::vector<std::string> variableNames() const;
@@ -77,6 +86,9 @@ public:
 private:
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
+  void addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty);
+  void makeLives();
+  PlanValues valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const;
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
   RunDuty dutyOf(const PlanNode& duty, const PlanValues& values) const;
   std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
@@ -91,6 +103,7 @@ private:
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
   Recording recording_;
+  std::unique_ptr<const Lives> lives_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;
   std::map<std::string, std::shared_ptr<const TableWaveform::Rows>> tables_;  // by file and column

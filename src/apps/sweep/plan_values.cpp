@@ -63,8 +63,13 @@ ParameterValue PlanValues::value(const PlanNode& node) const
   return { numbers, node.origin };
 }
 
-double PlanValues::number(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const
+double PlanValues::number(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
+                          std::optional<double> otherwise) const
 {
+  if (otherwise && map.find(key) == nullptr)
+  {
+    return *otherwise;
+  }
   const PlanNode& node = required(map, key);
   const ParameterValue found = value(node);
   const std::string with_unit = "[" + std::string(unit) + "]";
@@ -81,15 +86,25 @@ double PlanValues::number(const PlanNode& map, const std::string& key, const cha
   return *number;
 }
 
-std::int64_t PlanValues::whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const
+std::int64_t PlanValues::whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
+                               std::optional<std::int64_t> otherwise) const
 {
+  if (otherwise && map.find(key) == nullptr)
+  {
+    return *otherwise;
+  }
   const PlanNode& node = required(map, key);
   number(map, key, unit, range);
   return contentOf<std::int64_t>(node, value(node), "a whole number [" + std::string(unit) + "], " + rangeText(range));
 }
 
-std::string PlanValues::text(const PlanNode& map, const std::string& key) const
+std::string PlanValues::text(const PlanNode& map, const std::string& key,
+                             const std::optional<std::string>& otherwise) const
 {
+  if (otherwise && map.find(key) == nullptr)
+  {
+    return *otherwise;
+  }
   const PlanNode& node = required(map, key);
   const std::string text = contentOf<std::string>(node, value(node), "a text");
   if (text.empty())

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,13 @@ public:
   /// A variable stands for this value.
   void set(const PlanNode& variable, ParameterValue value) { drawn_[&variable] = std::move(value); }
 
-  double number(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const;
-  std::int64_t whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range) const;
-  std::string text(const PlanNode& map, const std::string& key) const;
+  // `otherwise`: where the key is left out; none: it must be there.
+  double number(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
+                std::optional<double> otherwise = std::nullopt) const;
+  std::int64_t whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
+                     std::optional<std::int64_t> otherwise = std::nullopt) const;
+  std::string text(const PlanNode& map, const std::string& key,
+                   const std::optional<std::string>& otherwise = std::nullopt) const;
   bool flag(const PlanNode& map, const std::string& key) const;  ///< false where the key is left out
 
   /// A plain value, a variable's or a list of numbers.

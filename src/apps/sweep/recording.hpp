@@ -29,7 +29,8 @@ enum class RunFormat
 struct Recording
 {
   RunFormat format{};
-  double start{};     ///< nothing is recorded before [s]
+  double
+      start{};  ///< nothing is recorded before; torque, speed and load come in gently during its first half, if that is 0.1 or more [s]
   int deflate{};      ///< 0 ... 9; 0: not compressed
   bool indicators{};  ///< those of docs/indicators.md, a row a window
   std::vector<RecordingGroup> groups;
@@ -40,7 +41,7 @@ inline Recording readRecording(const PlanNode& record)
 {
   const PlanValues values;
   Recording recording;
-  const std::string format = values.text(record, "format");
+  const std::string format = values.text(record, "format", "hdf5");
   if (format == "bag")
   {
     allowOnly(record, { "format" });
@@ -53,13 +54,15 @@ inline Recording readRecording(const PlanNode& record)
   }
   allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
   recording.indicators = values.flag(record, "indicators");
-  recording.start = values.number(record, "start", "s", { 0, 1e6 });
-  recording.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }));
+  constexpr double START = 1.0;  // [s]
+  constexpr int DEFLATE = 4;
+  recording.start = values.number(record, "start", "s", { 0, 1e6 }, START);
+  recording.deflate = static_cast<int>(values.whole(record, "deflate", "-", { 0, 9 }, DEFLATE));
   for (const auto& [name, node] : required(record, "groups", PlanNode::Kind::MAP).entries)
   {
     allowOnly(node, { "rate", "type", "columns" });
     RecordingGroup group{ name, values.number(node, "rate", "Hz", { 1e-3, 1e6 }), false, {} };
-    const std::string type = values.text(node, "type");
+    const std::string type = values.text(node, "type", "float64");
     if (type != "float32" && type != "float64")
     {
       required(node, "type").refuse("is unknown; allowed: float32, float64");

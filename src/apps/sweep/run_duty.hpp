@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "apps/sweep/waveform.hpp"
@@ -19,6 +20,7 @@ struct RunDuty
   double bandwidth{};                           ///< of the speed control [Hz]
   std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; none: none
   std::shared_ptr<const Waveform> temperature;  ///< of the drive [degC]; none: input.temperature throughout
+  double easing{};  ///< over which torque, speed and load come in, as half a cosine: a step would ring for seconds [s]
 };
 
 /// Gives the twin its commands of a duty cycle, step by step.
@@ -44,10 +46,11 @@ public:
   void feed(Twin& twin, double time)
   {
     const Stamp instant = twin.stamp() + twin.stepLength();
-    twin.commandMotorTorque(instant, duty_.torque ? duty_.torque->value(time) : controlTorque(twin, time));
+    twin.commandMotorTorque(instant,
+                            duty_.torque ? easedIn(time) * duty_.torque->value(time) : controlTorque(twin, time));
     if (duty_.load)
     {
-      const double load = duty_.load->value(time);
+      const double load = easedIn(time) * duty_.load->value(time);
       if (load != last_load_)
       {
         twin.commandLoadTorque(instant, load);
@@ -63,15 +66,25 @@ public:
   double speedReference() const { return speed_reference_; }  ///< joint side [rad/s]; zero where a torque is given
 
 private:
+  double easedIn(double time) const
+  {
+    return time < duty_.easing ? 0.5 - 0.5 * std::cos(PI * time / duty_.easing) : 1.0;
+  }
+
   double controlTorque(const Twin& twin, double time)
   {
     const double frequency = TWO_PI * duty_.bandwidth;
-    const double speed = duty_.speed->value(time);
+    const double full_speed = duty_.speed->value(time);
+    const double eased = easedIn(time);
+    const double easing_slope =
+        time < duty_.easing ? 0.5 * PI / duty_.easing * std::sin(PI * time / duty_.easing) : 0.0;
+    const double acceleration = eased * duty_.speed->slope(time) + easing_slope * full_speed;
+    const double speed = eased * full_speed;
     angle_reference_ += 0.5 * (speed + speed_reference_) * (time - last_time_);
     speed_reference_ = speed;
     last_time_ = time;
     const EncoderReadings read = twin.encoders();
-    return inertia_ * ratio_ * duty_.speed->slope(time) +
+    return inertia_ * ratio_ * acceleration +
            motor_inertia_ * (2.0 * frequency * (ratio_ * speed - read.motor_velocity) +
                              frequency * frequency * (ratio_ * angle_reference_ - read.motor_angle));
   }

@@ -33,6 +33,11 @@ nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path)
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
+Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding)
+{
+  return Hdf5RunFile::readColumns(path, holding);
+}
+
 double dataSize(const Recording& recording, double duration, int teeth)
 {
   double bytes = 0.0;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -34,6 +36,13 @@ const char* runFileExtension(RunFormat format);
 
 /// The record of a finished run; none if there is no readable file.
 nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path);
+
+/// Numbers by the name of their column, one a row each.
+using Columns = std::map<std::string, std::vector<double>>;
+
+/// The columns of the first group of a run's HDF5 file that holds one of these; none if no group does.
+/// @throws InputError if the file cannot be read.
+Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding);
 
 /// Bytes of the numbers of a run.
 double dataSize(const Recording& recording, double duration, int teeth);

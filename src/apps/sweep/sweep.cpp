@@ -53,8 +53,7 @@ public:
       makeRunFile(plan_.recording(), spec, nullptr, path)->finish(record);
       return true;
     }
-    const Recording& recording = plan_.recording();
-    twin->watchSignals(recording.format == RunFormat::BAG || recording.indicators);  // a bag holds the indicators
+    twin->watchSignals(plan_.recording().format == RunFormat::BAG);  // a bag holds the indicators, from the start on
     twin->reset(SIMULATION_EPOCH);
     const auto file = makeRunFile(plan_.recording(), spec, &*twin, path);
     if (!march(*twin, spec, *file))
@@ -81,13 +80,19 @@ private:
   bool march(Twin& twin, const RunSpec& spec, RunFile& file)
   {
     constexpr std::uint64_t STEPS_PER_LOOK = 1024;
+    const Recording& recording = plan_.recording();
     const Stamp end = SIMULATION_EPOCH + toStampLength(spec.duration);
     const double step = toSeconds(twin.stepLength());
     DutyFeeder feeder(spec.duty, twin);
     on_surface_ = 0;
     for (std::uint64_t steps = 1;; ++steps)
     {
-      feeder.feed(twin, static_cast<double>(steps) * step);
+      const double time = static_cast<double>(steps) * step;
+      feeder.feed(twin, time);
+      if (recording.indicators && time > recording.start)
+      {
+        twin.watchSignals(true);  // a window that held the start would stand apart from all others
+      }
       if (!twin.step(end))
       {
         return true;
@@ -221,10 +226,12 @@ RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source)
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point begin)
   { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  RunCost cost;
+  const Clock::time_point first_begin = Clock::now();
   Twin first(spec.parameters, surface_source);  // may have to build its surface, once for all runs
+  cost.surface = since(first_begin);
   const Clock::time_point begin = Clock::now();
   Twin twin(spec.parameters, surface_source);
-  RunCost cost;
   cost.start = since(begin);
   twin.reset(SIMULATION_EPOCH);
   DutyFeeder feeder(spec.duty, twin);

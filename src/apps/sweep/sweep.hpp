@@ -36,7 +36,8 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
 /// What a run costs, tried on its first tenths of a second.
 struct RunCost
 {
-  double start{};             ///< before the first step [s]
+  double surface{};           ///< before the first step, its response surface or the look for it in the cache [s]
+  double start{};             ///< before the first step, the surface at hand [s]
   double real_time_factor{};  ///< simulated over real time, one core, nothing recorded [-]
 };
 

@@ -235,9 +235,9 @@ std::uint64_t SweepDirectory::finishedRuns() const
 std::string SweepDirectory::indexHeader() const
 {
   std::string header =
-      "run,file,file_hash,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,noise_"
-      "seed,"
-      "parameters_hash,version,error";
+      "run,file,file_hash,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,fault_"
+      "ramp,"
+      "noise_seed,parameters_hash,version,error";
   for (const std::string& name : plan_.variableNames())
   {
     header += "," + name;
@@ -252,7 +252,7 @@ std::string SweepDirectory::indexRow(const Json& record) const
   {
     row += "," + cell(record.value(key, Json()));
   }
-  for (const char* key : { "kind", "severity", "place", "onset" })
+  for (const char* key : { "kind", "severity", "place", "onset", "ramp" })
   {
     const auto text = [key](const Json& fault)
     { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
@@ -299,12 +299,13 @@ Json recordOf(const RunSpec& spec, const std::string& file)
     variables[name] = jsonOf(value);
   }
   Json faults = Json::array();
-  for (const Fault& fault : spec.parameters.faults)
+  for (const auto& [fault, ramp] : spec.faults)
   {
     faults.push_back({ { "kind", describe(fault.kind).name },
                        { "severity", fault.severity },
                        { "place", fault.place },
-                       { "onset", fault.onset } });
+                       { "onset", fault.onset },
+                       { "ramp", ramp } });
   }
   return { { "format", FORMAT },
            { "version", softwareVersion() },

@@ -21,7 +21,8 @@ namespace hjt
 namespace
 {
 /// Surfaces of the user's cache, each once in memory; each remark about them once.
-SurfaceSource sharedSurfaces(unsigned jobs)
+/// Those of drives with a wear of their own, which come but once, are not kept on the disk.
+SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
 {
   struct Remarks
   {
@@ -43,7 +44,8 @@ SurfaceSource sharedSurfaces(unsigned jobs)
       std::cerr << "warning: " << what << '\n';
     }
   };
-  return { surfaceCacheDirectory(), show, tell, std::make_shared<SurfacePool>(jobs + 2) };
+  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), show, tell,
+           std::make_shared<SurfacePool>(jobs + 2) };
 }
 
 void printList(const Plan& plan, const SweepArguments& arguments)
@@ -69,7 +71,7 @@ std::string shortTime(double seconds)
 
 void printExpectation(const Plan& plan, const SweepArguments& arguments)
 {
-  const SurfaceSource surfaces = sharedSurfaces(1);
+  const SurfaceSource surfaces = sharedSurfaces(plan, 1);
   double time = 0.0;
   double bytes = 0.0;
   double simulated = 0.0;
@@ -78,11 +80,12 @@ void printExpectation(const Plan& plan, const SweepArguments& arguments)
     const RunSpec spec = plan.run(block.first);
     const RunCost cost = measureCost(spec, surfaces);
     const auto runs = static_cast<double>(block.size);
-    time += runs * (cost.start + spec.duration / cost.real_time_factor);
+    const double surface = plan.lives() != nullptr && block.first == 0 ? cost.surface : 0.0;  // one a check-up
+    time += runs * (surface + cost.start + spec.duration / cost.real_time_factor);
     bytes += runs * dataSize(plan.recording(), spec.duration, spec.parameters.gear.teeth_flexspline);
     simulated += runs * spec.duration;
-    std::cout << "runs " << block.first << " ... " << block.first + block.size - 1 << ": class " << spec.fault_class
-              << ", duty " << spec.duty_name << ", " << shortNumber(cost.real_time_factor) << " times real time\n";
+    std::cout << "runs " << block.first << " ... " << block.last() << ": class " << spec.fault_class << ", duty "
+              << spec.duty_name << ", " << shortNumber(cost.real_time_factor) << " times real time\n";
   }
   printValues({ { "runs", std::to_string(plan.runs()), "" },
                 { "simulated, together", shortTime(simulated), "" },
@@ -112,6 +115,10 @@ int sweep(const SweepArguments& arguments)
     with_overlays.configs.push_back(overlay);
   }
   const Plan plan(arguments.plan, loadParameterMap(with_overlays));
+  if (arguments.lives && plan.lives() == nullptr)
+  {
+    throw InputError(arguments.plan + " has no mapping 'lives'; joint_twin sweep works it off");
+  }
   checkRuns(plan);
   if (arguments.list)
   {
@@ -127,7 +134,7 @@ int sweep(const SweepArguments& arguments)
   directory.open();
   const SweepResult result =
       runSweep(plan, directory, { arguments.out, arguments.jobs, arguments.shard, arguments.shards, arguments.quiet },
-               sharedSurfaces(arguments.jobs));
+               sharedSurfaces(plan, arguments.jobs));
   if (!arguments.quiet)
   {
     std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed

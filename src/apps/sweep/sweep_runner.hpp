@@ -19,6 +19,7 @@ struct SweepArguments : CommonOptions
   bool quiet{};
   bool dry_run{};
   bool list{};
+  bool lives{};  ///< only a plan of lives will do
 };
 
 /// Options and arguments that every way of running a sweep takes.

@@ -11,14 +11,12 @@
 
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "apps/common/motion_options.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/text_table.hpp"
 #include "apps/tool/recorded_signals.hpp"
 
-#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
@@ -32,20 +30,13 @@ namespace hjt
 {
 namespace
 {
-struct IndicatorsOptions : CommonOptions
+struct IndicatorsOptions : SignalOptions
 {
-  std::vector<std::string> recordings;
   std::string model;
   std::string baseline;
   std::string save_baseline;
   std::string out;
-  std::string joint_namespace{ DEFAULT_NAMESPACE };
-  std::string joint;
   bool windows{};  ///< the recordings hold the windows' indicators, not the signals
-  std::optional<std::string> states_topic;
-  std::optional<std::string> load_topic;
-  std::optional<double> torque_scale;
-  SignalSource source;
 };
 
 /// One window and what was made of it.
@@ -240,21 +231,6 @@ std::vector<SignalIndicators> readRecording(const std::string& path, const Indic
   return measured;
 }
 
-/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
-SignalSource signalSource(const IndicatorsOptions& options, const Parameters& parameters)
-{
-  const bool robot = !options.joint.empty();
-  const std::optional<UrJoint> known = findUrJoint(options.joint);
-  SignalSource source = options.source;
-  source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
-  source.states_topic =
-      options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
-  source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
-  source.torque_scale = options.torque_scale.value_or(
-      robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
-  return source;
-}
-
 int run(const IndicatorsOptions& given)
 {
   IndicatorsOptions options = given;
@@ -313,41 +289,16 @@ int run(const IndicatorsOptions& given)
 
 void declare(Command& command, IndicatorsOptions& options)
 {
-  command.add("recordings", options.recordings, "one recording, or several of the same joint")
-      .required()
-      .type("IN.csv|IN.bag")
-      .bagOrCsv();
+  addSignalOptions(command, options);
   command.add("--model", options.model, "the twin's own recording of the same run: its indicators are taken off")
-      .type("FILE.csv|FILE.bag")
-      .bagOrCsv();
+      .type("FILE.csv|FILE.bag|FILE.h5")
+      .check(wrongSignalFile);
   command.flag("--windows", options.windows,
                "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
   command.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
       .type("FILE.yaml");
   command.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
   command.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
-  command.add("--joint", options.joint,
-              "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
-              "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
-  SignalSource& source = options.source;
-  const auto column = [&command](const char* name, std::string& field, const char* meaning)
-  { command.add(name, field, meaning).type("COLUMN"); };
-  column("--time", source.time, "CSV: time [s]");
-  column("--motor-torque", source.motor_torque, "CSV: motor torque, or current with --torque-scale");
-  column("--motor-angle", source.motor_angle, "CSV: motor encoder [rad]");
-  column("--output-angle", source.output_angle, "CSV: output encoder [rad]");
-  column("--motor-velocity", source.motor_velocity, "CSV: motor speed [rad/s]; else differences of the angle");
-  column("--load-torque", source.load_torque, "CSV: load torque at the output, > 0 resists positive motion [N.m]");
-  column("--temperature", source.temperature, "CSV: temperature [degC]");
-  command.add("--torque-scale", options.torque_scale,
-              "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
-              "telemetry.torque_per_current / ratio [N.m/A]");
-  command
-      .add("--states-topic", options.states_topic,
-           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
-      .type("TOPIC");
-  command.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
-  addNamespaceOption(command, options.joint_namespace);
   addCommonOptions(command, options);
 }
 

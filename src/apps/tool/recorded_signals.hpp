@@ -2,23 +2,28 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "apps/common/configuration.hpp"
 
 #include "health/signal_sample.hpp"
+#include "ros_io/topics.hpp"
 
 namespace hjt
 {
 /// Where in a recording the signals of the joint lie.
 struct SignalSource
 {
-  // Columns of a CSV file; by default those of `joint_twin simulate`.
+  // Columns of a CSV or HDF5 file; by default those of `joint_twin simulate` and of a data set.
   std::string time{ "time" };
-  std::string motor_torque{ "motor_torque" };
+  std::string motor_torque;  ///< empty: motor_torque_reading, or motor_torque where that is missing
   std::string motor_angle{ "motor_angle_encoder" };
   std::string output_angle{ "output_angle_encoder" };
   std::string motor_velocity{ "motor_velocity_encoder" };
   std::string load_torque{ "load_torque" };
-  std::string temperature{ "temperature" };
+  std::string temperature;  ///< empty: housing_temperature, or temperature where that is missing
   // Topics of a bag.
   std::string states_topic;
   std::string load_topic;
@@ -26,11 +31,32 @@ struct SignalSource
   double torque_scale{ 1.0 };  ///< motor torque per unit of the recorded signal
 };
 
-/// Gives every sample of a CSV file or a bag to `take`, in order of time, until that returns false.
-/// CSV: a column that is not there is not measured; time, torque and one angle must be.
+/// Gives every sample of a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of time, until that returns
+/// false.
+/// CSV, HDF5: a column that is not there is not measured; time, torque and one angle must be.
 /// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort
 /// of NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
 /// @throws InputError
 void readSignals(const std::string& path, const SignalSource& source,
                  const std::function<bool(const SignalSample&)>& take);
+
+/// Recordings of one joint on the command line, and where in them its signals lie.
+struct SignalOptions : CommonOptions
+{
+  std::vector<std::string> recordings;
+  std::string joint_namespace{ DEFAULT_NAMESPACE };
+  std::string joint;
+  std::optional<std::string> states_topic;
+  std::optional<std::string> load_topic;
+  std::optional<double> torque_scale;
+  SignalSource source;
+};
+
+void addSignalOptions(Command& command, SignalOptions& options);
+
+/// What is wrong with the name of a recording; empty if nothing is.
+std::string wrongSignalFile(const std::string& path);
+
+/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+SignalSource signalSource(const SignalOptions& options, const Parameters& parameters);
 }  // namespace hjt

@@ -61,6 +61,7 @@ public:
                    "output_angle_encoder",
                    "output_velocity_encoder",
                    "motor_torque",
+                   "motor_torque_reading",
                    "load_torque",
                    "wave_generator_torque",
                    "joint_torque",
@@ -83,25 +84,11 @@ public:
     }
     ++rows_;
     const EncoderReadings e = twin.encoders();
-    csv_.writeRow({ toSeconds(o.stamp - begin_),
-                    o.motor_angle,
-                    o.motor_velocity,
-                    o.output_angle,
-                    o.output_velocity,
-                    e.motor_angle,
-                    e.motor_velocity,
-                    e.output_angle,
-                    e.output_velocity,
-                    o.motor_torque,
-                    o.load_torque,
-                    o.wave_generator_torque,
-                    o.joint_torque,
-                    o.friction_torque,
-                    o.torsional_stiffness,
-                    o.energy_residual,
-                    o.temperature,
-                    o.housing_temperature,
-                    o.brake_engaged ? 1.0 : 0.0,
+    csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle,  o.motor_velocity,          o.output_angle,
+                    o.output_velocity,           e.motor_angle,  e.motor_velocity,          e.output_angle,
+                    e.output_velocity,           o.motor_torque, twin.motorTorqueReading(), o.load_torque,
+                    o.wave_generator_torque,     o.joint_torque, o.friction_torque,         o.torsional_stiffness,
+                    o.energy_residual,           o.temperature,  o.housing_temperature,     o.brake_engaged ? 1.0 : 0.0,
                     o.converged ? 1.0 : 0.0 });
   }
 

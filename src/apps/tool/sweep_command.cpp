@@ -40,6 +40,16 @@ int run(const ShardOptions& options)
   return sweep(options);
 }
 
+int runLives(const ShardOptions& options)
+{
+  ShardOptions of_lives = options;
+  of_lives.lives = true;
+  return sweep(of_lives);
+}
+
 const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "work off a plan of many runs: a labelled data set", declare, run };
+const Subcommand LIVES{ Subject::DATA_SET, "lives",
+                        "drives from new to their end, with a check-up every so often: a data set of run to failure",
+                        declare, runLives };
 }  // namespace
 }  // namespace hjt

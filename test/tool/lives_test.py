@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin lives`: data sets of drives that run to failure."""
+import csv
+import json
+
+import h5py
+import numpy
+
+import tool
+from sweep_test import tree
+
+PLAN = """
+seed: 3
+duration: 0.5
+overlays: [real_sensors.yaml]
+set:
+  indicators.window_turns: 2.0
+  sensors.output_eccentricity: {log_uniform: [2.0e-4, 8.0e-4]}
+lives:
+  drives: 5
+  every: 15000.0
+  longest: 70000.0
+  duties: [rated.csv]
+  test: 0.4
+duty:
+  - {name: check_up, speed: {constant: 1.0}, load: {constant: 10.0}}
+  - {name: work, speed: {constant: {uniform: [0.8, 1.2]}}}
+record:
+  start: 0.2
+  indicators: true
+  groups: {signals: {rate: 100.0, columns: [motor_angle_encoder, motor_torque_reading]}}
+"""
+RATED = "duration,motor_speed,load_torque,temperature\n10,209.43951023931953,67,40\n"
+TOOTH_WEAR_DEPTH = 30.0e-6  # [m] fault_scale of the shipped configuration
+INTERFACE_WEAR_DEPTH = 10.0e-6
+
+
+class Lives(tool.ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("plan.yaml", PLAN)
+        self.write("rated.csv", RATED)
+
+    def lives(self, out, *arguments):
+        return self.succeed("lives", "plan.yaml", "--out", out, *arguments)
+
+    def rows(self, out):
+        with open(self.path(out + "/index.csv")) as file:
+            return list(csv.DictReader(file))
+
+    def test_lives_go_from_new_to_the_end_with_the_wear_as_faults_and_labels(self):
+        self.lives("a")
+        rows = self.rows("a")
+        drives = {}
+        for row in rows:
+            self.assertEqual((row["status"], row["class"]), ("ok", "life"))
+            drives.setdefault(row["life.drive"], []).append(row)
+        self.assertEqual(sorted(drives), list("01234"))
+        self.assertEqual({drive: {row["life.split"] for row in life} for drive, life in drives.items()},
+                         {"0": {"train"}, "1": {"train"}, "2": {"test"}, "3": {"train"}, "4": {"test"}})
+        self.assertGreater(len({row["life.cause"] for row in rows}), 1)
+        for life in drives.values():
+            self.assertEqual([row["duty"] for row in life], ["check_up", "work"] * (len(life) // 2))
+            self.assertEqual(len({row["set.sensors.output_eccentricity"] for row in life}), 1)
+            check_ups = life[::2]
+            hours = numpy.array([float(row["life.hours"]) for row in check_ups])
+            numpy.testing.assert_array_equal(hours, 15000.0 * numpy.arange(len(hours)))
+            length = float(life[0]["life.length"])
+            self.assertTrue(hours[-1] < length <= min(hours[-1] + 15000.0, 70000.0))
+            for row in life:
+                self.assertAlmostEqual(float(row["life.remaining"]) + float(row["life.hours"]), length, delta=1e-6)
+            for name in ("life.flank_wear", "life.interface_wear", "life.bearing_used"):
+                wear = numpy.array([float(row[name]) for row in check_ups])
+                self.assertEqual(wear[0], 0.0)
+                self.assertTrue((numpy.diff(wear) > 0.0).all())
+        self.assertEqual(len({row["set.sensors.output_eccentricity"] for row in rows}), 5)
+        self.assertGreater(len({row["noise_seed"] for row in rows}), len(rows) - 2)
+        last = max(drives.values(), key=len)[-1]
+        severities = dict(zip(last["fault_kind"].split(";"), map(float, last["fault_severity"].split(";"))))
+        # The rated duty presses one side of the teeth; the play grows by half the depth.
+        self.assertAlmostEqual(severities["tooth_wear"], 0.5 * float(last["life.flank_wear"]) / TOOTH_WEAR_DEPTH,
+                               delta=1e-9)
+        self.assertAlmostEqual(severities["interface_wear"], float(last["life.interface_wear"]) / INTERFACE_WEAR_DEPTH,
+                               delta=1e-9)
+        self.assertAlmostEqual(severities["lubricant_degradation"], 0.3 * float(last["life.grease"]), delta=1e-9)
+        with h5py.File(self.path("a/" + last["file"]), "r") as file:
+            truth = json.loads(file["record"][()])["variables"]
+            self.assertEqual(truth["life.cause"], last["life.cause"])
+            self.assertAlmostEqual(float(file["signals/severity"][-1]), max(severities.values()), delta=1e-6)
+            self.assertGreaterEqual(len(file["indicators/window_end"]), 1)
+
+    def test_any_number_of_workers_and_shards_gives_the_same_bytes_and_what_is_there_is_kept(self):
+        self.lives("one", "--jobs", 1)
+        for shard in ("0/2", "1/2"):
+            self.lives("two", "--jobs", 2, "--shard", shard)
+        self.assertEqual(tree(self.path("one")), tree(self.path("two")))
+        self.assertIn(" 0 runs done", self.lives("two").stderr)
+
+    def test_a_life_is_that_of_the_laws(self):
+        self.lives("a")
+        nominal = self.succeed_json("life", "age", "rated.csv", "--grease-changes", "--positions", 8, "--hours", 15000.0)
+        wear = [(float(row["life.interface_wear"]), float(row["life.interface_factor"])) for row in self.rows("a")
+                if float(row["life.hours"]) == 15000.0 and float(row["life.interface_factor"]) < 1.0]
+        self.assertGreater(len(wear), 0)
+        for depth, factor in wear:
+            self.assertAlmostEqual(depth / factor, nominal["interface_wear"], delta=0.05 * nominal["interface_wear"])
+
+    def test_bad_plans_are_refused(self):
+        for old, new, parts in [
+                ("lives:\n", "life:\n", ["bad.yaml:9: life is unknown"]),
+                ("drives: 5", "drives: 0", ["lives.drives = 0 [-] is out of range, allowed: 1"]),
+                ("[rated.csv]", "[none.csv]", ["none.csv cannot be read"]),
+                ("duty:\n", "classes: {a: []}\nduty:\n", ["classes has no place in a plan of lives"]),
+                ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["draw it, or fix it"])]:
+            with self.subTest(new):
+                self.assertIn(old, PLAN)
+                self.write("bad.yaml", PLAN.replace(old, new, 1))
+                self.fail_with(1, parts, "lives", "bad.yaml", "--out", "b")
+        begin, end = PLAN.index("lives:"), PLAN.index("duty:")
+        self.write("sweep.yaml", PLAN[:begin] + PLAN[end:])
+        self.fail_with(1, ["has no mapping 'lives'"], "lives", "sweep.yaml", "--out", "b")
+
+    def test_the_shipped_plan_is_right(self):
+        lines = self.succeed("lives", tool.CHECKOUT + "/plans/lives.yaml", "--out", "unused", "--list")
+        self.assertGreater(len(lines.stdout.splitlines()), 100)
+
+
+if __name__ == "__main__":
+    tool.main()
