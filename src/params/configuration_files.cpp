@@ -32,7 +32,7 @@ fs::path findDirectory(const std::string& given)
 
 fs::path packageDirectory()
 {
-  // PREFIX/lib/libharmonic_joint_twin_core.so, which this function lies in, belongs to PREFIX/share/harmonic_joint_twin.
+  // The library PREFIX/lib/libharmonic_joint_twin_core.so belongs to PREFIX/share/harmonic_joint_twin.
   static const int HERE = 0;
   Dl_info library{};
   const bool found = dladdr(&HERE, &library) != 0;

@@ -79,4 +79,6 @@ PYBIND11_MODULE(_hjt, module)
   hjt::bindHealth(module);
   hjt::bindToothValues(module);
   hjt::bindTwin(module);
+  hjt::bindStatics(module);
+  hjt::bindTracking(module);
 }

@@ -428,7 +428,6 @@ void bindParameters(py::module& module)
       .def_readonly("meaning", &Field::meaning, "what it is");
   addText(field);
   module.def("parameter_fields", &allFields, "All parameters, in the order of docs/parameters.md: list of Field.");
-  bindFaults(module);
 
   py::class_<Configuration>(module, "Parameters",
                             "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
@@ -492,5 +491,6 @@ void bindParameters(py::module& module)
                     " keys>";
            })
       .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState));
+  bindFaults(module);
 }
 }  // namespace hjt

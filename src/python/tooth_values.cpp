@@ -8,7 +8,14 @@ namespace hjt
 {
 namespace
 {
-std::size_t placeNamed(const std::string& name)
+template <std::size_t PLACE>
+py::array_t<double> stressView(const py::object& self)
+{
+  return viewOf(self.cast<const ToothStress&>().normal[PLACE], self);
+}
+}  // namespace
+
+std::size_t stressPlace(const std::string& name)
 {
   std::string names;
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
@@ -21,13 +28,6 @@ std::size_t placeNamed(const std::string& name)
   }
   throw InputError("place = '" + name + "' must be one of " + names);
 }
-
-template <std::size_t PLACE>
-py::array_t<double> stressView(const py::object& self)
-{
-  return viewOf(self.cast<const ToothStress&>().normal[PLACE], self);
-}
-}  // namespace
 
 void bindToothValues(py::module& module)
 {
@@ -75,13 +75,13 @@ void bindToothValues(py::module& module)
           "shear", [](const ToothStress& self) { return py::tuple(py::cast(self.shear)); },
           "by place, the same all around [Pa]: tuple of 3, in the order tooth space, transition, flange")
       .def(
-          "cycle", [](const ToothStress& self, const std::string& place) { return self.cycle(placeNamed(place)); },
+          "cycle", [](const ToothStress& self, const std::string& place) { return self.cycle(stressPlace(place)); },
           py::arg("place"),
           "What one tooth goes through in a turn, all teeth being alike: StressCycle. place: 'tooth space', "
           "'transition' or 'flange'. At the notch it is larger by stress.concentration.")
       .def(
           "worst_tooth",
-          [](const ToothStress& self, const std::string& place) { return self.worstTooth(placeNamed(place)); },
+          [](const ToothStress& self, const std::string& place) { return self.worstTooth(stressPlace(place)); },
           py::arg("place"), "Where the normal stress is largest in magnitude: int.")
       .def(
           "copy", [](const ToothStress& self) { return std::make_shared<ToothStress>(self); },

@@ -16,4 +16,7 @@ void addArray(Class& class_, const char* name, std::vector<double> Values::*valu
   class_.def_property_readonly(
       name, [values](const py::object& self) { return viewOf(self.cast<const Values&>().*values, self); }, meaning);
 }
+
+/// By its name. @throws InputError.
+std::size_t stressPlace(const std::string& name);
 }  // namespace hjt
