@@ -77,6 +77,20 @@ class Run(unittest.TestCase):
         self.assertTrue(rows["converged"].all() and not rows["brake"].any())
         self.assertEqual(twin.run(10, every=20).shape, (0,))
 
+    def test_rows_are_written_where_the_user_wants(self):
+        twin, other = hjt.Twin(hjt.Parameters()), hjt.Twin(hjt.Parameters())
+        rows = np.zeros(10, hjt.STEP_DTYPE)
+        self.assertIs(twin.run(10, motor_torque=0.2, out=rows), rows)
+        np.testing.assert_array_equal(rows, other.run(10, motor_torque=0.2))
+        for bad in np.zeros(9, hjt.STEP_DTYPE), np.zeros(10), np.zeros(20, hjt.STEP_DTYPE)[::2]:
+            with self.assertRaisesRegex(hjt.InputError, "^out "):
+                twin.run(10, out=bad)
+
+    def test_the_brake_acts_after_its_delay(self):
+        twin = hjt.Twin(hjt.Parameters({"brake.delay": 0.001}))
+        rows = twin.run(30, brake=1)
+        self.assertEqual(list(np.flatnonzero(rows["brake"])), list(range(10, 30)))
+
     def test_inputs_act(self):
         twin = hjt.Twin(hjt.Parameters())
         rows = twin.run(20, motor_torque=0.2, load_torque=np.linspace(0.0, 19.0, 20),
