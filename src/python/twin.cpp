@@ -437,8 +437,7 @@ void bindMarch(py::class_<TwinObject>& twin)
            "temperature [degC]: a number, or an array of shape (steps,) with the value of each step; None: what was "
            "commanded before. A given torque does not time out during the run. every: rows at every so many steps. "
            "out: an "
-           "array of an earlier run, to be overwritten: a new one for every step costs a fifth of a step on the "
-           "surface.\n\n"
+           "array of an earlier run, to be overwritten; None: a new one.\n\n"
            "Returns a structured array of shape (steps // every,) with dtype STEP_DTYPE. InputError.")
       .def("run_to", &runTo, py::arg("time"), none("motor_torque"), none("load_torque"), none("brake"),
            none("temperature"), py::arg("every") = 1, none("out"),

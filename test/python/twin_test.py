@@ -208,6 +208,18 @@ class Threads(unittest.TestCase):
         for place in range(2):
             np.testing.assert_array_equal(alone[place], together[place])
 
+    def test_one_gets_on_while_another_is_within_its_block(self):
+        busy, other = hjt.Twin(hjt.Parameters()), hjt.Twin(hjt.Parameters())
+        thread = threading.Thread(target=lambda: busy.run(30000, motor_torque=0.3, every=30000))
+        thread.start()
+        blocks = 0
+        while thread.is_alive():
+            other.run(100, motor_torque=0.3, every=100)
+            blocks += 1
+        thread.join()
+        # Alone the first takes as long as 300 blocks of the other.
+        self.assertGreater(blocks, 30)
+
     def test_a_twin_that_runs_refuses_other_threads(self):
         twin = hjt.Twin(hjt.Parameters())
         thread = threading.Thread(target=lambda: twin.run(20000, motor_torque=0.3))
