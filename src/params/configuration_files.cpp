@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 
+#include <dlfcn.h>
+
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -30,10 +32,12 @@ fs::path findDirectory(const std::string& given)
 
 fs::path packageDirectory()
 {
-  // PREFIX/lib/harmonic_joint_twin/joint_twin belongs to PREFIX/share/harmonic_joint_twin.
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = executable.parent_path() / "../../share/harmonic_joint_twin";
+  // The library PREFIX/lib/libharmonic_joint_twin_core.so belongs to PREFIX/share/harmonic_joint_twin.
+  static const int HERE = 0;
+  Dl_info library{};
+  const bool found = dladdr(&HERE, &library) != 0;
+  const fs::path installed =
+      fs::absolute(found ? library.dli_fname : "").parent_path() / "../share/harmonic_joint_twin";
   return fs::exists(installed / "config" / STAGES) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
 }
 

@@ -26,6 +26,7 @@ SEES = {
     "identification": ["arm"],
     "life": ["twin"],
     "studies": ["twin", "life"],
+    "python": ["tracking"],
     "ros_io": ["arm", "life"],
     "apps/common": ["ros_io"],
     "apps/sweep": ["apps/common"],
@@ -46,6 +47,7 @@ LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/
 OWN_LIBRARIES = {
     "arm": re.compile(r"<(kdl|kdl_parser)/[\w/.-]+>$"),
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
+    "python": re.compile(r"<pybind11/\w+\.h>$"),
     "bench": re.compile(r"<(CLI|arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
                         r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
     "test/core": re.compile(r"<(g(mock|test)|kdl|kdl_parser)/[\w/.-]+>$"),

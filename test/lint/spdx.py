@@ -6,8 +6,8 @@ import project
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
 # Files that say their licence otherwise, that are read as they are, or that have no comments.
-EXEMPT_NAMES = {"LICENSE", "README.md", "CHANGELOG.rst", "package.xml", ".gitignore"}
-EXEMPT_SUFFIXES = (".csv", ".json", ".md", ".patch", ".png", ".supp", ".svg")
+EXEMPT_NAMES = {"LICENSE", "README.md", "CHANGELOG.rst", "package.xml", "py.typed", ".gitignore"}
+EXEMPT_SUFFIXES = (".csv", ".ipynb", ".json", ".md", ".patch", ".png", ".supp", ".svg")
 LINES_SEARCHED = 3  # after a shebang or an XML declaration
 
 

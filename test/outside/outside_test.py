@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A user of the installed package: every public header compiles alone, and a program makes and steps a twin.
+"""A user of the installed package: every public header compiles alone, programs in C++ and Python make and step a twin.
 
 Argument: the package's build directory, everything built.
 """
@@ -44,6 +44,13 @@ class OutsideUser(unittest.TestCase):
             output = run(os.path.join(build, "outside_user"),
                          os.path.join(prefix, "share", "harmonic_joint_twin", "config"), env=environment)
             self.assertIn("tooth forces 1", output)
+            python = os.path.join(prefix, "lib", "python3", "dist-packages")
+            environment["PYTHONPATH"] = os.pathsep.join(
+                [python, *(path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep)
+                           if path and not path.startswith(BUILD))])
+            output = run(sys.executable, os.path.join(HERE, "main.py"), cwd=folder, env=environment)
+            self.assertIn(f"from {python}/harmonic_joint_twin, configuration of {prefix}", output)
+            self.assertIn("teeth loaded 14", output)
 
 
 if __name__ == "__main__":

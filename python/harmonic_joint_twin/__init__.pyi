@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from harmonic_joint_twin._hjt import *

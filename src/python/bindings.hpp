@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/solver/solve_status.hpp"
+
+// The module as a user sees it: names, units and shapes in python/harmonic_joint_twin/_hjt.pyi.
+namespace hjt
+{
+namespace py = pybind11;
+
+// Subjects of the module, in the order in which their types need each other.
+void bindParameters(py::module& module);
+void bindHealth(py::module& module);
+void bindToothValues(py::module& module);
+void bindTwin(py::module& module);
+void bindStatics(py::module& module);
+void bindTracking(py::module& module);
+
+/// No equilibrium was found; in Python a RuntimeError.
+class NotConverged : public std::runtime_error
+{
+public:
+  NotConverged(const std::string& what, const SolveStatus& status)
+    : std::runtime_error("no equilibrium found for " + what + ": " + explanationOf(status))
+  {
+  }
+  explicit NotConverged(const std::string& text) : std::runtime_error(text) {}
+};
+
+/// A signal came whose handler raised: Python's error is set already.
+struct Interrupted
+{
+};
+
+/// Throws `Interrupted` if a signal handler of Python raised, Ctrl-C's as a rule. Looks at most twenty times a second:
+/// taking the interpreter's lock can cost more than many steps.
+class InterruptCheck
+{
+public:
+  InterruptCheck();
+  void operator()();
+
+private:
+  double next_;  // [s]
+};
+
+/// Calls `work` without the interpreter's lock and gives what it returns. An `Interrupted` out of it becomes Python's
+/// error.
+template <class Work>
+auto withoutLock(const Work& work)
+{
+  try
+  {
+    py::gil_scoped_release release;
+    return work();
+  }
+  catch (const Interrupted&)
+  {
+    throw py::error_already_set();
+  }
+}
+
+/// An array of `owner`'s memory, which it keeps alive; not writable.
+py::array_t<double> viewOf(const std::vector<double>& values, const py::object& owner);
+
+/// Name and values of all attributes that `object` has as properties.
+std::string describeObject(const py::object& object);
+
+/// Adds a text to a class of plain values.
+template <class Class>
+void addText(Class& class_)
+{
+  class_.def("__repr__", [](const py::object& self) { return describeObject(self); });
+}
+}  // namespace hjt

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "python/bindings.hpp"
+
+namespace hjt
+{
+/// All parameters, and the map that they were read from: what is set is checked with all the others, and an error
+/// leaves everything as it was.
+class Configuration
+{
+public:
+  /// The default configuration with the overlays over it, files or dicts, later wins.
+  /// `directory`: of the default configuration; empty: found as the tool does. @throws ParameterError.
+  Configuration(const py::args& overlays, const std::string& directory);
+
+  const Parameters& values() const { return values_; }
+
+  py::object value(const std::string& key) const;  ///< @throws py::key_error
+  bool contains(const std::string& key) const;
+  std::vector<std::string> keys() const;
+  void update(const py::dict& changes);
+
+  py::list faults() const;
+  void setFaults(const py::iterable& faults);
+
+  /// Every key with its value, for another process.
+  py::tuple state() const;
+  static Configuration fromState(const py::tuple& state);
+
+private:
+  Configuration() = default;
+  void overlay(const py::handle& what);
+  void take(const ParameterMap& map);
+
+  std::string directory_;
+  ParameterMap map_;
+  Parameters values_;
+};
+
+/// A fault as an object or as the tool's KIND:SEVERITY[:PLACE[:ONSET]], checked. @throws ParameterError.
+Fault faultOf(const py::handle& fault, const Parameters& parameters);
+}  // namespace hjt

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <optional>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "python/bindings.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::optional<double> optional(const Indicator& indicator)
+{
+  return indicator.valid ? std::optional<double>(indicator.value) : std::nullopt;
+}
+
+const char* solverStateName(SolverState state)
+{
+  switch (state)
+  {
+    case SolverState::OK:
+      break;
+    case SolverState::DEGRADED:
+      return "DEGRADED";
+    case SolverState::FAILED:
+      return "FAILED";
+  }
+  return "OK";
+}
+
+const char* assessmentStateName(AssessmentState state)
+{
+  switch (state)
+  {
+    case AssessmentState::WAITING:
+      break;
+    case AssessmentState::LEARNING:
+      return "LEARNING";
+    case AssessmentState::ASSESSED:
+      return "ASSESSED";
+    case AssessmentState::NO_REFERENCE:
+      return "NO_REFERENCE";
+  }
+  return "WAITING";
+}
+
+py::dict byName(const std::array<double, INDICATOR_COUNT>& values)
+{
+  py::dict named;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    named[indicatorName(i)] = values[i];
+  }
+  return named;
+}
+
+py::list evidenceOf(const Assessment& assessment)
+{
+  py::list evidence;
+  for (std::size_t i = 0; i < assessment.evidence_count; ++i)
+  {
+    evidence.append(assessment.evidence[i]);
+  }
+  return evidence;
+}
+
+void bindReport(py::module& module)
+{
+  auto health = py::class_<HealthReport>(
+      module, "Health", "Health of the simulated drive at one instant, as Health.msg; None: not valid yet.");
+  health
+      .def_property_readonly(
+          "transmission_ratio", [](const HealthReport& self) { return optional(self.motion.transmission_ratio); },
+          "motor angle over joint angle, over the last motor turn [-] or None")
+      .def_property_readonly(
+          "torsion", [](const HealthReport& self) { return self.motion.torsion; },
+          "motor angle / nominal ratio - joint angle [rad]")
+      .def_property_readonly(
+          "torsional_stiffness", [](const HealthReport& self) { return optional(self.motion.torsional_stiffness); },
+          "slope of joint torque over torsion, by regression [N.m/rad] or None")
+      .def_property_readonly(
+          "efficiency", [](const HealthReport& self) { return optional(self.motion.efficiency); },
+          "power out over power in [-] or None")
+      .def_property_readonly(
+          "kinematic_error", [](const HealthReport& self) { return optional(self.motion.kinematic_error); },
+          "peak to peak of the torsion over the last motor turn [rad] or None")
+      .def_property_readonly(
+          "teeth_loaded", [](const HealthReport& self) { return self.lobes.teeth_loaded; },
+          "teeth that carry mesh force [-]")
+      .def_property_readonly(
+          "lobe_mesh_force", [](const HealthReport& self) { return py::tuple(py::cast(self.lobes.mesh_force)); },
+          "sum of mesh forces at each lobe of the wave generator [N]: tuple of 2")
+      .def_property_readonly(
+          "lobe_asymmetry", [](const HealthReport& self) { return self.lobes.asymmetry; },
+          "(first - second) / (first + second), 0 when unloaded [-]")
+      .def_property_readonly(
+          "wave_generator_load", [](const HealthReport& self) { return self.lobes.wave_generator_force; },
+          "sum of the wave generator's contact forces [N]")
+      .def_property_readonly(
+          "solver_state", [](const HealthReport& self) { return solverStateName(self.solver_state); },
+          "'OK'; 'DEGRADED': steps were cut, too long, or a tooth jumped; 'FAILED': a step did not converge");
+  addText(health);
+}
+
+void bindIndicators(py::module& module)
+{
+  auto indicators = py::class_<SignalIndicators>(
+      module, "SignalIndicators",
+      "Indicators of one window out of encoders and torque alone, as Indicators.msg (docs/indicators.md).");
+  indicators.def_readonly("stamp", &SignalIndicators::stamp, "end of the window [ns]")
+      .def_readonly("windows", &SignalIndicators::windows, "completed since start or reset; 0: none yet [-]")
+      .def_readonly("turns", &SignalIndicators::turns, "of the motor at steady speed in the window [-]")
+      .def_property_readonly(
+          "speed", [](const SignalIndicators& self) { return self.point.speed; }, "magnitude, motor, mean [rad/s]")
+      .def_property_readonly(
+          "direction", [](const SignalIndicators& self) { return self.point.direction; },
+          "share of travel forward less share back, -1 ... 1 [-]")
+      .def_property_readonly(
+          "load", [](const SignalIndicators& self) { return self.point.load; },
+          "magnitude of the load torque, mean; nan: unknown [N.m]")
+      .def_property_readonly(
+          "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
+          "mean; nan: not measured [degC]")
+      .def_property_readonly(
+          "values", [](const SignalIndicators& self) { return byName(self.values); },
+          "dict of indicator name to value, in the units of indicator_units(); nan: the window did not tell")
+      .def_property_readonly(
+          "uncertainty", [](const SignalIndicators& self) { return byName(self.uncertainty); },
+          "dict of indicator name to standard error by the fit; 0: not known");
+  addText(indicators);
+  module.def(
+      "indicator_units",
+      []
+      {
+        py::dict units;
+        for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+        {
+          units[indicatorName(i)] = indicatorUnit(i);
+        }
+        return units;
+      },
+      "Names of all signal indicators with their units: dict of str to str (docs/indicators.md).");
+
+  auto evidence = py::class_<Evidence>(module, "Evidence", "An indicator that speaks for a level.");
+  evidence
+      .def_property_readonly(
+          "indicator", [](const Evidence& self) { return indicatorName(self.indicator); }, "its name")
+      .def_readonly("value", &Evidence::value, "unit of the indicator")
+      .def_readonly("expected", &Evidence::expected, "healthy mean there, unit of the indicator")
+      .def_readonly("score", &Evidence::score, "normal score of the deviation [-]");
+  addText(evidence);
+
+  auto assessment =
+      py::class_<Assessment>(module, "Assessment", "What the indicators say of the drive, as Assessment.msg.");
+  assessment.def_readonly("stamp", &Assessment::stamp, "end of the last window [ns]")
+      .def_readonly("windows", &Assessment::windows, "windows seen [-]")
+      .def_property_readonly(
+          "state", [](const Assessment& self) { return assessmentStateName(self.state); },
+          "'WAITING', 'LEARNING', 'ASSESSED' or 'NO_REFERENCE'")
+      .def_property_readonly(
+          "level", [](const Assessment& self) { return levelName(self.level); }, "'OK', 'WARN' or 'ERROR'")
+      .def_property_readonly(
+          "cause", [](const Assessment& self) { return causeName(self.cause); },
+          "most likely cause; 'none' at level OK")
+      .def_readonly("confidence", &Assessment::confidence, "its probability among all causes, 0 at level OK [-]")
+      .def_readonly("largest_score", &Assessment::largest_score,
+                    "of the last window over the threshold; beyond 1 is out of the ordinary [-]")
+      .def_property_readonly("evidence", &evidenceOf, "strongest first: list of Evidence");
+  addText(assessment);
+}
+}  // namespace
+
+void bindHealth(py::module& module)
+{
+  bindReport(module);
+  bindIndicators(module);
+}
+}  // namespace hjt

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "python/bindings.hpp"
+
+namespace hjt
+{
+namespace
+{
+double now()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+constexpr double INTERRUPT_PERIOD = 0.05;  // [s]
+
+void bindErrors(py::module& module)
+{
+  // The one registered last is asked first.
+  const auto input = py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
+  py::register_exception<ParameterError>(module, "ParameterError", input.ptr());
+  py::register_exception<NotConverged>(module, "NotConverged", PyExc_RuntimeError);
+  module.attr("InputError").attr("__doc__") = "Bad input: the text names key, value, unit and range, or file and line.";
+  module.attr("ParameterError").attr("__doc__") =
+      "A parameter that is missing, misspelt, mistyped or out of range, or two that contradict each other.";
+  module.attr("NotConverged").attr("__doc__") = "No equilibrium of the ring was found; the text tells what to do.";
+}
+}  // namespace
+
+InterruptCheck::InterruptCheck() : next_(now() + INTERRUPT_PERIOD) {}
+
+void InterruptCheck::operator()()
+{
+  const double time = now();
+  if (time < next_)
+  {
+    return;
+  }
+  next_ = time + INTERRUPT_PERIOD;
+  const py::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0)
+  {
+    throw Interrupted{};
+  }
+}
+
+py::array_t<double> viewOf(const std::vector<double>& values, const py::object& owner)
+{
+  py::array_t<double> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+std::string describeObject(const py::object& object)
+{
+  const py::object type = object.attr("__class__");
+  const py::object property = py::module::import("builtins").attr("property");
+  std::string text;
+  for (const auto& item : py::dict(type.attr("__dict__")))
+  {
+    if (!py::isinstance(item.second, property))
+    {
+      continue;
+    }
+    const py::object value = object.attr(item.first);
+    text += (text.empty() ? "" : ", ") + py::cast<std::string>(item.first) + "=";
+    text += py::isinstance<py::array>(value) ? "<" + py::cast<std::string>(py::str(value.attr("shape"))) + " array>" :
+                                               py::cast<std::string>(py::repr(value));
+  }
+  return py::cast<std::string>(type.attr("__name__")) + "(" + text + ")";
+}
+}  // namespace hjt
+
+PYBIND11_MODULE(_hjt, module)
+{
+  module.doc() = "Digital twin of a robot joint's harmonic drive, tooth by tooth (docs/python.md).";
+  hjt::bindErrors(module);
+  hjt::bindParameters(module);
+  hjt::bindHealth(module);
+  hjt::bindToothValues(module);
+  hjt::bindTwin(module);
+  hjt::bindStatics(module);
+  hjt::bindTracking(module);
+}

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <type_traits>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/choices.hpp"
+#include "params/configuration_files.hpp"
+#include "params/field_table.hpp"
+#include "python/configuration.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* ORIGIN = "Python";  // of values, in error texts
+
+/// One parameter, whatever its value.
+struct Field
+{
+  std::string key;
+  std::string type;
+  std::string unit;
+  std::optional<double> minimum;
+  std::optional<double> maximum;
+  std::vector<std::string> choices;
+  std::string meaning;
+};
+
+/// Makes a row of each parameter of the field table.
+class FieldLister
+{
+public:
+  void operator()(const std::string& key, const char* unit, double, const Range& range, const Meaning& meaning)
+  {
+    add(key, "float", unit, range, meaning);
+  }
+  void operator()(const std::string& key, const char* unit, int, const Range& range, const Meaning& meaning)
+  {
+    add(key, "int", unit, range, meaning);
+  }
+  template <std::size_t N>
+  void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
+                  const Meaning& meaning)
+  {
+    add(key, std::to_string(N) + " floats", unit, range, meaning);
+  }
+  void operator()(const std::string& key, bool, const Meaning& meaning)
+  {
+    fields_.push_back({ key, "bool", "-", {}, {}, {}, meaning.text });
+  }
+  void operator()(const std::string& key, const std::string&, const Meaning& meaning)
+  {
+    fields_.push_back({ key, "str", "-", {}, {}, {}, meaning.text });
+  }
+  template <class Choice>
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
+  {
+    std::vector<std::string> names;
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      names.emplace_back(name);
+    }
+    fields_.push_back({ key, "str", "-", {}, {}, names, meaning.text });
+  }
+
+  std::vector<Field> take() { return std::move(fields_); }
+
+private:
+  void add(const std::string& key, const std::string& type, const char* unit, const Range& range,
+           const Meaning& meaning)
+  {
+    fields_.push_back({ key, type, unit, range.min, range.max, {}, meaning.text });
+  }
+
+  std::vector<Field> fields_;
+};
+
+std::vector<Field> allFields()
+{
+  FieldLister lister;
+  const Parameters none;
+  visitFields(none, lister);
+  return lister.take();
+}
+
+Field fieldOf(const std::string& key)
+{
+  for (const Field& field : allFields())
+  {
+    if (field.key == key)
+    {
+      return field;
+    }
+  }
+  throw py::key_error("unknown parameter " + key);
+}
+
+py::object toPython(bool value)
+{
+  return py::bool_(value);
+}
+py::object toPython(int value)
+{
+  return py::int_(value);
+}
+py::object toPython(double value)
+{
+  return py::float_(value);
+}
+py::object toPython(const std::string& value)
+{
+  return py::str(value);
+}
+template <std::size_t N>
+py::object toPython(const std::array<double, N>& values)
+{
+  return py::tuple(py::cast(values));
+}
+template <class Choice>
+std::enable_if_t<std::is_enum<Choice>::value, py::object> toPython(Choice value)
+{
+  for (const auto& [name, choice] : choiceNames(Choice{}))
+  {
+    if (choice == value)
+    {
+      return py::str(name);
+    }
+  }
+  return py::none();
+}
+
+/// Calls `take(key, value)` for each field, whose value may be of any type.
+template <class Take>
+void visitValues(const Parameters& parameters, const Take& take)
+{
+  visitFields(parameters,
+              [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
+              {
+                // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
+                if constexpr (sizeof...(rest) == 0)
+                {
+                  take(key, first);
+                }
+                else
+                {
+                  take(key, second);
+                }
+              });
+}
+
+double numberFrom(const py::handle& value, const std::string& key)
+{
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (number == -1.0 && PyErr_Occurred() != nullptr)
+  {
+    PyErr_Clear();
+    throw ParameterError(std::string(ORIGIN) + ": " + key + " = " + py::cast<std::string>(py::repr(value)) +
+                         " is neither a number, a text, a truth value nor a list of numbers");
+  }
+  return number;
+}
+
+/// Not so an array of no dimension, which is a number.
+bool isList(const py::handle& value)
+{
+  const bool is_list = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) >= 0;
+  PyErr_Clear();
+  return is_list;
+}
+
+ParameterValue parameterValue(const py::handle& value, const std::string& key)
+{
+  const auto is_named = [&](const char* name)
+  { return py::cast<std::string>(value.attr("__class__").attr("__name__")) == name; };
+  if (PyBool_Check(value.ptr()) || is_named("bool_") || is_named("bool"))
+  {
+    return { PyObject_IsTrue(value.ptr()) == 1, ORIGIN };
+  }
+  if (py::isinstance<py::str>(value))
+  {
+    return { py::cast<std::string>(value), ORIGIN };
+  }
+  if (isList(value))
+  {
+    std::vector<double> numbers;
+    for (const auto& item : value)
+    {
+      numbers.push_back(numberFrom(item, key));
+    }
+    return { numbers, ORIGIN };
+  }
+  if (PyIndex_Check(value.ptr()))
+  {
+    // A numpy scalar is no Python int.
+    const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+    return whole ? ParameterValue{ py::cast<std::int64_t>(whole), ORIGIN } : throw py::error_already_set();
+  }
+  return { numberFrom(value, key), ORIGIN };
+}
+
+void put(const py::dict& values, ParameterMap& map)
+{
+  for (const auto& item : values)
+  {
+    const auto key = py::cast<std::string>(item.first);
+    map[key] = parameterValue(item.second, key);
+  }
+}
+
+void putFaults(const std::vector<Fault>& faults, ParameterMap& map)
+{
+  eraseFaults(map);
+  int number = 0;
+  for (const Fault& fault : faults)
+  {
+    const std::string key = faultKey(number++) + '.';
+    map[key + "kind"] = { std::string(describe(fault.kind).name), ORIGIN };
+    map[key + "severity"] = { fault.severity, ORIGIN };
+    map[key + "place"] = { std::int64_t{ fault.place }, ORIGIN };
+    map[key + "onset"] = { fault.onset, ORIGIN };
+  }
+}
+
+Fault makeFault(const std::string& kind, double severity, const std::optional<int>& place, double onset)
+{
+  const std::optional<FaultKind> named = faultNamed(kind);
+  if (!named)
+  {
+    throw ParameterError("unknown kind of fault '" + kind + "', allowed: " + faultNames());
+  }
+  return { *named, severity, place.value_or(firstPlace(*named)), onset };
+}
+
+void bindFaults(py::module& module)
+{
+  auto fault = py::class_<Fault>(module, "Fault", "A fault of the gear, known by its kind and place.");
+  fault
+      .def(py::init(&makeFault), py::arg("kind"), py::arg("severity"), py::arg("place") = py::none(),
+           py::arg("onset") = 0.0,
+           "kind: see fault_kinds(); severity: 0 none ... 1 [-]; place: tooth, segment, lobe or ball from 0 on, -1 the "
+           "whole member, None the first that the kind allows; onset: after the start, or after the stamp that it was "
+           "injected with [s].")
+      .def_property_readonly(
+          "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
+      .def_readonly("severity", &Fault::severity, "0 none ... 1 [-]")
+      .def_readonly("place", &Fault::place, "from 0 on; -1: the whole member [-]")
+      .def_readonly("onset", &Fault::onset, "after the start, or after the stamp it was injected with [s]");
+  addText(fault);
+
+  auto kind = py::class_<FaultDescription>(module, "FaultKind", "What a kind of fault is.");
+  kind.def_property_readonly(
+          "name", [](const FaultDescription& self) { return self.name; }, "for Fault and the tool's --fault")
+      .def_property_readonly(
+          "place", [](const FaultDescription& self) { return placeName(self.place); }, "what its place counts")
+      .def_readonly("whole", &FaultDescription::whole, "place -1, the whole member, is allowed")
+      .def_property_readonly(
+          "severity", [](const FaultDescription& self) { return self.severity; }, "what severity 1 is")
+      .def(
+          "shows",
+          [](const FaultDescription& self, const Configuration& parameters)
+          { return shownFirst(self.kind, parameters.values()); },
+          py::arg("parameters"), "Where it shows first in this drive.");
+  addText(kind);
+  module.def(
+      "fault_kinds",
+      []
+      {
+        py::dict kinds;
+        for (const FaultDescription& description : FAULT_DESCRIPTIONS)
+        {
+          kinds[description.name] = description;
+        }
+        return kinds;
+      },
+      "All kinds of faults by name (docs/faults.md): dict of str to FaultKind.");
+}
+}  // namespace
+
+Configuration::Configuration(const py::args& overlays, const std::string& directory)
+  : directory_(configurationDirectory(directory).string())
+{
+  readDefaultConfiguration(directory_, map_);
+  for (const auto& what : overlays)
+  {
+    overlay(what);
+  }
+  values_ = parseParameters(map_);
+}
+
+/// Reads one overlay into the map, unchecked.
+void Configuration::overlay(const py::handle& what)
+{
+  if (py::isinstance<py::dict>(what))
+  {
+    put(py::reinterpret_borrow<py::dict>(what), map_);
+    return;
+  }
+  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(what.ptr()));
+  if (!path)
+  {
+    throw py::error_already_set();
+  }
+  readYamlFile(findConfiguration(py::cast<std::string>(path), directory_), map_);
+}
+
+void Configuration::take(const ParameterMap& map)
+{
+  values_ = parseParameters(map);
+  map_ = map;
+}
+
+py::object Configuration::value(const std::string& key) const
+{
+  py::object found;
+  visitValues(values_,
+              [&](const std::string& other, const auto& value)
+              {
+                if (other == key)
+                {
+                  found = toPython(value);
+                }
+              });
+  if (!found)
+  {
+    throw py::key_error("unknown parameter " + key);
+  }
+  return found;
+}
+
+bool Configuration::contains(const std::string& key) const
+{
+  bool found = false;
+  visitValues(values_, [&](const std::string& other, const auto&) { found = found || other == key; });
+  return found;
+}
+
+std::vector<std::string> Configuration::keys() const
+{
+  std::vector<std::string> keys;
+  visitValues(values_, [&](const std::string& key, const auto&) { keys.push_back(key); });
+  return keys;
+}
+
+void Configuration::update(const py::dict& changes)
+{
+  ParameterMap map = map_;
+  put(changes, map);
+  take(map);
+}
+
+py::list Configuration::faults() const
+{
+  return py::cast(values_.faults);
+}
+
+void Configuration::setFaults(const py::iterable& faults)
+{
+  std::vector<Fault> list;
+  for (const auto& fault : faults)
+  {
+    list.push_back(faultOf(fault, values_));
+  }
+  if (list.size() > MAX_FAULTS)
+  {
+    throw ParameterError("faults: more than " + std::to_string(MAX_FAULTS));
+  }
+  ParameterMap map = map_;
+  putFaults(list, map);
+  take(map);
+}
+
+py::tuple Configuration::state() const
+{
+  py::dict values;
+  visitValues(values_, [&](const std::string& key, const auto& value) { values[py::str(key)] = toPython(value); });
+  py::list faults;
+  for (const Fault& fault : values_.faults)
+  {
+    faults.append(py::make_tuple(describe(fault.kind).name, fault.severity, fault.place, fault.onset));
+  }
+  return py::make_tuple(directory_, values, faults);
+}
+
+Configuration Configuration::fromState(const py::tuple& state)
+{
+  Configuration configuration;
+  configuration.directory_ = py::cast<std::string>(state[0]);
+  ParameterMap map;
+  put(py::cast<py::dict>(state[1]), map);
+  std::vector<Fault> faults;
+  for (const auto& fault : py::cast<py::list>(state[2]))
+  {
+    const auto parts = py::cast<py::tuple>(fault);
+    faults.push_back(makeFault(py::cast<std::string>(parts[0]), py::cast<double>(parts[1]), py::cast<int>(parts[2]),
+                               py::cast<double>(parts[3])));
+  }
+  putFaults(faults, map);
+  configuration.take(map);
+  return configuration;
+}
+
+Fault faultOf(const py::handle& fault, const Parameters& parameters)
+{
+  if (py::isinstance<py::str>(fault))
+  {
+    return parseFault(py::cast<std::string>(fault), parameters);
+  }
+  const auto given = py::cast<Fault>(fault);
+  const std::string errors = faultErrors(given, parameters, "fault: ");
+  if (!errors.empty())
+  {
+    throw ParameterError(errors);
+  }
+  return given;
+}
+
+void bindParameters(py::module& module)
+{
+  auto field = py::class_<Field>(module, "Field", "A parameter: what docs/parameters.md says of it.");
+  field.def_readonly("key", &Field::key, "section.name")
+      .def_readonly("type", &Field::type, "float, int, bool, str, or e.g. '3 floats'")
+      .def_readonly("unit", &Field::unit, "SI; '-': none")
+      .def_readonly("minimum", &Field::minimum, "least allowed; None: no number")
+      .def_readonly("maximum", &Field::maximum, "largest allowed; None: no number")
+      .def_readonly("choices", &Field::choices, "allowed texts; empty: any")
+      .def_readonly("meaning", &Field::meaning, "what it is");
+  addText(field);
+  module.def("parameter_fields", &allFields, "All parameters, in the order of docs/parameters.md: list of Field.");
+
+  py::class_<Configuration>(module, "Parameters",
+                            "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
+                            "units, temperatures in degC.\n\n"
+                            "Parameters(*overlays, config_dir=''): the default configuration with the overlays over "
+                            "it, later wins. An overlay "
+                            "is a YAML file as for the tool's --config, e.g. 'joints/elbow.yaml', or a dict of keys "
+                            "and values, as for --set. "
+                            "config_dir: of another default configuration.\n\n"
+                            "A value that is set is checked at once, with all the others; ParameterError names key, "
+                            "value, unit and range, and "
+                            "nothing has changed.")
+      .def(py::init(
+               [](const py::args& overlays, const py::kwargs& options)
+               {
+                 std::string directory;
+                 for (const auto& option : options)
+                 {
+                   if (py::cast<std::string>(option.first) != "config_dir")
+                   {
+                     throw py::type_error("Parameters() has no argument " + py::cast<std::string>(option.first));
+                   }
+                   directory = py::cast<std::string>(py::str(option.second));
+                 }
+                 return Configuration(overlays, directory);
+               }),
+           "Parameters(*overlays, config_dir='')")
+      .def("__getitem__", &Configuration::value, py::arg("key"), "Value of a key; a list of numbers is a tuple.")
+      .def(
+          "__setitem__",
+          [](Configuration& self, const py::str& key, const py::object& value)
+          {
+            py::dict changes;
+            changes[key] = value;
+            self.update(changes);
+          },
+          py::arg("key"), py::arg("value"), "Sets one key. ParameterError.")
+      .def("__contains__", &Configuration::contains, py::arg("key"), "Whether there is such a key.")
+      .def(
+          "__len__", [](const Configuration& self) { return self.keys().size(); }, "How many keys there are.")
+      .def(
+          "__iter__", [](const Configuration& self) { return py::iter(py::cast(self.keys())); }, "Over all keys.")
+      .def("keys", &Configuration::keys, "All keys: list of str; dict(parameters) has their values too.")
+      .def("update", &Configuration::update, py::arg("changes"),
+           "Sets the keys of a dict together, where one alone would contradict another. ParameterError.")
+      .def_static("field", &fieldOf, py::arg("key"), "Unit, range and meaning of a key: Field. KeyError.")
+      .def_property("faults", &Configuration::faults, &Configuration::setFaults,
+                    "Faults that the twin starts with, or gets on its way: list of Fault, to be set as a whole; texts "
+                    "'KIND:SEVERITY[:PLACE[:ONSET]]' are taken too.")
+      .def(
+          "describe", [](const Configuration& self) { return describeParameters(self.values()); },
+          "All keys, values, units and meanings, one a line.")
+      .def(
+          "copy", [](const Configuration& self) { return self; }, "Another object with the same values.")
+      .def("__copy__", [](const Configuration& self) { return self; })
+      .def(
+          "__deepcopy__", [](const Configuration& self, const py::dict&) { return self; }, py::arg("memo"))
+      .def("__repr__",
+           [](const Configuration& self) {
+             return "<Parameters of joint '" + self.values().joint.name + "', " + std::to_string(self.keys().size()) +
+                    " keys>";
+           })
+      .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState));
+  bindFaults(module);
+}
+}  // namespace hjt

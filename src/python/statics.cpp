@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "harmonic_joint_twin/statics/torsion_loop.hpp"
+#include "python/configuration.hpp"
+#include "python/tooth_values.hpp"
+#include "statics/fatigue_law.hpp"
+
+namespace hjt
+{
+/// One row of quasi-static turning.
+struct TurnValues
+{
+  double wave_generator_angle;
+  double output_angle;
+  double kinematic_error;
+  double wave_generator_torque;
+  double housing_torque;
+};
+
+/// One row of the losses. Names as in `joint_twin losses --json`.
+struct LossValues
+{
+  double motor_speed;
+  double load_torque;
+  double load_reduced;
+  double bearing;
+  double interface;
+  double flexing;
+  double mesh;
+  double cup;
+  double damping;
+  double output;
+  double motor;
+  double gear_loss;
+  double gear_efficiency;
+};
+
+namespace
+{
+/// @throws InputError.
+void requireFinite(const char* name, const std::vector<double>& values)
+{
+  for (const double value : values)
+  {
+    if (!std::isfinite(value))
+    {
+      throw InputError(std::string(name) + " = " + numberText(value) + " is not a finite number");
+    }
+  }
+}
+
+void requireAtLeast(const char* name, int value, int least)
+{
+  if (value < least)
+  {
+    throw InputError(std::string(name) + " = " + std::to_string(value) +
+                     " [-] is out of range, allowed: >= " + std::to_string(least));
+  }
+}
+
+void requirePositive(const char* name, double value)
+{
+  if (!(value > 0.0))
+  {
+    throw InputError(std::string(name) + " = " + numberText(value) + " [N.m] is out of range, allowed: > 0");
+  }
+}
+
+std::string valueWithUnit(double value, const char* unit)
+{
+  return numberText(value) + ' ' + unit;
+}
+
+InsertionResult insertion(const Configuration& parameters)
+{
+  InsertionResult result = withoutLock([given = parameters.values()] { return analyseInsertion(given); });
+  if (!result.status.ok())
+  {
+    throw NotConverged("the insertion", result.status);
+  }
+  return result;
+}
+
+FitCheck fit(const Configuration& parameters)
+{
+  FitCheck check = withoutLock([given = parameters.values()] { return checkFit(given); });
+  if (!check.status.ok())
+  {
+    throw NotConverged("the gear without load", check.status);
+  }
+  return check;
+}
+
+std::vector<StiffnessRow> stiffness(const Configuration& parameters, const std::vector<double>& torques, double angle)
+{
+  requireFinite("torques", torques);
+  requireFinite("angle", { angle });
+  std::vector<StiffnessRow> rows;
+  const Parameters given = parameters.values();
+  withoutLock(
+      [&]
+      {
+        InterruptCheck check;
+        // No row depends on another.
+        for (const double torque : torques)
+        {
+          rows.push_back(std::move(analyseStiffness(given, angle, { torque }).front()));
+          check();
+        }
+      });
+  for (const StiffnessRow& row : rows)
+  {
+    if (!row.status.ok())
+    {
+      throw NotConverged("the row of torque " + valueWithUnit(row.torque, "N.m"), row.status);
+    }
+  }
+  return rows;
+}
+
+py::array_t<TurnValues> turn(const Configuration& parameters, double load, double angle_range, int steps)
+{
+  requireFinite("load", { load });
+  requireFinite("angle_range", { angle_range });
+  requireAtLeast("steps", steps, 1);
+  const std::vector<TurnRow> rows = withoutLock(
+      [&, given = parameters.values()]
+      {
+        InterruptCheck check;
+        return analyseTurn(given, load, angle_range, steps, [&](int) { check(); });
+      });
+  py::array_t<TurnValues> values(static_cast<py::ssize_t>(rows.size()));
+  TurnValues* next = values.mutable_data();
+  for (const TurnRow& row : rows)
+  {
+    if (!row.status.ok())
+    {
+      throw NotConverged("the row of wave generator angle " + valueWithUnit(row.wave_generator_angle, "rad"),
+                         row.status);
+    }
+    *next++ = { row.wave_generator_angle, row.output_angle, row.kinematic_error, row.wave_generator_torque,
+                row.housing_torque };
+  }
+  return values;
+}
+
+py::array_t<LossValues> losses(const Configuration& parameters, const std::vector<double>& speeds,
+                               const std::vector<double>& loads, int positions)
+{
+  requireFinite("speeds", speeds);
+  requireFinite("loads", loads);
+  requireAtLeast("positions", positions, 1);
+  const std::vector<LossRow> rows = withoutLock(
+      [&, given = parameters.values()]
+      {
+        InterruptCheck check;
+        return analyseLosses(given, speeds, loads, positions, [&](int) { check(); });
+      });
+  py::array_t<LossValues> values({ loads.size(), speeds.size() });
+  LossValues* next = values.mutable_data();
+  for (const LossRow& row : rows)
+  {
+    if (!row.status.ok())
+    {
+      throw NotConverged("the load of " + valueWithUnit(row.load_torque, "N.m"), row.status);
+    }
+    const LossShares& loss = row.loss;
+    *next++ = { row.motor_speed, row.load_torque, row.load_reduced,   loss.bearing, loss.interface,
+                loss.flexing,    loss.mesh,       loss.cup,           loss.damping, loss.output,
+                loss.motor,      loss.gear(),     row.gear_efficiency };
+  }
+  return values;
+}
+
+Breakaway breakaway(const Configuration& parameters, int positions)
+{
+  requireAtLeast("positions", positions, 1);
+  Breakaway result =
+      withoutLock([given = parameters.values(), positions] { return analyseBreakaway(given, positions); });
+  if (!result.status.ok())
+  {
+    throw NotConverged("the load that drives the gear back", result.status);
+  }
+  return result;
+}
+
+TorsionLoop torsionLoop(const Configuration& parameters, double amplitude, double lost_motion_torque, int steps)
+{
+  requireFinite("amplitude", { amplitude });
+  requirePositive("amplitude", amplitude);
+  requirePositive("lost_motion_torque", lost_motion_torque);
+  if (lost_motion_torque > amplitude)
+  {
+    throw InputError("lost_motion_torque = " + valueWithUnit(lost_motion_torque, "[N.m]") +
+                     " is out of range, allowed: 0 ... " + numberText(amplitude) + " (amplitude)");
+  }
+  requireAtLeast("steps", steps, 2);
+  TorsionLoop loop = withoutLock([&, given = parameters.values()]
+                                 { return analyseTorsionLoop(given, amplitude, lost_motion_torque, steps); });
+  if (!loop.status.ok())
+  {
+    throw NotConverged("the torsion loop", loop.status);
+  }
+  return loop;
+}
+
+/// One member of all points of a loop.
+template <double TorsionPoint::*VALUE>
+py::array_t<double> pointsOf(const TorsionLoop& loop)
+{
+  py::array_t<double> values(static_cast<py::ssize_t>(loop.points.size()));
+  double* next = values.mutable_data();
+  for (const TorsionPoint& point : loop.points)
+  {
+    *next++ = point.*VALUE;
+  }
+  return values;
+}
+
+void bindTeeth(py::module& module)
+{
+  auto teeth = py::class_<ToothTable>(module, "ToothTable",
+                                      "Every tooth of one equilibrium: arrays of shape (teeth,), index = tooth, views "
+                                      "of the result's memory, which they "
+                                      "keep alive.");
+  addArray(teeth, "tooth_x", &ToothTable::tooth_x, "of the tooth point [m]");
+  addArray(teeth, "tooth_y", &ToothTable::tooth_y, "of the tooth point [m]");
+  addArray(teeth, "radius", &ToothTable::radius, "of the tooth point [m]");
+  addArray(teeth, "angle_deviation", &ToothTable::angle_deviation, "of the tooth point's angle from rest [rad]");
+  addArray(teeth, "wave_generator_force", &ToothTable::wave_generator_force, "[N]");
+  addArray(teeth, "rim_tension", &ToothTable::rim_tension, "to the next tooth [N]");
+  addArray(teeth, "bending_force", &ToothTable::bending_force, "of the segment to the next tooth [N]");
+  addArray(teeth, "mesh_force", &ToothTable::mesh_force,
+           "normal force on the flank, > 0 leading, < 0 trailing flank [N]");
+  addArray(teeth, "stress_tooth_space", &ToothTable::stress_tooth_space, "nominal normal stress [Pa]");
+  addArray(teeth, "stress_transition", &ToothTable::stress_transition, "nominal normal stress [Pa]");
+  addArray(teeth, "stress_flange", &ToothTable::stress_flange, "nominal normal stress [Pa]");
+  addArray(teeth, "across", &ToothTable::across, "place in its space of the circular spline; empty without one [m]");
+  addArray(teeth, "depth", &ToothTable::depth, "likewise [m]");
+  addArray(teeth, "tilt", &ToothTable::tilt, "likewise [rad]");
+  addArray(teeth, "gap", &ToothTable::gap, "to the nearer flank; likewise [m]");
+  addText(teeth);
+}
+
+void bindInsertion(py::module& module)
+{
+  auto result = py::class_<InsertionResult>(
+      module, "InsertionResult", "Equilibrium after the wave generator's insertion, circular spline left out.");
+  result.def_readonly("wave_generator_force_max", &InsertionResult::wave_generator_force_max, "[N]")
+      .def_readonly("wave_generator_force_min", &InsertionResult::wave_generator_force_min, "[N]")
+      .def_readonly("wave_generator_force_sum", &InsertionResult::wave_generator_force_sum, "[N]")
+      .def_readonly("teeth_in_contact", &InsertionResult::teeth_in_contact, "with the wave generator [-]")
+      .def_readonly("tension_min", &InsertionResult::tension_min, "of the rim [N]")
+      .def_readonly("tension_max", &InsertionResult::tension_max, "of the rim [N]")
+      .def_readonly("radius_major_axis", &InsertionResult::radius_major_axis, "of tooth 0 [m]")
+      .def_readonly("radius_minor_axis", &InsertionResult::radius_minor_axis, "of tooth N/4 [m]")
+      .def_readonly("bending_force_max", &InsertionResult::bending_force_max, "[N]")
+      .def_readonly("teeth", &InsertionResult::teeth, "ToothTable");
+  addText(result);
+  module.def("analyse_insertion", &insertion, py::arg("parameters"),
+             "Static equilibrium after the insertion, without circular spline: InsertionResult. NotConverged.");
+
+  auto check = py::class_<FitCheck>(module, "FitCheck", "Whether the teeth have room where the gear carries no load.");
+  check.def_readonly("teeth_loaded", &FitCheck::teeth_loaded, "without load [-]")
+      .def_readonly("wave_generator_force", &FitCheck::wave_generator_force, "sum over the teeth, without load [N]")
+      .def_readonly("wave_generator_force_insertion", &FitCheck::wave_generator_force_insertion,
+                    "the same without the circular spline [N]")
+      .def_property_readonly("jams", &FitCheck::jams, "the teeth press harder on the wave generator than the bent rim");
+  addText(check);
+  module.def("check_fit", &fit, py::arg("parameters"),
+             "Whether the teeth have room: FitCheck; worth a look after every change of a gear. NotConverged.");
+}
+
+void bindStiffness(py::module& module)
+{
+  auto row = py::class_<StiffnessRow>(module, "StiffnessRow", "The gear under one load, wave generator locked.");
+  row.def_readonly("torque", &StiffnessRow::torque, "load; > 0 turns the output backwards [N.m]")
+      .def_readonly("output_angle", &StiffnessRow::output_angle, "relative to zero load [rad]")
+      .def_readonly("wave_generator_torque", &StiffnessRow::wave_generator_torque,
+                    "of the flexspline on the wave generator [N.m]")
+      .def_readonly("housing_torque", &StiffnessRow::housing_torque, "of the housing on the flexspline [N.m]")
+      .def_readonly("cup_rotation", &StiffnessRow::cup_rotation, "mean rotation of the teeth from rest [rad]")
+      .def_readonly("teeth_loaded", &StiffnessRow::teeth_loaded, "[-]")
+      .def_readonly("mesh_force_max", &StiffnessRow::mesh_force_max, "[N]")
+      .def_readonly("wave_generator_force_sum", &StiffnessRow::wave_generator_force_sum, "[N]")
+      .def_property_readonly(
+          "residual", [](const StiffnessRow& self) { return self.status.residual; },
+          "largest out-of-balance force on a tooth [N]")
+      .def_readonly("stress", &StiffnessRow::stress, "nominal, without the notch: ToothStress")
+      .def_readonly("teeth", &StiffnessRow::teeth, "ToothTable");
+  addArray(row, "ball_force", &StiffnessRow::ball_force,
+           "of each ball of the bearing, shape (balls,); empty unless contact.support = single_balls [N]");
+  addText(row);
+  module.def(
+      "analyse_stiffness", &stiffness, py::arg("parameters"), py::arg("torques"), py::arg("angle") = 0.0,
+      "Torsion under load, wave generator locked at angle [rad], friction left out: list of StiffnessRow, one for "
+      "each of the torques, loads on the circular spline [N.m]. NotConverged.");
+  module.def(
+      "endurance_share",
+      [](const Configuration& parameters, const std::string& place, const StressCycle& cycle)
+      { return FatigueLaw(parameters.values()).enduranceShare(stressPlace(place), cycle); },
+      py::arg("parameters"), py::arg("place"), py::arg("cycle"),
+      "Share of the endurance limit that a StressCycle uses at the notch of 'tooth space', 'transition' or 'flange', "
+      "by "
+      "Goodman and Peterson [-] (docs/life.md): float.");
+}
+
+void bindSlowMotion(py::module& module)
+{
+  PYBIND11_NUMPY_DTYPE(TurnValues, wave_generator_angle, output_angle, kinematic_error, wave_generator_torque,
+                       housing_torque);
+  PYBIND11_NUMPY_DTYPE(LossValues, motor_speed, load_torque, load_reduced, bearing, interface, flexing, mesh, cup,
+                       damping, output, motor, gear_loss, gear_efficiency);
+  module.def("analyse_turn", &turn, py::arg("parameters"), py::arg("load"), py::arg("angle_range"), py::arg("steps"),
+             "Quasi-static turning from 0 to angle_range [rad] at a constant load [N.m], friction left out.\n\n"
+             "Returns a structured array of shape (steps + 1,): wave_generator_angle, output_angle, kinematic_error "
+             "[rad], wave_generator_torque, housing_torque [N.m]. NotConverged.");
+  module.def(
+      "analyse_losses", &losses, py::arg("parameters"), py::arg("speeds"), py::arg("loads"), py::arg("positions") = 16,
+      "Friction and efficiency of steady turning at motor speeds [rad/s] against loads [N.m]; positions: wave "
+      "generator angles per tooth pitch.\n\n"
+      "Returns a structured array of shape (loads, speeds): motor_speed [rad/s], load_torque, load_reduced [N.m]; "
+      "bearing, interface, flexing, mesh, cup, damping, output, motor, gear_loss: torques at the motor shaft "
+      "[N.m]; gear_efficiency [-]. NotConverged.");
+
+  auto result = py::class_<Breakaway>(module, "Breakaway",
+                                      "Torques at which the gear without its motor's friction begins to move.");
+  result.def_readonly("starting", &Breakaway::starting, "at the wave generator, no load [N.m]")
+      .def_readonly("back_driving", &Breakaway::back_driving, "at the output, wave generator free [N.m]");
+  addText(result);
+  module.def("analyse_breakaway", &breakaway, py::arg("parameters"), py::arg("positions") = 16,
+             "Torques at which the gear begins to move: Breakaway. NotConverged.");
+
+  auto loop = py::class_<TorsionLoop>(module, "TorsionLoop", "Torsion to and fro with the friction of the teeth.");
+  loop.def_property_readonly("torque", &pointsOf<&TorsionPoint::torque>,
+                             "loads, from +amplitude to -amplitude and back, shape (points,) [N.m]")
+      .def_property_readonly("output_angle", &pointsOf<&TorsionPoint::output_angle>,
+                             "from the place without load, > 0 with the load, shape (points,) [rad]")
+      .def_readonly("hysteresis", &TorsionLoop::hysteresis, "width of the loop at no load [rad]")
+      .def_readonly("lost_motion", &TorsionLoop::lost_motion,
+                    "between the middles of the loop at plus and minus the lost motion torque [rad]");
+  addText(loop);
+  module.def(
+      "analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"), py::arg("lost_motion_torque"),
+      py::arg("steps") = 200,
+      "Wave generator locked, load swept slowly between plus and minus amplitude [N.m], in so many steps a sweep; "
+      "lost_motion_torque: e.g. 4 % of the rated torque [N.m]. Returns TorsionLoop. NotConverged.");
+}
+}  // namespace
+
+void bindStatics(py::module& module)
+{
+  bindTeeth(module);
+  bindInsertion(module);
+  bindStiffness(module);
+  bindSlowMotion(module);
+}
+}  // namespace hjt

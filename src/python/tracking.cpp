@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/choices.hpp"
+#include "python/configuration.hpp"
+#include "python/surface_source.hpp"
+#include "tracking/tracker.hpp"
+
+namespace hjt
+{
+/// Measured joint and prediction of a healthy one. Names as in Comparison.msg.
+struct ComparisonRow
+{
+  double time;
+  double position_measured;
+  double position_predicted;
+  double position_residual;
+  double position_band;
+  double velocity_measured;
+  double velocity_predicted;
+  double velocity_residual;
+  double current_measured;
+  double current_predicted;
+  double current_residual;
+  double current_band;
+  double residual_torque;
+  double joint_torque;
+  double friction_torque;
+  double load_torque;
+  double temperature;
+  double housing_temperature;
+  bool load_told;
+  bool temperature_received;
+  bool sticking;
+  bool after_gap;
+  bool outside_band;
+};
+
+namespace
+{
+using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+ComparisonRow rowOf(const Comparison& now) noexcept
+{
+  return { now.time,
+           now.position.measured,
+           now.position.predicted,
+           now.position.residual(),
+           now.position.band,
+           now.velocity.measured,
+           now.velocity.predicted,
+           now.velocity.residual(),
+           now.current.measured,
+           now.current.predicted,
+           now.current.residual(),
+           now.current.band,
+           now.residual_torque,
+           now.joint_torque,
+           now.friction_torque,
+           now.load_torque,
+           now.temperature,
+           now.housing_temperature,
+           now.load_provided,
+           now.temperature_received,
+           now.sticking,
+           now.after_gap,
+           now.isOutside() };
+}
+
+/// A column of a recording; none: not recorded.
+class Recorded
+{
+public:
+  /// @throws InputError if it has not `rows` values.
+  Recorded(const char* name, const std::optional<Values>& values, py::ssize_t rows) : values_(values)
+  {
+    if (values_ && (values_->ndim() != 1 || values_->size() != rows))
+    {
+      throw InputError(std::string(name) + " has " + std::to_string(values_->size()) + " values in " +
+                       std::to_string(values_->ndim()) + " dimensions, expected: " + std::to_string(rows) +
+                       " in one, as time");
+    }
+    data_ = values_ ? values_->data() : nullptr;
+  }
+
+  explicit operator bool() const noexcept { return data_ != nullptr; }
+  double operator[](py::ssize_t row) const noexcept { return data_[row]; }
+
+private:
+  std::optional<Values> values_;
+  const double* data_;
+};
+
+/// The twin beside recorded rows.
+class TrackerObject
+{
+public:
+  TrackerObject(const Configuration& parameters, const std::string& mode, const std::optional<std::string>& cache)
+    : tracker_(makeTracker(parameters.values(), mode, cache))
+  {
+  }
+
+  Tracker& tracker()
+  {
+    if (busy_)
+    {
+      throw std::runtime_error("this tracker is being run by another thread");
+    }
+    return *tracker_;
+  }
+
+  py::array_t<ComparisonRow> follow(const Values& time, const Values& position, const Values& current,
+                                    const std::optional<Values>& load, const std::optional<Values>& temperature,
+                                    const std::optional<Values>& motor_angle, bool at_end)
+  {
+    tracker();
+    const py::ssize_t rows = time.size();
+    const Recorded times("time", time, rows);
+    const Recorded positions("position", position, rows);
+    const Recorded currents("current", current, rows);
+    const Recorded loads("load", load, rows);
+    const Recorded temperatures("temperature", temperature, rows);
+    const Recorded motor_angles("motor_angle", motor_angle, rows);
+    std::vector<ComparisonRow> compared;
+    busy_ = true;
+    const struct Release
+    {
+      ~Release() { busy = false; }
+      bool& busy;
+    } release{ busy_ };
+    withoutLock(
+        [&]
+        {
+          InterruptCheck check;
+          for (py::ssize_t i = 0; i < rows; ++i)
+          {
+            MotionRow row;
+            row.time = times[i];
+            row.received = row.time;
+            row.position = positions[i];
+            row.current = currents[i];
+            row.temperature = temperatures ? temperatures[i] : row.temperature;
+            row.motor_angle = motor_angles ? motor_angles[i] : row.motor_angle;
+            if (loads)
+            {
+              tracker_->pushLoad(row.time, loads[i]);
+            }
+            tracker_->push(row);
+            take(false, compared);
+            check();
+          }
+          take(at_end, compared);
+        });
+    return py::array_t<ComparisonRow>(static_cast<py::ssize_t>(compared.size()), compared.data());
+  }
+
+private:
+  static std::unique_ptr<Tracker> makeTracker(const Parameters& parameters, const std::string& name,
+                                              const std::optional<std::string>& cache)
+  {
+    for (const auto& [choice, mode] : choiceNames(InputMode{}))
+    {
+      if (name == choice && mode != InputMode::COMMANDS)
+      {
+        SurfaceSourceOf source(cache, py::none());
+        auto tracker = withoutLock([&, taken = mode, given = parameters]
+                                   { return std::make_unique<Tracker>(given, taken, source.source()); });
+        source.warn();
+        return tracker;
+      }
+    }
+    throw InputError("mode = '" + name + "' must be 'motion', 'torque' or 'observer'");
+  }
+
+  void take(bool at_end, std::vector<ComparisonRow>& compared)
+  {
+    while (const std::optional<Comparison> now = tracker_->pop(at_end))
+    {
+      compared.push_back(rowOf(*now));
+    }
+  }
+
+  std::unique_ptr<Tracker> tracker_;
+  bool busy_{};  // guarded by the interpreter's lock
+};
+
+py::dict countersOf(TrackerObject& self)
+{
+  const TrackerCounters counters = self.tracker().counters();
+  py::dict named;
+  named["compared"] = counters.compared;
+  named["refused"] = counters.refused;
+  named["gaps"] = counters.gaps;
+  named["restarts"] = counters.restarts;
+  named["outside"] = counters.outside;
+  named["without_load"] = counters.without_load;
+  named["refused_temperatures"] = counters.refused_temperatures;
+  named["solver_failures"] = counters.solver_failures;
+  return named;
+}
+}  // namespace
+
+void bindTracking(py::module& module)
+{
+  PYBIND11_NUMPY_DTYPE(ComparisonRow, time, position_measured, position_predicted, position_residual, position_band,
+                       velocity_measured, velocity_predicted, velocity_residual, current_measured, current_predicted,
+                       current_residual, current_band, residual_torque, joint_torque, friction_torque, load_torque,
+                       temperature, housing_temperature, load_told, temperature_received, sticking, after_gap,
+                       outside_band);
+  module.attr("COMPARISON_DTYPE") = py::dtype::of<ComparisonRow>();
+
+  py::class_<TrackerObject>(
+      module, "Tracker",
+      "A healthy joint beside a recorded one, as the tool's follow and the node beside a robot.\n\n"
+      "Tracker(parameters, mode='motion', cache=None). mode: 'motion' predicts the current of the recorded motion, "
+      "'torque' the motion of the recorded current, 'observer' corrects the twin towards the recorded angles. "
+      "parameters: those of the joint, e.g. Parameters('joints/elbow.yaml', 'beside_robot.yaml'); telemetry.load says "
+      "what the load is. ParameterError.")
+      .def(py::init<const Configuration&, const std::string&, const std::optional<std::string>&>(),
+           py::arg("parameters"), py::arg("mode") = "motion", py::arg("cache") = py::none())
+      .def("follow", &TrackerObject::follow, py::arg("time"), py::arg("position"), py::arg("current"),
+           py::arg("load") = py::none(), py::arg("temperature") = py::none(), py::arg("motor_angle") = py::none(),
+           py::arg("at_end") = true,
+           "Takes rows of a recording, without the interpreter's lock: arrays of shape (rows,). time [s], ascending; "
+           "position of the joint [rad]; current of the motor [A]; load at the output, > 0 resists positive motion "
+           "[N.m]; temperature of the drive [degC]; motor_angle [rad]; None: not recorded. at_end: no row follows; "
+           "False "
+           "keeps the last 36 ms for the next call.\n\n"
+           "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Rows that cannot be are "
+           "left out and counted. InputError.")
+      .def(
+          "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Another recording follows.")
+      .def_property_readonly("counters", &countersOf, "by name: dict of str to int")
+      .def_property_readonly(
+          "lag", [](TrackerObject& self) { return self.tracker().lag(); },
+          "delay of the recorded current, or speed, behind its prediction [s] or None")
+      .def_property_readonly(
+          "outside_share", [](TrackerObject& self) { return self.tracker().outsideShare(); },
+          "of the last 30 s, rows whose current lies outside its band [-]")
+      .def_property_readonly(
+          "signal_indicators", [](TrackerObject& self) { return self.tracker().signalIndicators(); },
+          "of the recorded joint's last window: SignalIndicators")
+      .def_property_readonly(
+          "assessment", [](TrackerObject& self) { return self.tracker().assessment(); },
+          "what the indicators say of the recorded joint: Assessment");
+}
+}  // namespace hjt

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One package of the messages and the module. Argument: the tool."""
+import subprocess
+import sys
+import unittest
+
+TOOL = sys.argv.pop(1)
+
+
+class Package(unittest.TestCase):
+    def run_python(self, *lines):
+        done = subprocess.run([sys.executable, "-c", "\n".join(lines)], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return done.stdout
+
+    def test_messages_come_without_the_module(self):
+        loaded = self.run_python("import sys", "from harmonic_joint_twin.msg import Health",
+                                 "import harmonic_joint_twin", "print(Health().torsion)",
+                                 "print('harmonic_joint_twin._hjt' in sys.modules)")
+        self.assertEqual(loaded.split(), ["0.0", "False"])
+
+    def test_the_module_comes_with_the_messages(self):
+        printed = self.run_python("import harmonic_joint_twin as hjt", "from harmonic_joint_twin.msg import Health",
+                                  "from harmonic_joint_twin import Twin", "assert hjt.Twin is Twin",
+                                  "print(len(hjt.Parameters()) > 200, Health().torsion, 'Twin' in dir(hjt))")
+        self.assertEqual(printed.split(), ["True", "0.0", "True"])
+
+    def test_unknown_names_are_named(self):
+        printed = self.run_python("import harmonic_joint_twin as hjt", "try:", "    hjt.Twn",
+                                  "except AttributeError as e:", "    print(e)")
+        self.assertIn("has no attribute 'Twn'", printed)
+
+
+if __name__ == "__main__":
+    unittest.main()
