@@ -65,7 +65,7 @@ public:
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m], [N/m^1.5]
   const Eigen::VectorXd& gap() const noexcept { return gap_; }
-  Eigen::VectorXd& gap() noexcept { return gap_; }              ///< N, editable per tooth, >= 0 [m]
+  Eigen::VectorXd& gap() noexcept { return gap_; }  ///< N, editable per tooth, >= 0 [m]
   const RaceDeflection& bearing() const noexcept { return bearing_; }
   RaceDeflection& bearing() noexcept { return bearing_; }  ///< editable
 

@@ -255,9 +255,9 @@ const std::vector<Column<TurnRow>> TURN_COLUMNS{
 
 int turn(const TurnOptions& options)
 {
-  const std::vector<TurnRow> rows = analyseTurn(
-      loadGear(options), options.load, options.angle_range, options.steps,
-      [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
+  const std::vector<TurnRow> rows = analyseTurn(loadGear(options), options.load, options.angle_range, options.steps,
+                                                [&options, show = showProgress("turning")](int step)
+                                                { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
     if (!row.status.ok())
