@@ -16,10 +16,11 @@ EFFICIENCY_RATIO = 100
 def build(page):
     page.text("""
 `joint_twin gear --size S --ratio R` scales the shipped gear by rules of similarity and fits the cup's three slopes to
-the torsion of the catalogue, preload and viscosity to starting and no-load torque of ratio 100 (sizes 14 to 25; the other
-ratios of a size have the same bearing, and size 32 keeps those of similarity). Nothing else is fitted: efficiency,
-back-driving torque, hysteresis and the torsion between the fitted torques are judged. Size 14 is filled with another
-grease: with its viscosity fitted to the no-load torque the efficiency is 0.1 point out of the catalogue's band.
+the torsion of the catalogue, preload and viscosity to starting and no-load torque of ratio 100 (sizes 14 to 25; the
+other ratios of a size have the same bearing, and size 32 keeps those of similarity). Nothing else is fitted:
+efficiency, back-driving torque, hysteresis and the torsion between the fitted torques are judged. Size 14 is filled
+with another grease: with its viscosity fitted to the no-load torque the efficiency is 0.1 point out of the
+catalogue's band.
 """)
     shown, efficiency = [], {}
     for size, ratios in RATIOS.items():
