@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A learner of remaining life on a data set of `joint_twin lives`: its score, beside what hours alone say, and a figure.
+"""A learner of remaining life on a data set of `joint_twin lives`: its score beside that of the prior, and a figure.
 
-  lives_learner.py DIR --out figure.png
+  joint_twin lives PLAN.yaml --out unused --list > prior.csv     (PLAN with many drives and one check-up each)
+  lives_learner.py DIR --prior prior.csv --out figure.png
 
-Prints mean absolute errors at the check-ups of the test drives that came to their end.
+Prints scores at the check-ups of the test drives that came to their end.
 """
 import argparse
 
@@ -36,21 +37,38 @@ def read(directory):
     return indicators.dropna(axis="columns"), index.groupby(KEY).first()
 
 
-def forecast(features, truth):
-    """Median and the 10 and 90 % quantiles of the trees' leaves [h], trained on the training drives."""
+def learn(features, truth):
+    """Remaining lives of the training drives [h], and the weight of each in the forecast of each check-up."""
     training = (truth["life.split"] == "train").to_numpy()
-    forest = RandomForestRegressor(500, min_samples_leaf=5, max_features=0.3, random_state=1)
     known = truth["life.remaining"].to_numpy()[training]
+    forest = RandomForestRegressor(500, min_samples_leaf=5, max_features=0.3, random_state=1)
     forest.fit(features[training], known)
     of_training, of_all = forest.apply(features[training]), forest.apply(features)
-    quantiles = []
-    for leaves in of_all:
-        weight = (of_training == leaves).mean(axis=1)
-        order = numpy.argsort(known)
-        reached = numpy.cumsum(weight[order]) / weight.sum()
-        quantiles.append([known[order][min(numpy.searchsorted(reached, share), len(known) - 1)]
-                          for share in (0.1, 0.5, 0.9)])
-    return numpy.array(quantiles)
+    return known, numpy.array([(of_training == leaves).mean(axis=1) for leaves in of_all])
+
+
+def prior(drives, truth):
+    """The same of drives that are only known by the laws: of those of the same duty that last longer."""
+    length = drives["life.length"].to_numpy()
+    weights = [(drives["life.duty"] == duty).to_numpy() & (length > hours)
+               for (_, hours), duty in truth["life.duty"].items()]
+    return length, numpy.array(weights, dtype=float)
+
+
+def quantiles_of(values, weights):
+    """10, 50 and 90 % [h]."""
+    order = numpy.argsort(values)
+    reached = numpy.cumsum(weights[order]) / weights.sum()
+    return values[order][numpy.searchsorted(reached, (0.1, 0.5, 0.9)).clip(max=len(values) - 1)]
+
+
+def crps_of(values, weights, true):
+    """Continuous ranked probability score [h]."""
+    order = numpy.argsort(values)
+    reached = numpy.cumsum(weights[order])[:-1] / weights.sum()
+    ordered = values[order]
+    spread = (numpy.diff(ordered) * reached * (1.0 - reached)).sum()
+    return numpy.abs(values - true).dot(weights) / weights.sum() - spread
 
 
 def draw(truth, quantiles, path):
@@ -76,22 +94,28 @@ def draw(truth, quantiles, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory")
+    parser.add_argument("--prior", required=True, help="index of drives by the laws alone")
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()
     indicators, truth = read(arguments.directory)
     use = pandas.DataFrame({"hours": truth.index.get_level_values(1),
                             "duty": pandas.factorize(truth["life.duty"])[0]}, index=truth.index)
     judged = ((truth["life.split"] == "test") & (truth["life.cause"] != IN_USE)).to_numpy()
+    hours = truth.index.get_level_values(1).to_numpy()
     known = truth["life.remaining"].to_numpy()
-    drives = truth[judged].index.get_level_values(0).nunique()
-    print(f"{len(truth)} check-ups; judged: {judged.sum()} of {drives} drives")
-    late = judged & (truth.index.get_level_values(1) > 0.5 * truth["life.length"]).to_numpy()
-    for name, features in [("hours and duty", use), ("hours, duty and indicators", use.join(indicators))]:
-        quantiles = forecast(features, truth)
+    print(f"{len(truth)} check-ups of {truth.index.get_level_values(0).nunique()} drives; judged: {judged.sum()} of "
+          f"{truth[judged].index.get_level_values(0).nunique()} drives")
+    drives = pandas.read_csv(arguments.prior).groupby("life.drive").first()
+    lengths, weights = prior(drives, truth)
+    print("| forecast | mean absolute error [h] | CRPS [h] | 80 % interval held |\n|---|---|---|---|")
+    for name, values, weights in [("prior", None, weights), ("hours, duty", *learn(use, truth)),
+                                  ("hours, duty, indicators", *learn(use.join(indicators), truth))]:
+        of = [lengths - now if values is None else values for now in hours]
+        quantiles = numpy.array([quantiles_of(*each) for each in zip(of, weights)])
+        crps = numpy.array([crps_of(*each) for each in zip(of, weights, known)])
         held = (known >= quantiles[:, 0]) & (known <= quantiles[:, 2])
-        print(f"{name}: mean absolute error {numpy.abs(quantiles[:, 1] - known)[judged].mean():.0f} h, "
-              f"in the second half of each life {numpy.abs(quantiles[:, 1] - known)[late].mean():.0f} h; "
-              f"80 % interval held {100.0 * held[judged].mean():.0f} %")
+        print(f"| {name} | {numpy.abs(quantiles[:, 1] - known)[judged].mean():.0f} | {crps[judged].mean():.0f} | "
+              f"{100.0 * held[judged].mean():.0f} % |")
     test = (truth["life.split"] == "test").to_numpy()
     draw(truth[test], quantiles[test], arguments.out)
 

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin lives`: data sets of drives that run to failure."""
 import csv
+import importlib.util
 import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
 
 import h5py
 import numpy
@@ -36,20 +42,34 @@ INTERFACE_WEAR_DEPTH = 10.0e-6
 
 
 class Lives(tool.ToolTest):
+    made = None  # the data set that most tests read
+
     def setUp(self):
         super().setUp()
         self.write("plan.yaml", PLAN)
         self.write("rated.csv", RATED)
 
+    @classmethod
+    def tearDownClass(cls):
+        if cls.made:
+            shutil.rmtree(cls.made)
+
     def lives(self, out, *arguments):
         return self.succeed("lives", "plan.yaml", "--out", out, *arguments)
+
+    def read_only(self, out):
+        """Made once for all tests, under this name."""
+        if not self.made:
+            Lives.made = tempfile.mkdtemp(prefix="joint_twin_lives_")
+            self.lives(self.made, "--jobs", 1)
+        os.symlink(self.made, self.path(out))
 
     def rows(self, out):
         with open(self.path(out + "/index.csv")) as file:
             return list(csv.DictReader(file))
 
     def test_lives_go_from_new_to_the_end_with_the_wear_as_faults_and_labels(self):
-        self.lives("a")
+        self.read_only("a")
         rows = self.rows("a")
         drives = {}
         for row in rows:
@@ -90,20 +110,35 @@ class Lives(tool.ToolTest):
             self.assertGreaterEqual(len(file["indicators/window_end"]), 1)
 
     def test_any_number_of_workers_and_shards_gives_the_same_bytes_and_what_is_there_is_kept(self):
-        self.lives("one", "--jobs", 1)
+        self.read_only("one")
         for shard in ("0/2", "1/2"):
             self.lives("two", "--jobs", 2, "--shard", shard)
-        self.assertEqual(tree(self.path("one")), tree(self.path("two")))
+        self.assertEqual(tree(self.made), tree(self.path("two")))
         self.assertIn(" 0 runs done", self.lives("two").stderr)
 
     def test_a_life_is_that_of_the_laws(self):
-        self.lives("a")
-        nominal = self.succeed_json("life", "age", "rated.csv", "--grease-changes", "--positions", 8, "--hours", 15000.0)
+        self.read_only("a")
+        nominal = self.succeed_json("life", "age", "rated.csv", "--grease-changes", "--positions", 8,
+                                    "--hours", 15000.0)
         wear = [(float(row["life.interface_wear"]), float(row["life.interface_factor"])) for row in self.rows("a")
                 if float(row["life.hours"]) == 15000.0 and float(row["life.interface_factor"]) < 1.0]
         self.assertGreater(len(wear), 0)
         for depth, factor in wear:
             self.assertAlmostEqual(depth / factor, nominal["interface_wear"], delta=0.05 * nominal["interface_wear"])
+
+    def test_the_learner_of_the_page_reads_them(self):
+        if importlib.util.find_spec("sklearn") is None:
+            self.skipTest("python3-sklearn is not installed")
+        self.read_only("a")
+        script = tool.CHECKOUT + "/scripts/lives_learner.py"
+        done = subprocess.run([sys.executable, script, "a", "--prior", "a/index.csv", "--out", "a.png"],
+                              cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=120 * tool.SLOWER, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"judged: [1-9]\d* of [12] drives")
+        for name in ("prior", "hours, duty", "hours, duty, indicators"):
+            self.assertRegex(done.stdout, rf"\| {name} \| \d+ \| \d+ \| \d+ % \|")
+        self.assertGreater(len(tool.read_bytes(self.path("a.png"))), 10000)
 
     def test_bad_plans_are_refused(self):
         for old, new, parts in [

@@ -32,7 +32,8 @@ private:
 };
 
 /// A run as an HDF5 file: a group for each rate with a data set a column, time and severity, the indicators of each
-/// window, the faults, the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no times are kept.
+/// window, the faults, the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no
+/// times are kept.
 class Hdf5RunFile : public RunFile
 {
 public:

@@ -29,8 +29,7 @@ enum class RunFormat
 struct Recording
 {
   RunFormat format{};
-  double
-      start{};  ///< nothing is recorded before; torque, speed and load come in gently during its first half, if that is 0.1 or more [s]
+  double start{};     ///< nothing is recorded before; what drives the joint comes in gently in its first half [s]
   int deflate{};      ///< 0 ... 9; 0: not compressed
   bool indicators{};  ///< those of docs/indicators.md, a row a window
   std::vector<RecordingGroup> groups;

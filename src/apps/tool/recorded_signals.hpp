@@ -31,8 +31,8 @@ struct SignalSource
   double torque_scale{ 1.0 };  ///< motor torque per unit of the recorded signal
 };
 
-/// Gives every sample of a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of time, until that returns
-/// false.
+/// Gives every sample of a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of time, until that
+/// returns false.
 /// CSV, HDF5: a column that is not there is not measured; time, torque and one angle must be.
 /// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort
 /// of NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
