@@ -53,8 +53,8 @@ INTRODUCTION = """# Run time against error
 
 Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
 every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model, first against its
-peers and then as the levels of detail to choose from. **Error**: root mean square over the samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth
-forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns, so disturbances of the
+peers and then as the levels of detail to choose from. **Error**: root mean square over the
+samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns, so disturbances of the
 machine affect all alike. Down and to the left is better.
 
 Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank
@@ -87,11 +87,22 @@ Not measured here:
   stiffness."""
 
 
+CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
+the table in equal steps for the live node and for inputs at every millisecond; the table in steps of its own length
+(`solver.stepper: adaptive`) offline, where inputs change seldom; the table at measured angles where there is a
+recording to follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
+
+
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
 
 
 def error_of(row, quantity):
     return row["series_error"][quantity]
+
+
+def shown_error(error):
+    """As text; of what was not computed, a dash."""
+    return f"{error:.1e}" if error < 1e9 else "-"
 
 
 def finished(rows):
@@ -173,8 +184,8 @@ def run_table(rows):
               "forces at the end", "steps", "right-hand sides", "factorisations", "rejections"]
     return table(header, [[row["solver"], row["setting"], f"{1e3 * row['processor_time']:.3g}",
                            f"{1e3 * row['least']:.3g} ... {1e3 * row['most']:.3g}", row["runs"],
-                           *(f"{error_of(row, quantity):.1e}" for quantity in QUANTITIES),
-                           f"{row['end_error']['force']:.1e}", row["steps"], row["force_evaluations"],
+                           *(shown_error(row["series_error"][quantity]) for quantity in QUANTITIES),
+                           shown_error(row["end_error"]["force"]), row["steps"], row["force_evaluations"],
                            row["factorisations"], row["rejections"]] for row in finished(rows)])
 
 
@@ -192,7 +203,9 @@ def draw(rows, title, file):
         axes.grid(True, which="major", alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_ylabel("processor time [s]")
-    panels[1].legend(fontsize=7.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    entries = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
+    panels[1].legend(entries.values(), entries.keys(), fontsize=7.5, frameon=False, loc="center left",
+                     bbox_to_anchor=(1.0, 0.5))
     figure.suptitle(title, fontsize=9.5, x=0.02, ha="left", fontweight="bold")
     figure.savefig(file, metadata={"Software": None})
     plt.close(figure)
@@ -300,6 +313,7 @@ def section(problem, reference, rows, images):
             body, ratios[quantity] = envelope(rows, quantity, reference["apart"][quantity])
         else:
             body = choice(rows, quantity, reference["apart"][quantity])
+            lines += [CHOICE, ""] if quantity == "angle" else []
         lines += body
     lines += ["<details><summary>every run</summary>", ""] + run_table(rows) + ["</details>", ""]
     lost = failures(rows)
@@ -318,12 +332,17 @@ def renewed(page, sections, ratios, remark):
             page = own.sub(lambda _, text=body: text, page, count=1)
         else:
             page = page.replace("## Insertion from cold", body + "## Insertion from cold", 1)
+    header = "Below 10 from 1e-2 to 1e-5:\n\n"
     for title, by_quantity in ratios:
         for quantity, by_level in by_quantity.items():
             row = re.compile(r"^\| " + re.escape(f"{title}: {QUANTITIES[quantity]} |") + ".*$", re.MULTILINE)
             page = row.sub(lambda _, text=cells(title, quantity, by_level): text, page, count=1)
             page = re.sub(r"^- " + re.escape(f"{title}, {QUANTITIES[quantity]} to ") + r".*\n", "", page,
                           flags=re.MULTILINE)
+            page = page.replace(header, header + "".join(
+                f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}\n"
+                for level, ratio in by_level.items()
+                if 1e-5 <= level <= 1e-2 and (ratio == "peer only" or (isinstance(ratio, float) and ratio < 10.0))), 1)
     return page
 
 

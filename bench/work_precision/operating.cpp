@@ -396,8 +396,8 @@ std::vector<Contender> ownOperatingContenders(const OperatingProblem& problem)
 {
   std::vector<Contender> contenders;
   addSteps(
-      "ours, leapfrog", [&problem](double step, double limit) { return leapfrog(problem, Way::RING, step, limit); },
-      contenders);
+      "ours, leapfrog on the ring",
+      [&problem](double step, double limit) { return leapfrog(problem, Way::RING, step, limit); }, contenders);
   addSteps(
       "ours, leapfrog on the table",
       [&problem](double step, double limit) { return leapfrog(problem, Way::TABLE, step, limit); }, contenders);
