@@ -53,9 +53,10 @@ INTRODUCTION = """# Run time against error
 
 Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
 every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model, first against its
-peers and then as the levels of detail to choose from. **Error**: root mean square over the
-samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns, so disturbances of the
-machine affect all alike. Down and to the left is better.
+peers and then as the levels of detail to choose from. **Error**: root mean square over the samples, over the standard
+deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of
+one thread, median of the runs; the solvers take turns, so disturbances of the machine affect all alike. Down and to
+the left is better.
 
 Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank
 one, which would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and
