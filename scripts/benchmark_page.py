@@ -20,7 +20,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
 
-PROBLEMS = ["insertion", "drive", "drive_smooth", "drive_stiff10", "drive_stiff100", "operating"]
+PROBLEMS = ["insertion", "drive", "drive_smooth", "drive_stiff10", "drive_stiff100", "operating", "levels"]
 LEVELS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
 PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "libpetsc-real-dev", "r-cran-desolve",
             "libeigen3-dev", "g++"]
@@ -31,7 +31,11 @@ THESIS = "thesis: "
 # Colour by family, line by member.
 STYLES = {
     "ours, ESDIRK4": ("#D55E00", "-", "o", 2.4), "ours, TR-BDF2": ("#D55E00", "--", "s", 2.4),
-    "ours, DOP853": ("#D55E00", ":", "^", 2.4), "ours, leapfrog": ("#D55E00", "-", "o", 2.4),
+    "ours, DOP853": ("#D55E00", ":", "^", 2.4), "ours, leapfrog on the ring": ("#D55E00", "-", "o", 2.4),
+    "ours, leapfrog on the table": ("#D55E00", "--", "s", 2.4),
+    "ours, adaptive on the table": ("#882255", "-", "D", 2.4),
+    "ours, adaptive on the table, angles alone": ("#882255", ":", "d", 2.4),
+    "ours, table at the encoders' angles": ("#000000", "", "P", 1.0),
     "thesis: implicit Euler": ("#000000", "", "*", 1.0),
     "odeint RK4": ("#CC79A7", "-", "^", 1.2), "odeint dopri5": ("#CC79A7", "--", "v", 1.2),
     "CVODE, order 5, KLU": ("#0072B2", "-", "o", 1.2), "CVODE, order 2, KLU": ("#0072B2", "--", "s", 1.2),
@@ -48,10 +52,11 @@ STYLES = {
 INTRODUCTION = """# Run time against error
 
 Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
-every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model. **Error**: root mean
-square over the samples, over the standard deviation of the reference, over all angles, all tooth positions or all tooth
-forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns, so disturbances of the
-machine affect all alike. Down and to the left is better.
+every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model, first against its
+peers and then as the levels of detail to choose from. **Error**: root mean square over the samples, over the standard
+deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of
+one thread, median of the runs; the solvers take turns, so disturbances of the machine affect all alike. Down and to
+the left is better.
 
 Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank
 one, which would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and
@@ -73,14 +78,20 @@ Not measured here:
 - MuJoCo and Simbody: the ring can be described as 402 joints with a force callback; a prototype measured 13 (MuJoCo)
   and 26 to 59 times (Simbody) the time of a right-hand side for their trees of joints, at steps no longer than those of
   RK4. MuJoCo's implicit integrator does not see the callback's forces.
-- The cup's dry friction in the operating model: it sticks most of the time, in motion too, and a solver of smooth
-  equations can only approximate it by a steep slope. The leapfrog solves it exactly (`solver/dry_friction`). Where the
-  motor itself turns back, friction jumps: fixed steps meet that instant to within a step, and that may be why the
-  leapfrog shows first order only (not isolated); solvers that choose their steps find it.
+- The cup's friction in the operating model: a solver of smooth equations cannot have it. It is in the levels of detail,
+  where only ours run.
+- The static twin's points (`joint_twin stiffness` and others): they have no time.
+- Simbody and rosenbrock4 on the operating model: its four states have no structure for the first, and are not stiff.
 - IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the
   two angles, and those exist in equilibrium only.
 - The stiffer drives for as long as the drive: their explicit references need steps shorter by the root of the
   stiffness."""
+
+
+CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
+the table in equal steps for the live node and for inputs at every millisecond; the table in steps of its own length
+(`solver.stepper: adaptive`) offline, where inputs change seldom; the table at measured angles where there is a
+recording to follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -88,6 +99,11 @@ QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth 
 
 def error_of(row, quantity):
     return row["series_error"][quantity]
+
+
+def shown_error(error):
+    """As text; of what was not computed, a dash."""
+    return f"{error:.1e}" if error < 1e9 else "-"
 
 
 def finished(rows):
@@ -121,7 +137,7 @@ def family(rows, name):
 
 def table(header, rows):
     lines = [header, ["---"] * len(header)] + rows
-    return ["| " + " | ".join(str(cell) for cell in line) + " |" for line in lines] + [""]
+    return [table_row(line) for line in lines] + [""]
 
 
 def envelope(rows, quantity, apart):
@@ -151,13 +167,26 @@ def envelope(rows, quantity, apart):
     return table(header, lines), ratios
 
 
+def choice(rows, quantity, apart):
+    """Table of ours alone: times real time by level of detail and error; the problem takes a second."""
+    levels = [level for level in LEVELS if level >= apart]
+    header = [f"times real time at an error of {QUANTITIES[quantity]}", *(f"{level:.0e}" for level in levels)]
+    lines = []
+    for solver in dict.fromkeys(row["solver"] for row in rows):
+        best = [fastest([row for row in rows if row["solver"] == solver], quantity, level) for level in levels]
+        if any(best):
+            lines.append([solver.replace(OURS, ""),
+                          *(f"{1.0 / row['processor_time']:.3g} ({row['setting']})" if row else "-" for row in best)])
+    return table(header, lines)
+
+
 def run_table(rows):
     header = ["solver", "setting", "time [ms]", "least ... most", "runs", "angles", "positions", "forces",
               "forces at the end", "steps", "right-hand sides", "factorisations", "rejections"]
     return table(header, [[row["solver"], row["setting"], f"{1e3 * row['processor_time']:.3g}",
                            f"{1e3 * row['least']:.3g} ... {1e3 * row['most']:.3g}", row["runs"],
-                           *(f"{error_of(row, quantity):.1e}" for quantity in QUANTITIES),
-                           f"{row['end_error']['force']:.1e}", row["steps"], row["force_evaluations"],
+                           *(shown_error(row["series_error"][quantity]) for quantity in QUANTITIES),
+                           shown_error(row["end_error"]["force"]), row["steps"], row["force_evaluations"],
                            row["factorisations"], row["rejections"]] for row in finished(rows)])
 
 
@@ -175,7 +204,9 @@ def draw(rows, title, file):
         axes.grid(True, which="major", alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_ylabel("processor time [s]")
-    panels[1].legend(fontsize=7.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    entries = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
+    panels[1].legend(entries.values(), entries.keys(), fontsize=7.5, frameon=False, loc="center left",
+                     bbox_to_anchor=(1.0, 0.5))
     figure.suptitle(title, fontsize=9.5, x=0.02, ha="left", fontweight="bold")
     figure.savefig(file, metadata={"Software": None})
     plt.close(figure)
@@ -279,11 +310,49 @@ def section(problem, reference, rows, images):
              f"![{reference['title']}](images/benchmark/{problem}.png)", ""]
     ratios = {}
     for quantity in shown(rows):
-        body, ratios[quantity] = envelope(rows, quantity, reference["apart"][quantity])
+        if family(rows, "peers"):
+            body, ratios[quantity] = envelope(rows, quantity, reference["apart"][quantity])
+        else:
+            body = choice(rows, quantity, reference["apart"][quantity])
+            lines += [CHOICE, ""] if quantity == "angle" else []
         lines += body
     lines += ["<details><summary>every run</summary>", ""] + run_table(rows) + ["</details>", ""]
     lost = failures(rows)
     return lines, [f"**{reference['title']}**", "", *lost, ""] if lost else [], ratios
+
+
+def renewed(page, sections, ratios, remark):
+    """The page with these sections, by title, and the rows of these ratios in the table of all, in place of its own."""
+    def cells(title, quantity, by_level):
+        return table_row([f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)])
+
+    for title, lines in sections.items():
+        body = "\n".join([lines[0], "", remark, *lines[1:]]).rstrip() + "\n\n"
+        own = re.compile(r"^## " + re.escape(title) + r"\n.*?(?=^## )", re.MULTILINE | re.DOTALL)
+        if own.search(page):
+            page = own.sub(lambda _, text=body: text, page, count=1)
+        else:
+            page = page.replace("## Insertion from cold", body + "## Insertion from cold", 1)
+    header = "Below 10 from 1e-2 to 1e-5:\n\n"
+    for title, by_quantity in ratios:
+        for quantity, by_level in by_quantity.items():
+            row = re.compile(r"^\| " + re.escape(f"{title}: {QUANTITIES[quantity]} |") + ".*$", re.MULTILINE)
+            page = row.sub(lambda _, text=cells(title, quantity, by_level): text, page, count=1)
+            page = re.sub(r"^- " + re.escape(f"{title}, {QUANTITIES[quantity]} to ") + r".*\n", "", page,
+                          flags=re.MULTILINE)
+            page = page.replace(header, header + "".join(
+                f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}\n"
+                for level, ratio in by_level.items()
+                if 1e-5 <= level <= 1e-2 and (ratio == "peer only" or (isinstance(ratio, float) and ratio < 10.0))), 1)
+    return page
+
+
+def table_row(cells):
+    return "| " + " | ".join(str(cell) for cell in cells) + " |"
+
+
+def cell(ratio):
+    return "-" if ratio is None else ratio if isinstance(ratio, str) else f"{ratio:.2g}"
 
 
 def kinks(references):
@@ -299,9 +368,6 @@ def kinks(references):
 
 def verdict(sections):
     """How the best peer's time stands to ours: the targets, level by level."""
-    def cell(ratio):
-        return "-" if ratio is None else ratio if isinstance(ratio, str) else f"{ratio:.2g}"
-
     header = ["best peer's time over ours", *(f"{level:.0e}" for level in LEVELS)]
     body = []
     below, slower = [], []
@@ -364,6 +430,8 @@ def main():
     parser.add_argument("--limit", type=float, default=4.0,
                         help="processor time after which a run is given up [s] (default: 4)")
     parser.add_argument("--reuse", action="store_true", help="take references and results at hand, however old")
+    parser.add_argument("--into", metavar="REMARK",
+                        help="renew the sections of these problems in the page at hand, each with this remark")
     options = parser.parse_args()
     if options.quick:
         options.runs = min(options.runs, 3)
@@ -374,14 +442,24 @@ def main():
     progress = Progress(problems)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         measured = dict(zip(problems, pool.map(lambda problem: measure(problem, options, progress), problems)))
-    body, lost, ratios, solvers = [], [], [], set()
+    body, lost, ratios, solvers, sections = [], [], [], set(), {}
     for problem in problems:
         reference, rows = measured[problem]
         lines, missing, by_quantity = section(problem, reference, rows, images)
         body += lines
+        sections[reference["title"]] = lines
         lost += missing
-        ratios.append((reference["title"], by_quantity))
+        if by_quantity:
+            ratios.append((reference["title"], by_quantity))
         solvers |= {row["solver"] for row in rows}
+    page = os.path.join(options.docs, "benchmark.md")
+    if options.into:
+        with open(page, encoding="utf-8") as source:
+            text = renewed(source.read(), sections, ratios, options.into)
+        with open(page, "w", encoding="utf-8") as out:
+            out.write(text)
+        print(f"renewed {page}", file=sys.stderr)
+        return
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
     references = {problem: reference for problem, (reference, _) in measured.items()}
@@ -395,7 +473,6 @@ def main():
               f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} "
               f"runs of each, "
               "fewer of those that take longer: the tables say how many."]
-    page = os.path.join(options.docs, "benchmark.md")
     with open(page, "w", encoding="utf-8") as out:
         out.write("\n".join(lines).rstrip() + "\n")
     print(f"wrote {page}", file=sys.stderr)

@@ -17,8 +17,15 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
 #include "bench/work_precision/follow.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/surface/surface_source.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
+#include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
+#include "surface/surface_worker.hpp"
 #include "test/core/test_parameters.hpp"
+#include "twin/observed_ring.hpp"
 
 namespace hjt
 {
@@ -41,18 +48,37 @@ double motorTorque(double time)
 class Journey
 {
 public:
-  explicit Journey(const OperatingProblem& problem)
+  /// Where the ring's forces come from.
+  enum class Way
+  {
+    RING,         ///< it is solved at every step
+    TABLE,        ///< torques from the table; the ring is solved for the samples
+    TABLE_ANGLES  ///< as before, and of the samples the angles alone are taken
+  };
+
+  explicit Journey(const OperatingProblem& problem, Way way = Way::RING)
     : dynamics(problem.model, problem.parameters.solver)
+    , way_(way)
+    , observed_(problem.model.ring, problem.parameters.solver)
     , samples_(static_cast<int>(DURATION / SAMPLE_PERIOD + 0.5))
     , series_{ Eigen::MatrixXd(samples_, 2), Eigen::MatrixXd(samples_, 2 * teeth()),
                Eigen::MatrixXd(samples_, 2 * teeth()) }
   {
     dynamics.inputs.load_torque = LOAD;
+    dynamics.inputs.temperature = problem.parameters.input.temperature;
     if (!dynamics.solveAtRest().ok())
     {
       throw std::runtime_error("operating: no equilibrium to start from");
     }
     x[joint_state::OUTPUT_ANGLE] = dynamics.outputAngle();
+    if (way != Way::RING)
+    {
+      dynamics.useSurface(problem.surface.get());
+      if (!dynamics.placeOnSurface(0.0, dynamics.outputAngle()))
+      {
+        throw std::runtime_error("operating: not on the table at the start");
+      }
+    }
   }
 
   bool done() const { return taken_ == samples_; }
@@ -63,9 +89,19 @@ public:
   {
     (void)dynamics.place(state[joint_state::MOTOR_ANGLE], state[joint_state::OUTPUT_ANGLE]);  // its status is kept
     series_.angles.row(taken_) = state.head<2>();
-    series_.positions.row(taken_) = dynamics.ring().shape().points;
-    series_.forces.row(taken_) << dynamics.ring().forces().of<WaveGeneratorContact>().force.transpose(),
-        dynamics.ring().forces().of<ToothMesh>().flank_force.transpose();
+    const RingEquilibrium* ring = way_ == Way::TABLE_ANGLES ? nullptr : observed_.at(dynamics);
+    if (ring != nullptr)
+    {
+      series_.positions.row(taken_) = ring->shape().points;
+      series_.forces.row(taken_) << ring->forces().of<WaveGeneratorContact>().force.transpose(),
+          ring->forces().of<ToothMesh>().flank_force.transpose();
+    }
+    else
+    {
+      constexpr double NONE = 1e12;
+      series_.positions.row(taken_).setConstant(NONE);
+      series_.forces.row(taken_).setConstant(NONE);
+    }
     ++taken_;
   }
 
@@ -77,10 +113,13 @@ public:
 private:
   int teeth() const { return dynamics.ring().shape().teeth(); }
 
+  Way way_;
+  ObservedRing observed_;
   int samples_;
   Series series_;
   int taken_{};
 };
+using Way = Journey::Way;
 
 /// Samples that `advance` reaches one after the other; it steps up to a time and gives false if it fails.
 template <class Advance>
@@ -112,9 +151,9 @@ int stepsToASample(double step)
 
 /// The twin's own. Its speeds belong half a step ahead of its angles: a first kick of half a step from rest brings them
 /// there.
-Run leapfrog(const OperatingProblem& problem, double step, double limit)
+Run leapfrog(const OperatingProblem& problem, Way way, double step, double limit)
 {
-  Journey journey(problem);
+  Journey journey(problem, way);
   Leapfrog stepper;
   journey.dynamics.inputs.motor_torque = motorTorque(0.0);
   stepper.do_step(journey.dynamics, journey.x, 0.0, 0.5 * step);
@@ -132,6 +171,58 @@ Run leapfrog(const OperatingProblem& problem, double step, double limit)
                   run.steps += steps;
                   run.force_evaluations += steps;
                   return journey.x.allFinite();
+                });
+}
+
+/// The twin's own, in steps of their own length.
+Run adaptive(const OperatingProblem& problem, Way way, double tolerance, double limit)
+{
+  constexpr double FREQUENCY = 475.0;  // of the joint's swing [rad/s]
+  Journey journey(problem, way);
+  AdaptiveStepper stepper(journey.dynamics, tolerance, nominalRatio(problem.parameters.gear), FREQUENCY);
+  double torque = 0.0;
+  return travel(journey, limit,
+                [&](double /*due*/, Run& run)
+                {
+                  if (journey.dynamics.inputs.motor_torque != torque)
+                  {
+                    torque = journey.dynamics.inputs.motor_torque;
+                    stepper.start(journey.x);
+                  }
+                  double left = 0.0;
+                  const bool good = stepper.advance(SAMPLE_PERIOD, journey.x, left);
+                  run.steps += stepper.steps();
+                  run.force_evaluations += 6L * stepper.steps();
+                  return good;
+                });
+}
+
+/// The table at angles as the encoders give them, at 1 kHz: no motion is computed.
+Run motionDriven(const OperatingProblem& problem, double limit)
+{
+  constexpr double FINE = 1e-11;
+  constexpr int READINGS = 10;  // to a sample
+  const Series motion = adaptive(problem, Way::TABLE_ANGLES, FINE, limit).series;
+  Journey journey(problem, Way::TABLE);
+  const IncrementalEncoder motor(problem.parameters.sensors);
+  const AbsoluteEncoder output(problem.parameters.sensors);
+  Eigen::Index sample = 0;
+  return travel(journey, limit,
+                [&](double /*due*/, Run& run)
+                {
+                  for (int i = 0; i < READINGS; ++i)
+                  {
+                    journey.x[joint_state::MOTOR_ANGLE] = motor.angle(motor.count(motion.angles(sample, 0)));
+                    journey.x[joint_state::OUTPUT_ANGLE] = output.unwrappedAngle(motion.angles(sample, 1));
+                    if (!journey.dynamics.placeOnSurface(journey.x[joint_state::MOTOR_ANGLE],
+                                                         journey.x[joint_state::OUTPUT_ANGLE]))
+                    {
+                      return false;
+                    }
+                  }
+                  ++sample;
+                  run.steps += READINGS;
+                  return true;
                 });
 }
 
@@ -265,32 +356,73 @@ Run cvode(const OperatingProblem& problem, int method, double tolerance, double 
   return run;
 }
 
-Parameters parameters()
+Parameters parameters(OperatingProblem::Friction friction)
 {
   Parameters parameters = shippedParameters();
-  parameters.solver.force_tolerance = 1e-6;    // below what any of these steps leaves
-  parameters.solver.stiction_velocity = 1e-3;  // the others take friction at rest for a slope as steep as this
-  parameters.cup.friction_torque = 0.0;
+  parameters.solver.force_tolerance = 1e-6;  // below what any of these steps leaves
+  if (friction == OperatingProblem::Friction::FOR_PEERS)
+  {
+    parameters.solver.stiction_velocity = 1e-3;  // the others take friction at rest for a slope as steep as this
+    parameters.cup.friction_torque = 0.0;
+  }
   return parameters;
+}
+
+const std::vector<double> STEPS{ 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
+
+/// By steps of equal length [s].
+void addSteps(const std::string& solver, const std::function<Run(double step, double limit)>& run,
+              std::vector<Contender>& contenders)
+{
+  for (const double step : STEPS)
+  {
+    contenders.push_back(
+        { solver, "h = " + text("%.3g us", 1e6 * step), [=](double limit) { return run(step, limit); } });
+  }
+}
+
+void addTolerances(const std::string& solver, const OperatingProblem& problem, Way way,
+                   std::vector<Contender>& contenders)
+{
+  for (const double tolerance : { 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11 })
+  {
+    contenders.push_back({ solver, "tol = " + text("%.0e rad", tolerance),
+                           [=, &problem](double limit) { return adaptive(problem, way, tolerance, limit); } });
+  }
+}
+
+/// The twin's own: the ring, its table in equal steps, and in steps of their own length.
+std::vector<Contender> ownOperatingContenders(const OperatingProblem& problem)
+{
+  std::vector<Contender> contenders;
+  addSteps(
+      "ours, leapfrog on the ring",
+      [&problem](double step, double limit) { return leapfrog(problem, Way::RING, step, limit); }, contenders);
+  addSteps(
+      "ours, leapfrog on the table",
+      [&problem](double step, double limit) { return leapfrog(problem, Way::TABLE, step, limit); }, contenders);
+  addTolerances("ours, adaptive on the table", problem, Way::TABLE, contenders);
+  addTolerances("ours, adaptive on the table, angles alone", problem, Way::TABLE_ANGLES, contenders);
+  return contenders;
 }
 }  // namespace
 
-OperatingProblem::OperatingProblem() : parameters(hjt::parameters()), model(parameters) {}
+OperatingProblem::OperatingProblem(Friction friction)
+  : parameters(hjt::parameters(friction))
+  , model(parameters)
+  , surface(surfaceWithFaults(parameters, {}, SurfaceSource{ surfaceCacheDirectory() }))
+{
+  if (!surface)
+  {
+    throw std::runtime_error("operating: the gear has no table");
+  }
+}
 
 std::vector<Contender> operatingContenders(const OperatingProblem& problem)
 {
-  std::vector<Contender> contenders;
-  const double steps[] = { 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
-  for (const double step : steps)
-  {
-    contenders.push_back({ "ours, leapfrog", "h = " + text("%.3g us", 1e6 * step),
-                           [=, &problem](double limit) { return leapfrog(problem, step, limit); } });
-  }
-  for (const double step : steps)
-  {
-    contenders.push_back({ "odeint RK4", "h = " + text("%.3g us", 1e6 * step),
-                           [=, &problem](double limit) { return rungeKutta4(problem, step, limit); } });
-  }
+  std::vector<Contender> contenders = ownOperatingContenders(problem);
+  addSteps(
+      "odeint RK4", [&problem](double step, double limit) { return rungeKutta4(problem, step, limit); }, contenders);
   for (const double tolerance : { 1e-1, 1e-2, 1e-3, 1e-4, 1e-5 })
   {
     const std::string setting = "tol = " + text("%.0e", tolerance);
@@ -300,6 +432,25 @@ std::vector<Contender> operatingContenders(const OperatingProblem& problem)
                            [=, &problem](double limit) { return cvode(problem, CV_BDF, tolerance, limit); } });
     contenders.push_back({ "CVODE, Adams", setting,
                            [=, &problem](double limit) { return cvode(problem, CV_ADAMS, tolerance, limit); } });
+  }
+  return contenders;
+}
+
+std::vector<Contender> levelContenders(const OperatingProblem& problem)
+{
+  std::vector<Contender> contenders = ownOperatingContenders(problem);
+  contenders.push_back({ "ours, table at the encoders' angles", "1 kHz",
+                         [&problem](double limit) { return motionDriven(problem, limit); } });
+  return contenders;
+}
+
+std::vector<Contender> levelReferences(const OperatingProblem& problem)
+{
+  std::vector<Contender> contenders;
+  for (const double step : { 2e-6, 4e-6 })
+  {
+    contenders.push_back({ "leapfrog on the ring", "h = " + text("%.3g us", 1e6 * step),
+                           [=, &problem](double limit) { return leapfrog(problem, Way::RING, step, limit); } });
   }
   return contenders;
 }

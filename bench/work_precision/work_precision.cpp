@@ -148,8 +148,9 @@ int main(int argc, char** argv)
 {
   CLI::App app("Run time against error of solvers on the ring; one JSON line per solver and setting on stdout.");
   static const std::string OPERATING = "operating";
+  static const std::string LEVELS = "levels";
   std::vector<std::string> names = hjt::problemNames();
-  names.push_back(OPERATING);
+  names.insert(names.end(), { OPERATING, LEVELS });
   std::string name;
   std::string file;
   std::string only;
@@ -167,9 +168,17 @@ int main(int argc, char** argv)
   {
     if (name == OPERATING)
     {
-      const hjt::OperatingProblem problem;
+      const hjt::OperatingProblem problem(hjt::OperatingProblem::Friction::FOR_PEERS);
       runField({ name, "Operating model, ring in equilibrium, reversal, 1 s", 1.0, hjt::operatingContenders(problem),
                  hjt::operatingReferences(problem) },
+               reference, file, runs, limit, only);
+      return 0;
+    }
+    if (name == LEVELS)
+    {
+      const hjt::OperatingProblem problem(hjt::OperatingProblem::Friction::AS_SHIPPED);
+      runField({ name, "Levels of detail: shipped gear, all friction, reversal, 1 s", 1.0,
+                 hjt::levelContenders(problem), hjt::levelReferences(problem) },
                reference, file, runs, limit, only);
       return 0;
     }

@@ -142,6 +142,24 @@ TEST(AdaptiveStepper, errsLessByAFinerTolerance)
   }
 }
 
+TEST(AdaptiveStepper, followsRandomInputs)
+{
+  constexpr Stamp DURATION = 500 * MILLISECOND;
+  for (const unsigned seed : { 1u, 2u, 3u })
+  {
+    Inputs inputs = randomInputs(seed, DURATION, 1.0, 60.0);
+    for (Input& input : inputs)
+    {
+      input.stamp = (input.stamp / MILLISECOND + 1) * MILLISECOND;
+    }
+    // The drive's speed limit acts by the speed at the last instant.
+    const Course fixed = run(onSurface({ "solver.rate=200000" }), inputs, DURATION);
+    const Course course = run(adaptive("1.0e-8", { "solver.rate=10000" }), inputs, DURATION);
+    EXPECT_LT(between(fixed, course).output_angle, 1e-3) << seed;
+    EXPECT_LT(imbalance(course), 3e-3) << seed;
+  }
+}
+
 TEST(AdaptiveStepper, balancesItsEnergy)
 {
   EXPECT_LT(imbalance(run(adaptive("1.0e-7"), eventfulInputs(), EVENTFUL)), 3e-3);
