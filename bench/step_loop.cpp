@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop of `joint_twin simulate` in C++ alone, for bench/python_speed.py. Reads lines with a number of steps, and every
-// how many of them outputs and readings are kept; answers with the processor time that they took [s].
+// The loop of `joint_twin simulate` in C++ alone, for bench/python_speed.py. Reads lines with a number of steps, and
+// every how many of them outputs and readings are kept; answers with the processor time that they took [s].
 // Arguments: directory of the default configuration, scene (full_ring or auto).
 #include <ctime>
 #include <iostream>
