@@ -37,16 +37,16 @@ def compare(executable, scene):
     command = [executable, parameters.__getstate__()[0], scene]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as peer:
 
-        def in_cpp():
-            peer.stdin.write(f"{least}\n")
+        def in_cpp(every):
+            peer.stdin.write(f"{least} {every}\n")
             peer.stdin.flush()
             return float(peer.stdout.readline().split()[0])
 
-        in_cpp()
+        in_cpp(1)
         for steps, every in BLOCKS[scene]:
             twin = hjt.Twin(parameters)
             run(twin, steps, every, least)
-            times = [(in_cpp(), run(twin, steps, every, least)) for _ in range(REPEATS)]
+            times = [(in_cpp(every), run(twin, steps, every, least)) for _ in range(REPEATS)]
             ratio = statistics.median(cpp / python for cpp, python in times)
             cpp, python = (1e6 * statistics.median(column) / least for column in zip(*times))
             print(f"| {NAMES[scene]} | {steps} | {every} | {cpp:.3g} | {python:.3g} | {ratio:.3f} |", flush=True)

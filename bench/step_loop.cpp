@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop of `joint_twin simulate` in C++ alone, for bench/python_speed.py: reads a number of steps a line from standard
-// input and answers with the processor time that they took [s]. Arguments: directory of the default configuration,
-// scene (full_ring or auto).
+// The loop of `joint_twin simulate` in C++ alone, for bench/python_speed.py. Reads lines with a number of steps, and
+// every how many of them outputs and readings are kept; answers with the processor time that they took [s].
+// Arguments: directory of the default configuration, scene (full_ring or auto).
 #include <ctime>
 #include <iostream>
+#include <vector>
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
@@ -11,6 +12,13 @@
 
 namespace
 {
+struct Row
+{
+  hjt::JointOutputs outputs;
+  hjt::EncoderReadings encoders;
+  double motor_torque{};  // as read [N.m]
+};
+
 double processorTime()
 {
   timespec time{};
@@ -32,18 +40,24 @@ try
   hjt::readAssignment(std::string("solver.scene=") + argv[2], map);
   hjt::Twin twin(hjt::parseParameters(map), { hjt::surfaceCacheDirectory() });
   twin.commandLoadTorque(0, 20.0);
-  hjt::JointOutputs last;
-  for (long steps = 0; std::cin >> steps;)
+  std::vector<Row> rows(10000);
+  long every = 1;
+  for (long steps = 0; std::cin >> steps >> every;)
   {
+    std::size_t row = 0;
     const double begin = processorTime();
     for (long step = 0; step < steps; ++step)
     {
       const hjt::Stamp instant = twin.stamp() + twin.stepLength();
       twin.commandMotorTorque(instant, 0.45);
       twin.step(instant);
-      last = twin.outputs();
+      if (step % every == every - 1)
+      {
+        rows[row] = { twin.outputs(), twin.encoders(), twin.motorTorqueReading() };
+        row = row + 1 < rows.size() ? row + 1 : 0;
+      }
     }
-    std::cout << processorTime() - begin << ' ' << last.motor_angle << std::endl;
+    std::cout << processorTime() - begin << ' ' << rows[0].outputs.motor_angle << std::endl;
   }
   return 0;
 }

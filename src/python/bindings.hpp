@@ -76,8 +76,8 @@ std::string describeObject(const py::object& object);
 
 /// Adds a text to a class of plain values.
 template <class Class>
-void addText(Class& class_)
+void addText(Class& type)
 {
-  class_.def("__repr__", [](const py::object& self) { return describeObject(self); });
+  type.def("__repr__", [](const py::object& self) { return describeObject(self); });
 }
 }  // namespace hjt

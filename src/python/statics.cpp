@@ -103,9 +103,8 @@ std::vector<StiffnessRow> stiffness(const Configuration& parameters, const std::
   requireFinite("torques", torques);
   requireFinite("angle", { angle });
   std::vector<StiffnessRow> rows;
-  const Parameters given = parameters.values();
   withoutLock(
-      [&]
+      [&, given = parameters.values()]
       {
         InterruptCheck check;
         // No row depends on another.

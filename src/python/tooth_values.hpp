@@ -11,9 +11,9 @@ namespace hjt
 {
 /// Adds a vector of a class as an array that is a view of it.
 template <class Class, class Values>
-void addArray(Class& class_, const char* name, std::vector<double> Values::*values, const char* meaning)
+void addArray(Class& type, const char* name, std::vector<double> Values::*values, const char* meaning)
 {
-  class_.def_property_readonly(
+  type.def_property_readonly(
       name, [values](const py::object& self) { return viewOf(self.cast<const Values&>().*values, self); }, meaning);
 }
 

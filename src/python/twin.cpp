@@ -251,11 +251,15 @@ private:
     {
       return py::array_t<StepRow>(count);
     }
-    if (!py::isinstance<py::array_t<StepRow, py::array::c_style>>(out))
+    if (!py::isinstance<py::array_t<StepRow>>(out))
     {
-      throw InputError("out must be a contiguous array of dtype STEP_DTYPE");
+      throw InputError("out must be an array of dtype STEP_DTYPE");
     }
     auto rows = py::reinterpret_borrow<py::array_t<StepRow>>(out);
+    if (rows.ndim() == 1 && rows.strides(0) != py::ssize_t{ sizeof(StepRow) })
+    {
+      throw InputError("out must be contiguous");
+    }
     if (rows.ndim() != 1 || rows.size() != count || !rows.writeable())
     {
       throw InputError("out has " + std::to_string(rows.size()) + " rows in " + std::to_string(rows.ndim()) +

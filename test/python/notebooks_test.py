@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every notebook of docs/notebooks runs from a fresh kernel and leaves its picture. Arguments: the tool; optionally a folder
-that gets the pictures, as docs/images/notebooks."""
+"""Every notebook of docs/notebooks runs from a fresh kernel and leaves its picture. Arguments: the tool; optionally a
+folder that gets the pictures, as docs/images/notebooks."""
 import os
 import shutil
 import sys

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <iostream>
+#include <string>
+
+#include <Eigen/Dense>
+
+#include "apps/common/configuration.hpp"
+#include "apps/common/exit_code.hpp"
+#include "apps/common/not_converged.hpp"
+
+#include "base/number_text.hpp"
+#include "elements/motor.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "tracking/motion_driven.hpp"
+
+namespace hjt
+{
+namespace
+{
+struct ExportOptions : CommonOptions
+{
+  std::string format;
+};
+
+/// What other simulators can hold of the joint; all at the joint.
+struct ExportedJoint
+{
+  std::string name;
+  double friction{};            ///< dry, of a straight line through the friction over the speed [N.m]
+  double damping{};             ///< slope of that line [N.m.s/rad]
+  double friction_deviation{};  ///< largest of the twin's friction from it [N.m]
+  double armature{};            ///< of motor and wave generator [kg.m^2]
+  double stiffness{};           ///< in series, secant between plus and minus the rated torque [N.m/rad]
+  double inertia{};             ///< of circular spline and load [kg.m^2]
+  double effort{};              ///< largest torque [N.m]
+  double velocity{};            ///< largest speed [rad/s]
+};
+
+/// Straight line through the friction without load, over the speeds that the joint can have.
+void fitFriction(const Parameters& parameters, ExportedJoint& joint)
+{
+  constexpr int SPEEDS = 20;
+  const MotionDriven twin(parameters);
+  Eigen::MatrixX2d line(SPEEDS, 2);
+  Eigen::VectorXd friction(SPEEDS);
+  for (int i = 0; i < SPEEDS; ++i)
+  {
+    const double speed = joint.velocity * (i + 1) / SPEEDS;
+    line.row(i) << 1.0, speed;
+    friction[i] = twin.frictionAt(speed, 0.0, parameters.input.temperature);
+  }
+  const Eigen::Vector2d fitted = line.colPivHouseholderQr().solve(friction);
+  joint.friction = fitted[0];
+  joint.damping = fitted[1];
+  joint.friction_deviation = (line * fitted - friction).cwiseAbs().maxCoeff();
+}
+
+/// What the formats leave out, as the text of an XML comment.
+std::string missing(const ExportedJoint& joint, const Parameters& parameters, bool has_armature, bool has_stiffness)
+{
+  const auto text = [](double value) { return roundedText(value, 4); };
+  std::string lines =
+      "  Left out: friction by load and temperature (here: no load, " + text(parameters.input.temperature) +
+      " degC) and off its straight line (up to " + text(joint.friction_deviation) +
+      " N.m);\n  stiffness that grows with the torque, hysteresis, lost motion, kinematic error, backlash "
+      "of the brake, faults.\n";
+  lines += has_armature ?
+               "" :
+               "  Not in this format: inertia of the motor at the joint, " + text(joint.armature) + " kg.m^2.\n";
+  lines += has_stiffness ? "" : "  Not in this format: stiffness in series, " + text(joint.stiffness) + " N.m/rad.\n";
+  return "<!--\n  Joint " + joint.name + " of harmonic_joint_twin; SI units, at the joint.\n" + lines + "-->\n";
+}
+
+std::string attribute(const char* name, double value)
+{
+  return std::string(" ") + name + "=\"" + roundedText(value, 6) + '"';
+}
+
+std::string element(const char* name, double value)
+{
+  return std::string("<") + name + '>' + roundedText(value, 6) + "</" + name + '>';
+}
+
+std::string urdf(const ExportedJoint& joint, const Parameters& parameters)
+{
+  return missing(joint, parameters, false, false) + "<robot name=\"harmonic_joint\">\n  <link name=\"housing\"/>\n" +
+         "  <link name=\"output\"/>\n  <joint name=\"" + joint.name + "\" type=\"revolute\">\n" +
+         "    <parent link=\"housing\"/>\n    <child link=\"output\"/>\n    <axis xyz=\"0 0 1\"/>\n    <limit "
+         "lower=\"-6.28319\" "
+         "upper=\"6.28319\"" +
+         attribute("effort", joint.effort) + attribute("velocity", joint.velocity) + "/>\n    <dynamics" +
+         attribute("damping", joint.damping) + attribute("friction", joint.friction) + "/>\n  </joint>\n</robot>\n";
+}
+
+std::string sdfLink(const char* name, double inertia)
+{
+  // The mass turns about its own axis and counts for nothing.
+  return std::string("    <link name=\"") + name + "\">\n      <inertial><mass>1</mass><inertia>" +
+         element("ixx", inertia) + element("iyy", inertia) + element("izz", inertia) +
+         "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>\n    </link>\n";
+}
+
+/// The motor's inertia is a link of its own, before the spring of the gear.
+std::string sdf(const ExportedJoint& joint, const Parameters& parameters)
+{
+  const std::string axis = "      <axis>\n        <xyz>0 0 1</xyz>\n        ";
+  return missing(joint, parameters, true, true) + "<sdf version=\"1.7\">\n  <model name=\"harmonic_joint\">\n" +
+         sdfLink("motor", joint.armature) + sdfLink("output", joint.inertia) + "    <joint name=\"" + joint.name +
+         "\" type=\"revolute\">\n      <parent>world</parent>\n      <child>motor</child>\n" + axis + "<limit>" +
+         element("effort", joint.effort) + element("velocity", joint.velocity) + "</limit>\n        <dynamics>" +
+         element("damping", joint.damping) + element("friction", joint.friction) +
+         "</dynamics>\n      </axis>\n    </joint>\n    <joint name=\"" + joint.name +
+         "_torsion\" type=\"revolute\">\n      <parent>motor</parent>\n      <child>output</child>\n" + axis +
+         "<dynamics>" + element("spring_reference", 0.0) + element("spring_stiffness", joint.stiffness) +
+         "</dynamics>\n      </axis>\n    </joint>\n  </model>\n</sdf>\n";
+}
+
+std::string mjcfInertial(double inertia)
+{
+  const std::string text = roundedText(inertia, 6);
+  return "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"" + text + ' ' + text + ' ' + text + "\"/>\n";
+}
+
+std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
+{
+  return missing(joint, parameters, true, true) +
+         "<mujoco model=\"harmonic_joint\">\n  <compiler angle=\"radian\"/>\n  <worldbody>\n    <body "
+         "name=\"motor\">\n      " +
+         mjcfInertial(1e-6) + "      <joint name=\"" + joint.name + "\" type=\"hinge\" axis=\"0 0 1\"" +
+         attribute("damping", joint.damping) + attribute("frictionloss", joint.friction) +
+         attribute("armature", joint.armature) + "/>\n      <body name=\"output\">\n        " +
+         mjcfInertial(joint.inertia) + "        <joint name=\"" + joint.name +
+         "_torsion\" type=\"hinge\" axis=\"0 0 1\"" + attribute("stiffness", joint.stiffness) +
+         "/>\n      </body>\n    </body>\n  </worldbody>\n  <actuator>\n    <motor joint=\"" + joint.name +
+         "\" ctrllimited=\"true\" ctrlrange=\"-" + roundedText(joint.effort, 6) + ' ' + roundedText(joint.effort, 6) +
+         "\"/>\n  </actuator>\n</mujoco>\n";
+}
+
+int exportJoint(const ExportOptions& options)
+{
+  const Parameters parameters = loadParameters(options);
+  const double ratio = nominalRatio(parameters.gear);
+  const double rated = parameters.life.rated_torque;
+  const std::vector<StiffnessRow> rows = analyseStiffness(parameters, 0.0, { -rated, rated });
+  for (const StiffnessRow& row : rows)
+  {
+    if (!row.status.ok())
+    {
+      return notConverged("the rated torque", row.status);
+    }
+  }
+  ExportedJoint joint;
+  joint.name = parameters.joint.name;
+  joint.velocity = parameters.motor.speed_limit / ratio;
+  joint.effort = parameters.motor.torque_limit * ratio;
+  joint.armature = Motor(parameters.motor).inertia() * ratio * ratio;
+  joint.inertia = parameters.output.circular_spline_inertia + parameters.output.load_inertia;
+  joint.stiffness = 2.0 * rated / (rows[0].output_angle - rows[1].output_angle);
+  fitFriction(parameters, joint);
+  std::cout << (options.format == "urdf" ? urdf : options.format == "sdf" ? sdf : mjcf)(joint, parameters);
+  return EXIT_DONE;
+}
+
+void declare(Command& command, ExportOptions& options)
+{
+  command.add("--format", options.format, "what is written to stdout: a joint with its damping and friction")
+      .required()
+      .choice({ "urdf", "sdf", "mjcf" });
+  addConfigurationOptions(command, options);
+}
+
+const Subcommand EXPORT{ Subject::JOINT, "export", "the joint for other simulators: URDF, SDF or MJCF", declare,
+                         exportJoint };
+}  // namespace
+}  // namespace hjt
