@@ -416,7 +416,8 @@ TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
   EXPECT_EQ(assessor_.assessment().level, HealthLevel::OK);
 }
 
-/// Windows of a sound joint at any temperature: friction and stiffness go with it, the stiffness with a spread of its own.
+/// Windows of a sound joint at any temperature: friction and stiffness go with it, the stiffness with a spread of its
+/// own.
 class AtAnyTemperature : public testing::Test
 {
 protected:
