@@ -393,8 +393,8 @@ def measured_noise(bench, day):
     quiet = [f"  sensors.{name}: 0.0" for name in ("motor_noise", "output_noise", "torque_noise", "torque_resolution")]
     exact = {row["class"]: run for row, run in
              bench.sweep("check_exact", CONDITION + EXACT + quiet, classes, ["check_up"], overlays, columns=READ)}
-    runs = bench.sweep("noise", LITTLE + WHITE, ["  healthy: []"], ["check_up"], overlays, NOISE_SEEDS, LITTLE_LOAD, READ,
-                       seed=2)
+    runs = bench.sweep("noise", LITTLE + WHITE, ["  healthy: []"], ["check_up"], overlays, NOISE_SEEDS, LITTLE_LOAD,
+                       READ, seed=2)
     return exact, Noise(exact["healthy"], [run for _, run in runs], day)
 
 
@@ -431,7 +431,7 @@ def main():
     found = bounds(bench, kinds, nuisances, noise)
     lines = [*table(kinds, found), "", "Alike (cosine of the changes, nuisances out): " + ("; ".join(
         f"`{one}` and `{other}` {cosine:.2f}" for one, other, cosine in alike(kinds, found)) or "none") + ".", "",
-             f"By brute force, `{CHECKED[0]}` at {CHECKED[1]}, {CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise:",
+             f"By brute force, `{CHECKED[0]}` at {CHECKED[1]}, {CHECK_SEEDS} sound and as many faulty runs with noise:",
              "", "| resolution of the encoders | d′ predicted | d′ of the matched filter | found at 5 % false alarms "
              "| predicted |",
              "|---|---|---|---|---|"]

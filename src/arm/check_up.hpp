@@ -28,9 +28,9 @@ struct ArmInstant
   std::vector<double> torques;      ///< that make the motion, at the outputs [N.m]
 };
 
-/// The motion in which a joint's faults are looked for: slow one way and the other over all of its stroke, for stiffness
-/// and friction by load; to and fro where the load goes through zero, for clearance and loop; fast. The joint moves
-/// alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose.
+/// The motion in which a joint's faults are looked for: slow one way and the other over all of its stroke, for
+/// stiffness and friction by load; to and fro where the load goes through zero, for clearance and loop; fast. The joint
+/// moves alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose.
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
 /// The moves at the times k `period` [s], at rest before and after. @throws ParameterError naming the joint that goes

@@ -23,7 +23,7 @@ Assessor::Assessor(const Parameters& parameters)
 void Assessor::reset() noexcept
 {
   baseline_.reset();
-  deviations_.fill({});
+  deviations_ = {};
   assessment_ = {};
   worse_ = 0;
   better_ = 0;
@@ -45,9 +45,20 @@ const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
       break;
   }
   assessment_.state = AssessmentState::ASSESSED;
-  const FeatureScores scores = featureScores(deviations_);
-  updateLevel(levelOf(scores));
-  explain(indicators, scores);
+  const FeatureScores plain = featureScores(deviations_.plain);
+  const FeatureScores conditional = featureScores(deviations_.conditional);
+  assessment_.largest_score = 0.0;
+  const HealthLevel level = levelOf(plain);
+  updateLevel(std::max(level, levelOf(conditional)));
+  // The signatures are of what a fault does to each indicator: where only their relation shows it, the cause is open.
+  if (level != HealthLevel::OK)
+  {
+    explain(indicators, plain, deviations_.plain, causeProbabilities(plain));
+  }
+  else
+  {
+    explain(indicators, conditional, deviations_.conditional, {});
+  }
   return assessment_;
 }
 
@@ -60,7 +71,7 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
     largest = std::max(largest, std::abs(feature.score));
     factor = std::max(factor, feature.threshold_factor);
   }
-  assessment_.largest_score = largest / baseline_.threshold();
+  assessment_.largest_score = std::max(assessment_.largest_score, largest / baseline_.threshold());
   if (largest <= baseline_.threshold())
   {
     return HealthLevel::OK;
@@ -98,7 +109,8 @@ void Assessor::updateLevel(HealthLevel level) noexcept
   }
 }
 
-void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
+void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& scores, const Deviations& deviations,
+                       const std::array<double, CAUSE_COUNT>& probabilities) noexcept
 {
   if (assessment_.level == HealthLevel::OK)
   {
@@ -111,8 +123,7 @@ void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& 
   {
     return;  // no evidence in this window: the causes stand until the level falls
   }
-  // That something is wrong is settled: only what, is asked.
-  const std::array<double, CAUSE_COUNT> probabilities = causeProbabilities(scores);
+  // That something is wrong is settled: only what, is asked. All zero: NONE, the first.
   const auto best = std::max_element(probabilities.begin(), probabilities.end());
   assessment_.cause = static_cast<Cause>(best - probabilities.begin());
   assessment_.confidence = *best;
@@ -127,7 +138,7 @@ void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& 
       break;
     }
     assessment_.evidence[assessment_.evidence_count++] = { feature.indicator, indicators.values[feature.indicator],
-                                                           deviations_[feature.indicator].expected, feature.score };
+                                                           deviations[feature.indicator].expected, feature.score };
   }
 }
 }  // namespace hjt

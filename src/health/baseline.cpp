@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <boost/math/distributions/normal.hpp>
 
 #include "gear/angle.hpp"
@@ -17,7 +18,10 @@ namespace
 constexpr double LOAD_STEP = 0.375;        // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr int MIN_COUNT = 8;  // windows before a spread means anything; as least of indicators.baseline_windows
+constexpr int MIN_COMMON = 16;             // windows before correlations mean anything
+constexpr double LEAST_LEFT = 1e-4;        // of a variance by the common causes: they are known no better
+constexpr int ITERATIONS = 30;  // for a principal component: its line is narrow enough long before it is exact
+constexpr int MIN_COUNT = 8;    // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {
@@ -79,7 +83,7 @@ Baseline::Baseline(const Parameters& parameters)
   , least_spread_(parameters.indicators.least_spread)
   , load_step_(hjt::loadStep(parameters))
 {
-  const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
+  const double share = parameters.indicators.false_alarm_rate / static_cast<double>(4 * INDICATOR_COUNT);
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / std::exp2(parameters.sensors.output_bits));
@@ -122,9 +126,53 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   return &bins_.back();
 }
 
-BaselineState Baseline::update(const SignalIndicators& indicators, Deviations& deviations) noexcept
+void findCommonCauses(ReferenceBin& bin) noexcept
 {
-  deviations.fill({});
+  using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
+  Vector scale = Vector::Zero();  // 0: left out
+  int used = 0;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    Reference& reference = bin.references[i];
+    reference.common = {};
+    if (bin.windows >= MIN_COMMON && reference.count == bin.windows && reference.squares > 0.0)
+    {
+      scale[static_cast<Eigen::Index>(i)] = 1.0 / std::sqrt(reference.squares);
+      ++used;
+    }
+  }
+  Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT> correlation =
+      Eigen::Map<const Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT>>(bin.products.front().data());
+  correlation = scale.asDiagonal() * correlation * scale.asDiagonal();
+  const double edge = std::pow(1.0 + std::sqrt(used / std::max(bin.windows - 1.0, 1.0)), 2);
+  for (std::size_t cause = 0; cause < COMMON_CAUSES && used > 0; ++cause)
+  {
+    Eigen::Index widest = 0;
+    correlation.diagonal().maxCoeff(&widest);
+    Vector direction = correlation.col(widest);
+    double size = 0.0;
+    for (int i = 0; i < ITERATIONS && direction.squaredNorm() > 0.0; ++i)
+    {
+      direction.normalize();
+      direction = correlation * direction;
+      size = direction.norm();
+    }
+    if (!(size > edge))
+    {
+      return;
+    }
+    direction.normalize();
+    correlation -= size * direction * direction.transpose();
+    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    {
+      bin.references[i].common[cause] = std::sqrt(size) * direction[static_cast<Eigen::Index>(i)];
+    }
+  }
+}
+
+BaselineState Baseline::update(const SignalIndicators& indicators, WindowDeviations& deviations) noexcept
+{
+  deviations = {};
   ReferenceBin* bin = find(binOf(indicators.point, load_step_));
   if (bin == nullptr)
   {
@@ -132,46 +180,115 @@ BaselineState Baseline::update(const SignalIndicators& indicators, Deviations& d
   }
   if (!given_ && bin->windows < windows_)
   {
-    ++bin->windows;
-    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-    {
-      if (std::isfinite(indicators.values[i]))
-      {
-        bin->references[i].add(indicators.values[i]);
-      }
-    }
+    learn(*bin, indicators);
     return BaselineState::LEARNING;
   }
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    deviations[i] = compare(i, *bin, indicators);
-  }
+  compare(*bin, indicators, deviations);
   return BaselineState::COMPARED;
 }
 
-Deviation Baseline::compare(std::size_t indicator, const ReferenceBin& bin,
-                            const SignalIndicators& indicators) const noexcept
+void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept
+{
+  ++bin.windows;
+  std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    if (std::isfinite(indicators.values[i]))
+    {
+      before[i] = indicators.values[i] - bin.references[i].mean;
+      bin.references[i].add(indicators.values[i]);
+    }
+  }
+  const double weight = (bin.windows - 1.0) / bin.windows;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    for (std::size_t j = 0; j < INDICATOR_COUNT; ++j)
+    {
+      bin.products[i][j] += weight * before[i] * before[j];
+    }
+  }
+  if (bin.windows == windows_)
+  {
+    findCommonCauses(bin);
+  }
+}
+
+double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
+                          double share) const noexcept
 {
   const Reference& reference = bin.references[indicator];
-  Deviation deviation;
-  const double value = indicators.values[indicator];
-  if (reference.count < MIN_COUNT || !std::isfinite(value))
-  {
-    return deviation;
-  }
-  const double n = reference.count;
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
   const double error = indicators.uncertainty[indicator];
-  const double variance = std::max(reference.variance(), error * error) * (1.0 + 1.0 / n) + least * least +
-                          floor_[indicator] * floor_[indicator];
-  deviation.expected = reference.mean;
-  deviation.spread = std::sqrt(variance);
-  if (variance > 0.0)
+  return std::max(share * reference.variance(), error * error) * (1.0 + 1.0 / reference.count) + least * least +
+         floor_[indicator] * floor_[indicator];
+}
+
+Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
+{
+  Deviation deviation;
+  deviation.expected = expected;
+  deviation.spread = spread;
+  if (spread > 0.0)
   {
-    const double student = (value - reference.mean) / deviation.spread;
-    deviation.score = normalScore(student, n - 1.0);
-    deviation.threshold_factor = std::abs(student) / studentOf(threshold_, n - 1.0);
+    const double student = difference / spread;
+    deviation.score = normalScore(student, freedom);
+    deviation.threshold_factor = std::abs(student) / studentOf(threshold_, freedom);
   }
   return deviation;
+}
+
+void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicators,
+                       WindowDeviations& deviations) const noexcept
+{
+  // Woodbury's identity: C^-1 = D^-1 - D^-1 F (1 + F' D^-1 F)^-1 F' D^-1, F with a row for each indicator.
+  using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
+  std::array<Causes, INDICATOR_COUNT> rows;
+  std::array<double, INDICATOR_COUNT> own{};  // diagonal of D, 0: not compared
+  std::array<double, INDICATOR_COUNT> difference{};
+  Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES> inner;
+  inner.setIdentity();
+  Causes projected = Causes::Zero();
+  double causes = 0.0;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const Reference& reference = bin.references[i];
+    if (reference.count < MIN_COUNT || !std::isfinite(indicators.values[i]))
+    {
+      continue;
+    }
+    const double n = reference.count;
+    difference[i] = indicators.values[i] - reference.mean;
+    deviations.plain[i] =
+        deviation(difference[i], reference.mean, std::sqrt(variance(i, bin, indicators, 1.0)), n - 1.0);
+    const Causes common = Eigen::Map<const Causes>(reference.common.data());
+    const double found = static_cast<double>((common.array() != 0.0).count());
+    const double left = std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0) / (n - 1.0 - found);
+    causes = std::max(causes, found);
+    own[i] = variance(i, bin, indicators, left);
+    if (own[i] > 0.0)
+    {
+      rows[i] = std::sqrt(reference.variance() * (1.0 + 1.0 / n)) * common;
+      inner += rows[i] * rows[i].transpose() / own[i];
+      projected += rows[i] * (difference[i] / own[i]);
+    }
+  }
+  if (causes == 0.0)
+  {
+    return;
+  }
+  inner = inner.inverse().eval();
+  const Causes explained = inner * projected;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    if (own[i] > 0.0)
+    {
+      const double weighted = (difference[i] - rows[i].dot(explained)) / own[i];        // of C^-1 (x - m)
+      const double precision = (1.0 - rows[i].dot(inner * rows[i]) / own[i]) / own[i];  // of C^-1
+      const double spread = 1.0 / std::sqrt(precision);
+      const double unexpected = weighted / precision;
+      deviations.conditional[i] =
+          deviation(unexpected, indicators.values[i] - unexpected, spread, bin.references[i].count - 1.0 - causes);
+    }
+  }
 }
 }  // namespace hjt

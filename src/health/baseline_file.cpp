@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "health/baseline_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -36,14 +37,16 @@ ReferenceBin readBin(const YAML::Node& node)
   {
     const auto numbers = entry.second.as<std::vector<double>>();
     const auto name = entry.first.as<std::string>();
-    if (numbers.size() != 3 || numbers[0] < 1.0 || !std::isfinite(numbers[1]) || !(numbers[2] >= 0.0))
+    const bool has_common = numbers.size() == 3 + COMMON_CAUSES;
+    if ((numbers.size() != 3 && !has_common) || numbers[0] < 1.0 || !std::isfinite(numbers[1]) || !(numbers[2] >= 0.0))
     {
-      throw InputError(name + " must be [windows >= 1, mean, spread >= 0]");
+      throw InputError(name + " must be [windows >= 1, mean, spread >= 0], and shares of common causes or none");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
     reference.mean = numbers[1];
     reference.squares = numbers[2] * numbers[2] * (numbers[0] - 1.0);
+    std::copy(numbers.begin() + 3, numbers.end(), reference.common.begin());
   }
   return bin;
 }
@@ -88,11 +91,13 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
   std::ostringstream text;
   text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
           "K.\n"
-          "# Each indicator: [windows, mean, spread], units as in docs/indicators.md.\n"
+          "# Each indicator: [windows, mean, spread, share of it that goes with each common cause], units as in "
+          "docs/indicators.md.\n"
           "load_step: "
        << numberText(baseline.loadStep()) << "\nbaseline:\n";
-  for (const ReferenceBin& bin : baseline.bins())
+  for (ReferenceBin bin : baseline.bins())
   {
+    findCommonCauses(bin);
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    indicators:\n";
     for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -101,7 +106,12 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
       if (reference.count > 0)
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
-             << numberText(std::sqrt(reference.variance())) << "]\n";
+             << numberText(std::sqrt(reference.variance()));
+        for (const double share : reference.common)
+        {
+          text << ", " << numberText(share);
+        }
+        text << "]\n";
       }
     }
   }

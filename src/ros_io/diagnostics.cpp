@@ -31,6 +31,10 @@ const char* stateText(LoopState state)
 
 std::string verdictText(const Assessment& assessment)
 {
+  if (assessment.level != HealthLevel::OK && assessment.cause == Cause::NONE)
+  {
+    return "The indicators depart from each other, cause not known";
+  }
   if (assessment.level != HealthLevel::OK)
   {
     std::ostringstream text;

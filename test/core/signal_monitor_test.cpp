@@ -416,6 +416,54 @@ TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
   EXPECT_EQ(assessor_.assessment().level, HealthLevel::OK);
 }
 
+/// Windows of a sound joint at any temperature: friction and stiffness go with it, the stiffness with a spread of its
+/// own.
+class AtAnyTemperature : public testing::Test
+{
+protected:
+  AtAnyTemperature()
+  {
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      assess(normal_(random_), normal_(random_));
+    }
+  }
+
+  const Assessment& assess(double temperature, double stiffness)
+  {
+    SignalIndicators window;
+    window.point = { 100.0, 1.0, 30.0, 25.0 };
+    window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 - 0.02 * temperature + noise();
+    window.values[indexOf(ScalarIndicator::COULOMB_TORQUE)] = 0.10 - 0.01 * temperature + noise();
+    window.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = 25000.0 + 300.0 * temperature + 10.0 * stiffness;
+    const std::uint64_t before = allocationCount();
+    assessor_.update(window);
+    EXPECT_EQ(allocationCount(), before);
+    return assessor_.assessment();
+  }
+
+  double noise() { return 1e-4 * normal_(random_); }
+
+  Assessor assessor_{ shippedParameters({ "indicators.least_spread=0.0" }) };
+  std::mt19937 random_{ 7 };
+  std::normal_distribution<double> normal_;
+};
+
+TEST_F(AtAnyTemperature, WhatTemperatureMovesTogetherIsNoFault)
+{
+  EXPECT_LT(assess(2.0, 0.0).largest_score, 1.0);
+  EXPECT_LT(assess(-2.0, 1.0).largest_score, 1.0);
+}
+
+TEST_F(AtAnyTemperature, ARelationThatBreaksIsSeenWhereEachIndicatorIsOrdinary)
+{
+  assess(1.0, -20.0);  // as stiff as at -1 spread, with the friction of 1 spread
+  const Assessment& found = assess(1.0, -20.0);
+  EXPECT_NE(found.level, HealthLevel::OK);
+  EXPECT_EQ(found.cause, Cause::NONE);
+  EXPECT_LT(std::abs(assessor_.deviations()[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)].score), 2.0);
+}
+
 TEST(Signatures, EveryCauseIsItsOwnMostLikelyOne)
 {
   constexpr double SIZE = 40.0;  // far above the noise

@@ -45,8 +45,8 @@ struct Assessment
   std::uint64_t windows{};  ///< windows seen
   AssessmentState state{};
   HealthLevel level{};
-  Cause cause{};           ///< NONE at level OK
-  double confidence{};     ///< probability of the cause among all of the table, 0 at level OK [-]
+  Cause cause{};           ///< NONE at level OK, and where only the relation of the indicators speaks for the level
+  double confidence{};     ///< probability of the cause among all of the table, 0 with NONE [-]
   double largest_score{};  ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
   std::size_t evidence_count{};
   std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first
@@ -54,9 +54,9 @@ struct Assessment
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
-/// WARN: an indicator beyond the baseline's threshold. ERROR: beyond indicators.error_factor times it. The level
-/// changes after indicators.confirm_windows windows in a row that say the same or worse (up), or better (down). While
-/// the operating point has no reference, the last verdict stands.
+/// WARN: an indicator beyond the baseline's threshold, by itself or given all others. ERROR: beyond
+/// indicators.error_factor times it. The level changes after indicators.confirm_windows windows in a row that say the
+/// same or worse (up), or better (down). While the operating point has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -70,17 +70,18 @@ public:
 
   const Assessment& assessment() const noexcept { return assessment_; }
   const Baseline& baseline() const noexcept { return baseline_; }
-  const Deviations& deviations() const noexcept { return deviations_; }  ///< of the last window
+  const Deviations& deviations() const noexcept { return deviations_.plain; }  ///< of the last window
 
 private:
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
   void updateLevel(HealthLevel level) noexcept;
-  void explain(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
+  void explain(const SignalIndicators& indicators, const FeatureScores& scores, const Deviations& deviations,
+               const std::array<double, CAUSE_COUNT>& probabilities) noexcept;
 
   const int confirm_windows_;
   const double error_factor_;
   Baseline baseline_;
-  Deviations deviations_;
+  WindowDeviations deviations_;
   Assessment assessment_;
   int worse_{};   // windows in a row that say worse than the level
   int better_{};  // and better

@@ -32,6 +32,9 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 /// That of this gear [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
+/// What moves healthy indicators together from one window to another, as temperature, its curve and load do.
+constexpr std::size_t COMMON_CAUSES = 3;
+
 /// Mean and spread of one healthy indicator (Welford's sums).
 struct Reference
 {
@@ -41,6 +44,8 @@ struct Reference
   int count{};       // windows that determined it
   double mean{};     // unit of the indicator
   double squares{};  // sum of squares about the mean
+  /// Shares of the spread that go with each common cause, of unit variance; from findCommonCauses [-]
+  std::array<double, COMMON_CAUSES> common{};
 };
 
 struct ReferenceBin
@@ -48,7 +53,14 @@ struct ReferenceBin
   OperatingBin bin;
   int windows{};
   std::array<Reference, INDICATOR_COUNT> references;
+  /// Sums of products of two indicators about their means, of the windows that were learned.
+  std::array<std::array<double, INDICATOR_COUNT>, INDICATOR_COUNT> products{};
 };
+
+/// Fills Reference::common from `products`: the first principal components of the windows' correlations, as many as
+/// stand out of noise, COMMON_CAUSES at most: eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators
+/// in n windows (Marchenko and Pastur 1967). None from fewer than 16 windows. Does not allocate.
+void findCommonCauses(ReferenceBin& bin) noexcept;
 
 /// One indicator against its reference.
 struct Deviation
@@ -62,6 +74,13 @@ struct Deviation
 };
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
+
+/// All indicators of a window against their references.
+struct WindowDeviations
+{
+  Deviations plain;        ///< each by itself
+  Deviations conditional;  ///< each given all others: what the common causes explain is none
+};
 
 enum class BaselineState : std::uint8_t
 {
@@ -77,8 +96,12 @@ enum class BaselineState : std::uint8_t
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
 ///          0.3 for kurtosis, 0.5 for crest
+/// Given the others, with what moves all of them together:
+///        z_i = (C^-1 (x - m))_i / sqrt((C^-1)_ii),  C = D + F F',  of n - 1 - r degrees of freedom
+/// where  F    s times Reference::common, r columns;  D  diagonal: variance as above, of what F leaves of s
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
-/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
+/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators in both
+/// ways, two-sided (Bonferroni).
 class Baseline
 {
 public:
@@ -91,7 +114,7 @@ public:
 
   void reset() noexcept;  ///< forgets what was learned, not what was given
 
-  BaselineState update(const SignalIndicators& indicators, Deviations& deviations) noexcept;
+  BaselineState update(const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
@@ -100,7 +123,13 @@ public:
 
 private:
   ReferenceBin* find(const OperatingBin& bin) noexcept;
-  Deviation compare(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
+  void learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
+  /// Of what the mean leaves of an indicator; `share`: of the spread's square that counts [-].
+  double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
+                  double share) const noexcept;
+  Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
+  void compare(const ReferenceBin& bin, const SignalIndicators& indicators,
+               WindowDeviations& deviations) const noexcept;
 
   const int windows_;
   const double least_spread_;

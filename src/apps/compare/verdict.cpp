@@ -303,9 +303,14 @@ Finding judgeSignals(const RecordingComparison& comparison, const JointContext& 
     finding.text = windows + ": nothing out of the ordinary.";
     return finding;
   }
-  finding.causes = { comparison.cause() };
+  const bool known = comparison.cause() != Cause::NONE;
+  if (known)
+  {
+    finding.causes = { comparison.cause() };
+  }
   finding.text = "From " + rounded(comparison.alarmTime(), 1) + " s on the signals depart from " + reference +
-                 ". Most likely cause: " + causeName(comparison.cause()) + ". Strongest: ";
+                 (known ? std::string(". Most likely cause: ") + causeName(comparison.cause()) : ", cause not known") +
+                 ". Strongest: ";
   for (std::size_t i = 0; i < assessment.evidence_count; ++i)
   {
     const Evidence& evidence = assessment.evidence[i];
