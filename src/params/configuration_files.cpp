@@ -32,13 +32,22 @@ fs::path findDirectory(const std::string& given)
 
 fs::path packageDirectory()
 {
-  // The library PREFIX/lib/libharmonic_joint_twin_core.so belongs to PREFIX/share/harmonic_joint_twin.
+  // PREFIX/share/harmonic_joint_twin belongs to the executable PREFIX/lib/harmonic_joint_twin/joint_twin, and to the
+  // library PREFIX/lib/libharmonic_joint_twin_core.so where another program has loaded it.
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   static const int HERE = 0;
   Dl_info library{};
-  const bool found = dladdr(&HERE, &library) != 0;
-  const fs::path installed =
-      fs::absolute(found ? library.dli_fname : "").parent_path() / "../share/harmonic_joint_twin";
-  return fs::exists(installed / "config" / STAGES) ? installed.lexically_normal() : fs::path(HJT_SOURCE_DIR);
+  const fs::path loaded = dladdr(&HERE, &library) != 0 ? library.dli_fname : "";
+  for (const fs::path& beside : { executable.parent_path() / "../..", fs::absolute(loaded).parent_path() / ".." })
+  {
+    const fs::path installed = beside / "share/harmonic_joint_twin";
+    if (fs::exists(installed / "config" / STAGES))
+    {
+      return installed.lexically_normal();
+    }
+  }
+  return HJT_SOURCE_DIR;
 }
 
 fs::path configurationDirectory(const std::string& given)

@@ -36,7 +36,8 @@ class Export(tool.ToolTest):
         if shutil.which("check_urdf"):
             with open(self.path("joint.urdf"), "w", encoding="utf-8") as file:
                 file.write(self.export("urdf"))
-            done = subprocess.run(["check_urdf", self.path("joint.urdf")], stdout=subprocess.PIPE, text=True, check=True)
+            done = subprocess.run(["check_urdf", self.path("joint.urdf")], stdout=subprocess.PIPE, text=True,
+                                  check=True)
             self.assertIn("Successfully Parsed", done.stdout)
 
     def test_sdf_and_mjcf_hold_inertia_and_stiffness_too(self):
