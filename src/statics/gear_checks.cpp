@@ -17,7 +17,7 @@ constexpr int POSITIONS = 4;  // of a tooth pitch, for the efficiency
 
 std::string shortNumber(double value)
 {
-  return roundedText(value, 4);
+  return roundedText(value, 5);
 }
 
 /// The drive that is checked: nothing on it that is meant to be wrong.
@@ -72,6 +72,10 @@ std::string jamOf(const Parameters& parameters)
 
 std::vector<std::string> gearWarnings(const Parameters& parameters)
 {
+  if (const std::string jam = jamOf(parameters); !jam.empty())
+  {
+    return { jam };
+  }
   const Parameters sound = soundGear(parameters);
   const GearParameters& gear = sound.gear;
   std::vector<std::string> warnings;

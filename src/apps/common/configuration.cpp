@@ -114,17 +114,18 @@ Parameters loadParameters(const CommonOptions& options)
   return parameters;
 }
 
-Parameters loadGear(const CommonOptions& options)
+void printGearWarnings(const Parameters& parameters)
 {
-  Parameters parameters = loadParameters(options);
-  if (const std::string jam = jamOf(parameters); !jam.empty())
-  {
-    throw ParameterError(jam);
-  }
   for (const std::string& warning : gearWarnings(parameters))
   {
     std::cerr << "joint_twin: warning: " << warning << '\n';
   }
+}
+
+Parameters loadGear(const CommonOptions& options)
+{
+  Parameters parameters = loadParameters(options);
+  printGearWarnings(parameters);
   return parameters;
 }
 }  // namespace hjt

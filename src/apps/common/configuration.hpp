@@ -53,7 +53,9 @@ void addFaults(const CommonOptions& options, Parameters& parameters);
 /// The same, checked, with the faults of `--fault`. @throws ParameterError.
 Parameters loadParameters(const CommonOptions& options);
 
-/// The same for a gear that is to turn: a warning on stderr for each value that does not go with the others.
-/// @throws ParameterError if its teeth jam.
+/// A warning on stderr for each value of the gear that does not go with the others.
+void printGearWarnings(const Parameters& parameters);
+
+/// The parameters, with those warnings. @throws ParameterError.
 Parameters loadGear(const CommonOptions& options);
 }  // namespace hjt

@@ -17,7 +17,6 @@
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
-#include "statics/gear_checks.hpp"
 #include "statics/gear_design.hpp"
 
 namespace hjt
@@ -161,10 +160,7 @@ int gear(const GearOptions& options)
   const Parameters parameters = parseParameters(design.map);
   write(options, design, parameters,
         "a gear of size " + shortNumber(options.request.size) + ", ratio " + std::to_string(options.request.ratio));
-  for (const std::string& warning : gearWarnings(parameters))
-  {
-    std::cerr << "joint_twin: warning: " << warning << '\n';
-  }
+  printGearWarnings(parameters);
   printReport(options.json,
               { { "catalogue", "catalogue's figures", catalogue.scaled ? "size 25 scaled" : "HFUS/CSF, TPI 275" } },
               { { "figures", Table(FIGURE_COLUMNS, figuresOf(parameters, catalogue)) } });

@@ -119,10 +119,11 @@ void run(Twin& twin, TorqueProfile& profile, Stamp end, Recorder& recorder)
 int simulate(const SimulateOptions& options)
 {
   const std::string extension = std::filesystem::path(options.out).extension().string();
-  const Parameters parameters = loadGear(options);
+  const Parameters parameters = loadParameters(options);
   requireWritable(options.out, options.force, options.profile);
   TorqueProfile profile = makeProfile(options);
   Twin twin(parameters, surfaceSource());
+  printGearWarnings(parameters);
   twin.reset(SIMULATION_EPOCH);
   const RunSummary summary{ options.out, twin.stamp() };
   const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
