@@ -141,14 +141,14 @@ std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& st
     instants.push_back(instant);
   };
   double begin = REST;  // of the move
-  const auto addUntil = [&](double end, const auto& motion, const ArmPose& target)
+  const auto add_until = [&](double end, const auto& motion, const ArmPose& target)
   {
     for (double time = 0.0; (time = static_cast<double>(instants.size()) * period) < end;)
     {
       add(target, motion(time));
     }
   };
-  addUntil(
+  add_until(
       REST, [](double) { return JointMotion{}; }, from);
   for (const ArmMove& move : moves)
   {
@@ -160,13 +160,13 @@ std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& st
     if (distance > 0.0)
     {
       const Trapezoid trapezoid(distance, move.speed, move.acceleration);
-      addUntil(
+      add_until(
           begin + trapezoid.duration(), [&](double time) { return trapezoid.at(time - begin); }, move.target);
       begin += trapezoid.duration();
     }
     from = move.target;
   }
-  addUntil(
+  add_until(
       begin + REST, [](double) { return JointMotion{}; }, from);
   return instants;
 }
