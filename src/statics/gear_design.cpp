@@ -319,13 +319,13 @@ double GearFigures::torsion(double torque) const
 
 GearFigures gearFigures(const GearRequest& request)
 {
-  const auto ratingOf = [&](const CatalogueSize& size)
+  const auto rating_of = [&](const CatalogueSize& size)
   {
     return std::find_if(size.ratings.begin(), size.ratings.end(),
                         [&](const CatalogueSize::Rating& rating) { return rating.ratio == request.ratio; });
   };
   const auto same_size = [&](const CatalogueSize& size) { return size.size == request.size; };
-  const auto figuresOf = [](const CatalogueSize& size, const CatalogueSize::Rating& rating, double cube, bool scaled)
+  const auto figures_of = [](const CatalogueSize& size, const CatalogueSize::Rating& rating, double cube, bool scaled)
   {
     GearFigures figures;
     const auto& stiffness = rating.ratio < 80 ? size.stiffness_of_50 : size.stiffness;
@@ -346,9 +346,9 @@ GearFigures gearFigures(const GearRequest& request)
     return figures;
   };
   const auto size = std::find_if(catalogue().begin(), catalogue().end(), same_size);
-  if (size != catalogue().end() && ratingOf(*size) != size->ratings.end())
+  if (size != catalogue().end() && rating_of(*size) != size->ratings.end())
   {
-    return figuresOf(*size, *ratingOf(*size), 1.0, false);
+    return figures_of(*size, *rating_of(*size), 1.0, false);
   }
   const CatalogueSize& known = *std::find_if(catalogue().begin(), catalogue().end(),
                                              [](const CatalogueSize& other) { return other.size == CONFIGURED_SIZE; });
@@ -356,7 +356,7 @@ GearFigures gearFigures(const GearRequest& request)
                                         [&](const auto& a, const auto& b) {
                                           return std::abs(a.ratio - request.ratio) < std::abs(b.ratio - request.ratio);
                                         });
-  return figuresOf(known, *nearest, std::pow(request.size / CONFIGURED_SIZE, 3), true);
+  return figures_of(known, *nearest, std::pow(request.size / CONFIGURED_SIZE, 3), true);
 }
 
 GearDesign designGear(const ParameterMap& configured, const GearRequest& request, const GearFigures& figures)

@@ -175,13 +175,13 @@ TEST(RaceCreep, FollowsTheBendingAtTheLobesAndIsHeldBackByTheStretchedRim)
 
 TEST(RaceCreep, OfALooseRaceLagsByTheDifferenceOfCircumferences)
 {
-  const auto creepOfWorn = [](double depth)
+  const auto creep_of_worn = [](double depth)
   {
     Parameters parameters = shippedParameters();
     parameters.faults.push_back({ FaultKind::INTERFACE_WEAR, depth / parameters.fault_scale.interface_wear_depth });
     return RevolutionLoadAnalysis(parameters, POSITIONS).under(67.0).race_creep;
   };
-  const double lag = creepOfWorn(4e-6) - creepOfWorn(6e-6);
+  const double lag = creep_of_worn(4e-6) - creep_of_worn(6e-6);
   EXPECT_GT(lag, TWO_PI * 2e-6);
   EXPECT_LT(lag, 2.0 * TWO_PI * 2e-6);  // the loaded rim touches nearer to the lobes
 }
