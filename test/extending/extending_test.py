@@ -9,7 +9,7 @@ The lines before the first hunk of the patch hold
   Run:     the command, found in the built package's folders of programs
   Edits:   how many edits the example may take
   Apart:   files that are not counted, such as those of a parameter that comes with the example (optional)
-New files together count as one edit, every changed file as one. All examples share BUILD_DIR/extending, so that only
+New files together count as one edit, every changed file as one. All examples share BUILD_DIR/.extending, so that only
 the first one pays for what they have in common.
 """
 import filecmp
@@ -89,7 +89,8 @@ def main():
     if len(edits) > int(fields["Edits"]):
         fail("more edits than the example may take")
 
-    folder = pathlib.Path(sys.argv[2]).resolve() / "extending"
+    # Hidden: roslaunch looks for launch files in all other folders of a package.
+    folder = pathlib.Path(sys.argv[2]).resolve() / ".extending"
     copy, build = folder / "source", folder / "build"
     synchronise(copy)
     run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path.resolve()], cwd=copy)
