@@ -48,12 +48,9 @@ public:
 private:
   std::vector<std::string>& warnings_;
 };
-}  // namespace
-
-std::string jamOf(const Parameters& parameters)
+/// Of a sound gear and its fit.
+std::string jamText(const Parameters& sound, const FitCheck& fit)
 {
-  const Parameters sound = soundGear(parameters);
-  const FitCheck fit = checkFit(sound);
   if (!fit.jams())
   {
     return "";
@@ -69,14 +66,22 @@ std::string jamOf(const Parameters& parameters)
          " [m] for this number of teeth, radius, rim and tooth height; mesh.flank_clearance = " +
          shortNumber(sound.mesh.flank_clearance) + " [m]";
 }
+}  // namespace
+
+std::string jamOf(const Parameters& parameters)
+{
+  const Parameters sound = soundGear(parameters);
+  return jamText(sound, checkFit(sound));
+}
 
 std::vector<std::string> gearWarnings(const Parameters& parameters)
 {
-  if (const std::string jam = jamOf(parameters); !jam.empty())
-  {
-    return { jam };
-  }
   const Parameters sound = soundGear(parameters);
+  const FitCheck fit = checkFit(sound);
+  if (fit.jams())
+  {
+    return { jamText(sound, fit) };
+  }
   const GearParameters& gear = sound.gear;
   std::vector<std::string> warnings;
   Nearness near(warnings);
@@ -89,7 +94,6 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
              "that of gear.rim_thickness, life.face_width and the number of teeth");
   near.check("ring.tension_stiffness", sound.ring.tension_stiffness, "N/m", 2.5 * rimTensionStiffness(sound), 2.5,
              "2.5 times the section of the rim under the teeth, which bear a part");
-  const FitCheck fit = checkFit(sound);
   if (!fit.status.ok())
   {
     warnings.push_back("no equilibrium without load: " + explanationOf(fit.status));

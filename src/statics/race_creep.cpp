@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "elements/race_fit.hpp"
-#include "gear/angle.hpp"
+#include "statics/gear_rules.hpp"
 
 namespace hjt
 {
@@ -13,7 +13,7 @@ RaceCreep::RaceCreep(const Parameters& parameters)
   : lever_(parameters.contact.slip_lever)
   , radius_(parameters.gear.flexspline_inner_radius)
   , fit_(raceFit(parameters))
-  , rest_length_(2.0 * radius_ * std::sin(PI / parameters.gear.teeth_flexspline))
+  , rest_length_(segmentLength(parameters.gear))
 {
 }
 
