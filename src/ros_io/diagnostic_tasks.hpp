@@ -44,7 +44,7 @@ inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVer
 class DiagnosticTasks
 {
 public:
-  static constexpr double LOOK_PERIOD = 0.05;  ///< between two calls of `look` [s]
+  static constexpr double LOOK_PERIOD = 0.2;  ///< between two calls of `look` [s]
 
   /// `name`: of the twin, before that of each task.
   DiagnosticTasks(const std::string& name, const std::string& hardware_id)

@@ -26,12 +26,14 @@ class OutputChannel
 public:
   OutputChannel(ros::NodeHandle* node, const Channel<Message>& channel, const Message& first)
     : ring_(channel.slots, first)
-    , publisher_(node->advertise<Message>(channel.name, static_cast<std::uint32_t>(channel.slots)))
   {
+    const auto count = [this](int by)
+    { return [this, by](const ros::SingleSubscriberPublisher&) { subscribers_ += by; }; };
+    publisher_ = node->advertise<Message>(channel.name, static_cast<std::uint32_t>(channel.slots), count(1), count(-1));
   }
 
-  /// Loop: whether anybody listened when last looked.
-  bool isWanted() const noexcept { return has_subscribers_.load(std::memory_order_relaxed); }
+  /// Whether anybody listens.
+  bool isWanted() const noexcept { return subscribers_.load(std::memory_order_relaxed) > 0; }
 
   /// Loop: lets `fill(Message&)` write the next message, unless it returns false. A full ring drops it and counts.
   template <class Fill>
@@ -60,16 +62,13 @@ public:
     }
   }
 
-  /// Publisher thread: asks roscpp, which locks and counts, who listens.
-  void refreshSubscribers() { has_subscribers_.store(publisher_.getNumSubscribers() > 0, std::memory_order_relaxed); }
-
   ChannelCounters counters(const char* name) const noexcept { return { name, computed_, dropped_ }; }
 
 private:
   SlotRing<Message> ring_;
-  ros::Publisher publisher_;
-  std::atomic<bool> has_subscribers_{ false };
+  std::atomic<int> subscribers_{ 0 };
   std::atomic<std::uint64_t> computed_{ 0 };
   std::atomic<std::uint64_t> dropped_{ 0 };
+  ros::Publisher publisher_;  // last: its callbacks use the rest
 };
 }  // namespace hjt

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/output_publishers.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <sstream>
@@ -11,12 +12,10 @@ namespace
 {
 using std::chrono::milliseconds;
 
-/// Between two looks at the rings: well under the shortest publish period in use.
-constexpr milliseconds DRAIN_PERIOD{ 1 };
-/// While there are subscribers: how long a new one may go unnoticed, in drain periods.
-constexpr int HEARD_REFRESH = 5;
-/// While there are none, between two looks for some.
-constexpr milliseconds IDLE_PERIOD{ 20 };
+/// How long a message waits at most if the loop's wake-up was missed: it does not wait for the mutex.
+constexpr milliseconds DRAIN_PERIOD{ 20 };
+/// The same for a change of the faults while there are no subscribers.
+constexpr milliseconds IDLE_PERIOD{ 100 };
 /// Slots for lists of faults: one more change has to wait for the next instant.
 constexpr std::size_t FAULT_SLOTS = 16;
 }  // namespace
@@ -33,7 +32,11 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
 
 OutputPublishers::~OutputPublishers()
 {
-  stopping_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(wake_up_mutex_);
+    stopping_ = true;
+  }
+  wake_up_.notify_one();
   thread_.join();
 }
 
@@ -41,6 +44,15 @@ void OutputPublishers::offer(Twin& twin) noexcept
 {
   offerFaults(twin);
   outputs_.offer(twin);
+}
+
+Stamp OutputPublishers::finishCycle(Stamp instant) noexcept
+{
+  if (isHeard())
+  {
+    wake_up_.notify_one();
+  }
+  return outputs_.nextDue(instant);
 }
 
 /// The list of faults, once after each change.
@@ -88,30 +100,26 @@ std::array<ChannelCounters, CHANNEL_COUNT> OutputPublishers::counters() const no
   return outputs_.collect([](const auto& channel, const auto& sink) { return sink.counters(channel.name); });
 }
 
+bool OutputPublishers::isHeard() const noexcept
+{
+  const auto heard = outputs_.collect([](const auto&, const auto& sink) { return sink.isWanted(); });
+  return std::any_of(heard.begin(), heard.end(), [](bool one) { return one; });
+}
+
 void OutputPublishers::run()
 {
-  const auto drain = [this]
+  std::unique_lock<std::mutex> lock(wake_up_mutex_);
+  for (bool stopping = false; !stopping;)
   {
+    if (!stopping_)
+    {
+      wake_up_.wait_for(lock, isHeard() ? DRAIN_PERIOD : IDLE_PERIOD);
+    }
+    stopping = stopping_;
+    lock.unlock();
     outputs_.forEachSink([](auto& sink) { sink.drain(); });
     drainFaults();
-  };
-  for (int round = 0; !stopping_;)
-  {
-    bool heard = false;
-    outputs_.forEachSink(
-        [round, &heard](auto& sink)
-        {
-          if (round == 0)
-          {
-            sink.refreshSubscribers();
-          }
-          heard = heard || sink.isWanted();
-        });
-    drain();
-    // While nobody hears there is nothing to drain: only to see whether somebody comes.
-    std::this_thread::sleep_for(heard ? DRAIN_PERIOD : IDLE_PERIOD);
-    round = heard ? (round + 1) % HEARD_REFRESH : 0;
+    lock.lock();
   }
-  drain();
 }
 }  // namespace hjt

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <atomic>
+#include <condition_variable>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -28,8 +28,9 @@ public:
   /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
   void offer(Twin& twin) noexcept;
 
-  /// Loop: the next instant after this one whose messages somebody hears [ns].
-  Stamp nextHeard(Stamp instant) const noexcept { return outputs_.nextDue(instant); }
+  /// Loop: has the messages filled since the last call sent. Returns the next instant after this one whose messages
+  /// somebody hears [ns]. No allocation, no lock that anybody holds for long.
+  Stamp finishCycle(Stamp instant) noexcept;
 
   /// The faults published last, for a human reader.
   std::string activeFaults() const;
@@ -46,13 +47,16 @@ private:
   void offerFaults(const Twin& twin) noexcept;
   void drainFaults();
   void run();
+  bool isHeard() const noexcept;
 
+  std::mutex wake_up_mutex_;
+  std::condition_variable wake_up_;
+  bool stopping_{};  // under wake_up_mutex_
   Outputs<OutputChannel> outputs_;
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
   ros::Publisher faults_publisher_;
   std::uint64_t offered_faults_;  // version of the list that was offered last
-  std::atomic<bool> stopping_{ false };
   mutable std::mutex text_mutex_;
   std::string active_faults_;
   std::thread thread_;

@@ -22,10 +22,13 @@ using std::chrono::steady_clock;
 
 /// Of the loop, by the wall clock.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
+/// The longest of the shortest sleeps while somebody awaits every instant: their messages go out together, and fewer
+/// threads are woken.
+constexpr milliseconds SHORT_PAUSE{ 4 };
 /// The longest sleep, while nobody awaits an instant: how long a request may wait for its answer.
-constexpr milliseconds MAX_PAUSE{ 16 };
+constexpr milliseconds MAX_PAUSE{ 50 };
 /// Simulated at most in one cycle, more than MAX_PAUSE, so that the loop stays responsive while it catches up [ns].
-constexpr Stamp MAX_CATCH_UP = 20'000'000;
+constexpr Stamp MAX_CATCH_UP = 60'000'000;
 /// A smaller step back, as time synchronisation makes, is waited out [ns].
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// How long a request waits for the loop.
@@ -36,6 +39,14 @@ constexpr std::size_t STACK_SIZE = 256 * 1024;
 Stamp nanoseconds(steady_clock::duration duration)
 {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Between two cycles whose messages are awaited: short beside the delay that the twin keeps anyway.
+steady_clock::duration shortestPause(Stamp input_delay)
+{
+  constexpr int SHARE = 5;
+  return std::clamp<steady_clock::duration>(input_delay / SHARE / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD,
+                                            CYCLE_PERIOD, SHORT_PAUSE);
 }
 
 /// Has the pages of the stack mapped before the first cycle needs them.
@@ -59,14 +70,15 @@ void prepareThread()
 }  // namespace
 
 TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
-                   NextAwaited next_awaited)
+                   AfterCycle after_cycle)
   : twin_(twin)
   , inbox_(inbox)
   , clock_(std::move(clock))
   , clock_kind_(clock_kind)
   , after_step_(std::move(after_step))
-  , next_awaited_(std::move(next_awaited))
+  , after_cycle_(std::move(after_cycle))
   , input_delay_(toStampLength(twin.parameters().input.delay))
+  , shortest_pause_(after_cycle_ ? shortestPause(input_delay_) : CYCLE_PERIOD)
   , deadline_(toStampLength(twin.parameters().realtime.deadline))
   , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
   , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
@@ -104,7 +116,7 @@ void TwinLoop::run()
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
     // Without a sleep while it catches up, however short those cycles: they add nothing to the sleep after them.
-    const auto length = pause();
+    const auto length = pause(after_cycle_ ? after_cycle_(twin_.stamp()) : twin_.stamp());
     wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + length, end) : end;
     if (wake_up > end)
     {
@@ -120,14 +132,15 @@ void TwinLoop::run()
 }
 
 /// From one wake-up to the next: to the next awaited instant, in whole periods.
-steady_clock::duration TwinLoop::pause() const noexcept
+steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
 {
-  if (!next_awaited_ || clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
+  if (clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
   {
     return CYCLE_PERIOD;
   }
-  const Stamp ahead = next_awaited_(twin_.stamp()) + input_delay_ - status_.clock;
-  return std::clamp<steady_clock::duration>(ahead / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD, CYCLE_PERIOD, MAX_PAUSE);
+  const Stamp ahead = next_awaited + input_delay_ - status_.clock;
+  return std::clamp<steady_clock::duration>(ahead / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD, shortest_pause_,
+                                            MAX_PAUSE);
 }
 
 void TwinLoop::cycle() noexcept

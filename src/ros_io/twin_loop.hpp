@@ -79,19 +79,21 @@ struct LoopStatus
 /// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
 /// it.
 ///
-/// On a clock that runs, the loop sleeps until the next instant that somebody awaits, one to MAX_PAUSE. What it
-/// simulates then is what it would have simulated in between: inputs act by their stamps.
+/// On a clock that runs, the loop sleeps until the next instant that somebody awaits, at least a fifth of `input.delay`
+/// (one to SHORT_PAUSE), at most MAX_PAUSE. What it simulates then is what it would have simulated in between: inputs
+/// act by their stamps.
 class TwinLoop
 {
 public:
   using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
   using AfterStep = std::function<void(Twin&)>;  ///< called at every simulated instant; must not wait or allocate
-  /// The next instant after this one whose result somebody awaits [ns]; neither waits nor allocates.
-  using NextAwaited = std::function<Stamp(Stamp)>;
+  /// Called after each cycle with the instant it has reached; returns the next one whose result somebody awaits [ns].
+  /// Must not wait or allocate.
+  using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// Starts the thread. Without `next_awaited` every instant is awaited.
+  /// Starts the thread. Without `after_cycle` every instant is awaited.
   TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
-           NextAwaited next_awaited = {});
+           AfterCycle after_cycle = {});
 
   /// Stops the thread.
   ~TwinLoop();
@@ -106,7 +108,7 @@ public:
 
 private:
   void run();
-  std::chrono::steady_clock::duration pause() const noexcept;
+  std::chrono::steady_clock::duration pause(Stamp next_awaited) const noexcept;
   void cycle() noexcept;
   bool readClock(Stamp now) noexcept;
   void answerRequests(Stamp limit, std::size_t waiting) noexcept;
@@ -124,8 +126,9 @@ private:
   Clock clock_;
   const ClockKind clock_kind_;
   AfterStep after_step_;
-  NextAwaited next_awaited_;
+  AfterCycle after_cycle_;
   const Stamp input_delay_;
+  const std::chrono::steady_clock::duration shortest_pause_;
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;

@@ -54,7 +54,7 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
           const JointOutputs& joint = twin.outputs();
           life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
         },
-        [this](Stamp instant) { return publishers_.nextHeard(instant); })
+        [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(parameters.realtime, loop_))
   , subscribers_(node, parameters, inbox_)
   , timing_publisher_(node, parameters, loop_)

@@ -2,7 +2,6 @@
 #include "surface/surface_worker.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <sstream>
 #include <string>
@@ -14,8 +13,6 @@ namespace hjt
 {
 namespace
 {
-constexpr std::chrono::milliseconds LOOK_PERIOD{ 20 };
-
 /// Thrown out of the report of progress to end the building.
 struct GivenUp : std::exception
 {
@@ -71,35 +68,43 @@ SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faul
 
 SurfaceWorker::~SurfaceWorker()
 {
-  stopping_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  wake_up_.notify_one();
   thread_.join();
 }
 
 bool SurfaceWorker::request(const FaultList& faults) noexcept
 {
-  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock())
   {
     return false;
   }
   faults_ = faults;
   asked_.fetch_add(1, std::memory_order_relaxed);
+  lock.unlock();
+  wake_up_.notify_one();
   return true;
 }
 
 void SurfaceWorker::run()
 {
-  for (std::uint64_t taken = 0; !stopping_; std::this_thread::sleep_for(LOOK_PERIOD))
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (std::uint64_t taken = 0; !stopping_;)
   {
     if (taken == asked_)
     {
+      wake_up_.wait(lock);
       continue;
     }
-    std::unique_lock<std::mutex> lock(mutex_);
     const FaultList faults = faults_;
     taken = asked_;
     lock.unlock();
     obtain(taken, faults);
+    lock.lock();
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <mutex>
 #include <thread>
@@ -48,6 +49,7 @@ private:
   std::atomic<std::uint64_t> asked_{ 1 };  // requests so far
   std::atomic<std::uint64_t> done_{ 0 };   // the request that surface_ is for
   std::atomic<bool> stopping_{ false };
+  std::condition_variable wake_up_;
   std::thread thread_;
 };
 }  // namespace hjt

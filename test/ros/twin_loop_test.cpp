@@ -217,7 +217,7 @@ TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)
   setClock(103 * SECOND);
   const LoopTiming timing = loop_->status().timing;
   EXPECT_EQ(timing.lateness.largest(), 3 * SECOND - INPUT_DELAY - 6 * MILLISECOND);
-  EXPECT_GE(timing.missed_deadlines, 140U) << "one a cycle of 20 ms, until it has caught up";
+  EXPECT_GE(timing.missed_deadlines, 47U) << "one a cycle of 60 ms, until it has caught up";
   EXPECT_EQ(timing.simulated, 3 * SECOND - INPUT_DELAY);
   EXPECT_GT(timing.wake_up.count(), 0U);
   EXPECT_GT(timing.longest_cycle, 0);
@@ -253,11 +253,11 @@ TEST_F(LoopFixture, SleepsUntilTheNextInstantThatIsAwaited)
     return loop.status().cycles - before;
   };
   waitFor([&loop] { return loop.status().state == LoopState::RUNNING; });
-  EXPECT_LT(cycles_in_a_second(), 100U);
+  EXPECT_LT(cycles_in_a_second(), 40U);
   EXPECT_LT(loop.status().timing.lateness.quantile(0.1), 8 * MILLISECOND) << "a sleep counted as late";
   EXPECT_EQ(loop.status().timing.missed_deadlines, 0U);
   period = MILLISECOND;
-  EXPECT_GT(cycles_in_a_second(), 150U);
+  EXPECT_GT(cycles_in_a_second(), 100U) << "every 4 ms";
   ASSERT_TRUE(loop.reset());
   ASSERT_GT(instants_.size(), 1500U);
   for (std::size_t i = 1; i < 1500; ++i)
