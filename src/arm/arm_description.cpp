@@ -26,6 +26,43 @@ std::string textOf(const std::filesystem::path& path)
   return text.str();
 }
 
+std::string beside(const std::filesystem::path& path, const std::string& name)
+{
+  return (path.parent_path() / name).string();
+}
+
+/// The file's map; the description as found from here.
+YAML::Node load(const std::string& path)
+{
+  try
+  {
+    YAML::Node root = YAML::Load(textOf(path));
+    const YAML::Node& read = root;
+    if (read.IsMap() && read["description"] && read["description"].IsScalar())
+    {
+      root["description"] = beside(path, read["description"].Scalar());
+    }
+    return root;
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw ParameterError(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+  }
+}
+
+/// `base` with the keys of `over`, whose `like` has named it.
+YAML::Node overlaid(YAML::Node base, const YAML::Node& over)
+{
+  for (const auto& entry : over)
+  {
+    if (entry.first.Scalar() != "like")
+    {
+      base[entry.first.Scalar()] = entry.second;
+    }
+  }
+  return base;
+}
+
 /// One map of the file; `place` is its name in error texts.
 class Section
 {
@@ -105,20 +142,19 @@ ArmJoint readJoint(const std::string& place, const YAML::Node& node)
 
 ArmDescription readArmDescription(const std::string& path)
 {
-  const std::string text = textOf(path);
-  YAML::Node root;
-  try
+  YAML::Node root = load(path);
+  const Section own(path, root, { "like", "description", "base", "tip", "gravity", "payload", "joints" });
+  if (own.has("like"))
   {
-    root = YAML::Load(text);
-  }
-  catch (const YAML::Exception& error)
-  {
-    throw ParameterError(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    const std::string other = beside(path, own.value<std::string>("like"));
+    const YAML::Node base = load(other);
+    const Section whole(other, base, { "description", "base", "tip", "gravity", "payload", "joints" });
+    root = overlaid(base, root);
   }
   const Section section(path, root, { "description", "base", "tip", "gravity", "payload", "joints" });
   ArmDescription arm;
   arm.origin = path;
-  arm.urdf = textOf(std::filesystem::path(path).parent_path() / section.value<std::string>("description"));
+  arm.urdf = textOf(section.value<std::string>("description"));
   arm.base = section.value<std::string>("base");
   arm.tip = section.value<std::string>("tip");
   arm.gravity = section.value<std::array<double, 3>>("gravity");

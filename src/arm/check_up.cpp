@@ -16,6 +16,7 @@ namespace
 constexpr double DEGREE = TWO_PI / 360.0;
 constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: 17 N.m at a stretched UR5 [rad/s^2]
 constexpr double REST = 0.5;                     // before and after [s]
+constexpr double LIMIT_SHARE = 5.0 / 6.0;        // of the joint's speed limit that a stroke takes at most [-]
 
 /// To an angle about the pose.
 struct Stroke
@@ -35,7 +36,7 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { -20.0, 60.0 },
     { 20.0, 60.0 },
     { -20.0, 60.0 },
-    // Fast: a lobe over a place of the flexspline up to 84 times a second.
+    // Fast: a lobe over a place of the flexspline up to 84 times a second, where the joint can.
     { 55.0, 150.0 },
     { -55.0, 150.0 },
     { 55.0, 150.0 },
@@ -110,10 +111,11 @@ std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)
   {
     throw ParameterError(arm.origin + ": joint " + own.name + " has no check_up, the angles where it begins");
   }
+  const double fastest = own.speed_limit > 0.0 ? LIMIT_SHARE * own.speed_limit : HUGE_VAL;
   std::vector<ArmMove> moves;
   for (const Stroke& stroke : STROKES)
   {
-    moves.push_back({ own.check_up, stroke.speed * DEGREE, ACCELERATION });
+    moves.push_back({ own.check_up, std::min(stroke.speed * DEGREE, fastest), ACCELERATION });
     moves.back().target[joint] += stroke.angle * DEGREE;
   }
   return moves;

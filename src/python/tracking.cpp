@@ -7,6 +7,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "python/configuration.hpp"
+#include "python/in_use.hpp"
 #include "python/surface_source.hpp"
 #include "tracking/tracker.hpp"
 
@@ -106,10 +107,7 @@ public:
 
   Tracker& tracker()
   {
-    if (busy_)
-    {
-      throw std::runtime_error("this tracker is being run by another thread");
-    }
+    in_use_.refuse();
     return *tracker_;
   }
 
@@ -117,7 +115,7 @@ public:
                                     const std::optional<Values>& load, const std::optional<Values>& temperature,
                                     const std::optional<Values>& motor_angle, bool at_end)
   {
-    tracker();
+    const InUse::Hold hold = in_use_.hold();
     const py::ssize_t rows = time.size();
     const Recorded times("time", time, rows);
     const Recorded positions("position", position, rows);
@@ -126,12 +124,6 @@ public:
     const Recorded temperatures("temperature", temperature, rows);
     const Recorded motor_angles("motor_angle", motor_angle, rows);
     std::vector<ComparisonRow> compared;
-    busy_ = true;
-    const struct Release
-    {
-      ~Release() { busy = false; }
-      bool& busy;
-    } release{ busy_ };
     withoutLock(
         [&]
         {
@@ -185,7 +177,7 @@ private:
   }
 
   std::unique_ptr<Tracker> tracker_;
-  bool busy_{};  // guarded by the interpreter's lock
+  InUse in_use_{ "tracker" };
 };
 
 py::dict countersOf(TrackerObject& self)

@@ -7,6 +7,7 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "python/configuration.hpp"
+#include "python/in_use.hpp"
 #include "python/surface_source.hpp"
 #include "python/tooth_values.hpp"
 
@@ -196,10 +197,7 @@ public:
   /// @throws std::runtime_error while another thread runs it.
   Twin& twin()
   {
-    if (busy_)
-    {
-      throw std::runtime_error("this twin is being run by another thread");
-    }
+    in_use_.refuse();
     return twin_;
   }
 
@@ -278,14 +276,8 @@ private:
 
   void march(RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* row)
   {
-    twin();
+    const InUse::Hold hold = in_use_.hold();
     const Stamp length = twin_.stepLength();
-    busy_ = true;
-    const struct Release
-    {
-      ~Release() { busy = false; }
-      bool& busy;
-    } release{ busy_ };
     withoutLock(
         [&]
         {
@@ -316,7 +308,7 @@ private:
   std::shared_ptr<ToothForces> forces_;
   std::shared_ptr<ToothStress> stress_;
   Configuration parameters_;
-  bool busy_{};  // guarded by the interpreter's lock
+  InUse in_use_{ "twin" };
 };
 
 /// Stamp of an input: given, or the twin's next instant.

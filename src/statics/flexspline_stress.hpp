@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "gear/angle.hpp"
 #include "harmonic_joint_twin/statics/tooth_stress.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "statics/gear_rules.hpp"
 
 namespace hjt
 {
 /// Length of the rim between two teeth, in which all its bending takes place [m].
 inline double toothSpace(const Parameters& parameters) noexcept
 {
-  const GearParameters& gear = parameters.gear;
-  return 2.0 * gear.flexspline_inner_radius * std::sin(PI / gear.teeth_flexspline) *
-         (1.0 - parameters.stress.tooth_base);
+  return segmentLength(parameters.gear) * (1.0 - parameters.stress.tooth_base);
 }
 
 /// Stress of the flexspline from the shape of its ring: what the rim's bending and tension, and the torque through the

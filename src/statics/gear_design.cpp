@@ -7,7 +7,6 @@
 #include <boost/math/tools/roots.hpp>
 
 #include "base/number_text.hpp"
-#include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
@@ -20,10 +19,7 @@ namespace hjt
 namespace
 {
 constexpr double CONFIGURED_SIZE = 25.0;
-constexpr int POSITIONS = 8;                            // of a tooth pitch, for the friction
-constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // at which no-load torques are given [rad/s]
-constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
-constexpr double TORSION_ERROR = 1e-4;                  // of a fitted twist
+constexpr double TORSION_ERROR = 1e-4;  // of a fitted twist
 constexpr int TORSION_TRIALS = 30;
 constexpr int FITTED_BITS = 12;       // of a fitted torque's parameter
 constexpr int CATALOGUE_RATIO = 100;  // whose friction the catalogue has
@@ -32,7 +28,7 @@ constexpr const char* PRELOAD = "bearing.race_preload";
 constexpr const char* VISCOSITY = "bearing.viscosity";
 
 /// One size of the catalogue. Stiffness and ratings: Harmonic Drive, CSF/HFUS; friction, ratio 100: Schaeffler TPI 275
-/// (RT1-H-CS), which has no size 32.
+/// (RT1-H-CS), which has no size 11 and no size 32. Size 11: from the catalogue as known, not checked.
 struct CatalogueSize
 {
   struct Rating
@@ -51,6 +47,13 @@ struct CatalogueSize
 const std::vector<CatalogueSize>& catalogue()
 {
   static const std::vector<CatalogueSize> SIZES{
+    { 11.0,
+      { 0.8, 2.0 },
+      { 2.2e3, 3.0e3, 3.2e3 },
+      { 2.7e3, 3.4e3, 4.4e3 },
+      0.0,
+      0.0,
+      { { 50, 8.3, 5.5, 3.5, 17.0 }, { 100, 11.0, 8.9, 5.0, 25.0 } } },
     { 14.0,
       { 2.0, 6.9 },
       { 3.4e3, 4.7e3, 5.7e3 },
@@ -290,7 +293,7 @@ void fitTorque(const std::string& key, double start, double wanted, const std::s
 
 double startingTorque(const Parameters& parameters)
 {
-  const Breakaway breakaway = analyseBreakaway(parameters, POSITIONS);
+  const Breakaway breakaway = analyseBreakaway(parameters, FRICTION_POSITIONS);
   if (!breakaway.status.ok())
   {
     throw ParameterError("no load drives the gear back: " + explanationOf(breakaway.status));
@@ -300,7 +303,7 @@ double startingTorque(const Parameters& parameters)
 
 double noLoadTorque(const Parameters& parameters)
 {
-  const LossRow row = analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0 }, POSITIONS, nullptr).front();
+  const LossRow row = analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0 }, FRICTION_POSITIONS, nullptr).front();
   if (!row.status.ok())
   {
     throw ParameterError("no equilibrium without load: " + explanationOf(row.status));

@@ -6,10 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
+/// At which a catalogue gives its torques of friction.
+constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
+constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
+constexpr int FRICTION_POSITIONS = 8;                   // of a tooth pitch, over which friction is averaged
+
 /// The gear wanted. What is left out follows from the size.
 struct GearRequest
 {

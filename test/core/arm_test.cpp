@@ -7,6 +7,7 @@
 #include <iostream>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,14 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 
+#include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
 #include "base/number_table.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/payload_fit.hpp"
+#include "statics/gear_checks.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
@@ -30,6 +34,19 @@ using Angles = std::array<double, 6>;
 ArmDescription shipped(const std::string& name)
 {
   return readArmDescription(HJT_TEST_CONFIG_DIR "/arms/" + name + ".yaml");
+}
+
+std::vector<std::string> shippedArms()
+{
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(HJT_TEST_CONFIG_DIR "/arms"))
+  {
+    if (entry.path().extension() == ".yaml")
+    {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  return names;
 }
 
 std::vector<JointMotion> motionOf(const Angles& position, const Angles& velocity = {}, const Angles& acceleration = {})
@@ -77,9 +94,41 @@ double potentialEnergy(const ArmDescription& arm, const Angles& angles)
 
 constexpr Angles BENT{ 0.1, -1.2, 0.7, -0.5, 0.9, 0.4 };
 
+TEST(ShippedArms, HaveDrivesThatGoTogether)
+{
+  EXPECT_EQ(shippedArms().size(), 7u);
+  std::set<std::vector<std::string>> seen;
+  for (const std::string& name : shippedArms())
+  {
+    for (const ArmJoint& joint : shipped(name).joints)
+    {
+      const Parameters parameters = parseParameters(armJointParameters(joint, HJT_TEST_CONFIG_DIR, ""));
+      // The joint's greatest torque stays below what the gear bears, and its motor makes it through the losses.
+      EXPECT_LE(joint.torque_limit, parameters.life.repeated_peak_torque) << name << ", " << joint.name;
+      EXPECT_LE(joint.torque_limit, parameters.output.torque_limit) << name << ", " << joint.name;
+      EXPECT_GT(parameters.motor.torque_limit * nominalRatio(parameters.gear), joint.torque_limit / 0.7);
+      EXPECT_NEAR(parameters.motor.speed_limit / nominalRatio(parameters.gear), joint.speed_limit, 1e-3);
+      if (seen.insert(joint.overlays).second)
+      {
+        EXPECT_THAT(gearWarnings(parameters), testing::IsEmpty()) << name << ", " << joint.name;
+      }
+    }
+  }
+}
+
+TEST(ShippedArms, TakeTheKeysThatTheyDoNotGiveFromAnother)
+{
+  const ArmDescription own = shipped("ur10e");
+  const ArmDescription other = shipped("ur10");
+  EXPECT_NE(own.urdf, other.urdf);
+  ASSERT_EQ(own.joints.size(), other.joints.size());
+  EXPECT_EQ(own.joints[0].overlays, other.joints[0].overlays);
+  EXPECT_EQ(own.joints[5].torque_limit, other.joints[5].torque_limit);
+}
+
 TEST(ArmDynamics, WeightIsTheSlopeOfThePotentialEnergy)
 {
-  for (const std::string name : { "ur5", "ur5e" })
+  for (const std::string& name : shippedArms())
   {
     ArmDescription arm = shipped(name);
     arm.payload = { 2.0, { 0.03, -0.02, 0.05 } };
@@ -126,7 +175,7 @@ TEST(ArmDynamics, MotionOfAllJointsCouples)
 
 TEST(ArmDynamics, WorkOfASwingThatReturnsIsZero)
 {
-  for (const std::string name : { "ur5", "ur5e" })
+  for (const std::string& name : shippedArms())
   {
     ArmDynamics dynamics(shipped(name));
     constexpr int STEPS = 2000;

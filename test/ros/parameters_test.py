@@ -72,8 +72,9 @@ class Parameters(unittest.TestCase):
                 self.check_start(configuration_files("elbow", [overlay]))
                 self.check_clean_exit(signal.SIGINT)
 
-    def test_the_other_size_and_the_friction_of_a_ur5e_start(self):
-        for overlays in (["size_14.yaml"], ["joints/ur5e_elbow.yaml"]):
+    def test_the_other_sizes_and_the_friction_of_a_ur5e_start(self):
+        for overlays in (["size_14.yaml"], ["joints/ur5e_elbow.yaml"], ["size_11.yaml", "joints/size_0.yaml"],
+                         ["size_17.yaml", "joints/size_2.yaml"], ["size_32.yaml", "joints/size_4.yaml"]):
             with self.subTest(overlays=overlays):
                 self.check_start(configuration_files("elbow", overlays))
                 self.check_clean_exit(signal.SIGINT)
@@ -89,7 +90,8 @@ class Parameters(unittest.TestCase):
     def test_no_shipped_file_has_been_forgotten_here(self):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
         overlays = ["as_built", "beside_robot", "golden", "real_sensors", "recorded_load", "size_14",
-                    "thesis_insertion", *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
+                    "size_11", "size_17", "size_32", "thesis_insertion", *(f"joints/size_{size}" for size in (0, 2, 4)),
+                    *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 

@@ -65,6 +65,13 @@ class Export(tool.ToolTest):
         for form in "urdf", "sdf", "mjcf":
             self.assertIn("Left out: friction by load and temperature", self.export(form))
 
+    def test_any_name_makes_a_document(self):
+        name = 'a<b> & "c" -- \'d\''
+        for form in "urdf", "sdf", "mjcf":
+            text = self.export(form, "--set", "joint.name=" + name)
+            names = [joint.get("name") for joint in xml.etree.ElementTree.fromstring(text).iter("joint")]
+            self.assertIn(name, names)
+
     def test_parameters_act(self):
         hot = xml.etree.ElementTree.fromstring(self.export("urdf", "--set", "input.temperature=60"))
         cold = self.root("urdf")

@@ -58,8 +58,17 @@ class Gear(tool.ToolTest):
         for name in ("starting torque", "no-load torque at 2000 rpm"):
             self.check(figures[name]["gear"], figures[name]["catalogue"], 2e-3, name)
 
+    def test_the_shipped_gears_of_other_sizes_are_what_it_writes(self):
+        for size in (11, 17, 32):
+            self.succeed("gear", "--size", size, "--out", "gear.yaml", "--force")
+            designed = overlay(self.path("gear.yaml"))
+            shipped = overlay(os.path.join(tool.CHECKOUT, "config", f"size_{size}.yaml"))
+            self.assertEqual(set(designed), set(shipped))
+            for key, value in designed.items():
+                self.check(value, shipped[key], 2e-3, key)
+
     def test_every_size_and_ratio_of_the_catalogue_twists_as_it_says(self):
-        for size, ratio in ((14, 50), (17, 120), (20, 160), (32, 80)):
+        for size, ratio in ((11, 50), (14, 50), (17, 120), (20, 160), (32, 80)):
             with self.subTest(size=size, ratio=ratio):
                 _, figures = self.design("--size", size, "--ratio", ratio, "--force")
                 twists = [row for name, row in figures.items() if name.startswith("torsion")]

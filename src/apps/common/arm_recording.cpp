@@ -56,7 +56,9 @@ void warnOf(const RecordingFit& fit, const std::vector<ArmJoint>& joints)
 void addArmOption(Command& command, ArmOptions& options)
 {
   command
-      .add("--arm", options.arm, "all joints of an arm in place of one: ur5, ur5e, or a file as config/arms/ur5.yaml")
+      .add("--arm", options.arm,
+           "all joints of an arm in place of one: ur3, ur5, ur10, ur3e, ur5e, ur10e, ur16e, or a file as "
+           "config/arms/ur5.yaml")
       .type("NAME|FILE.yaml");
 }
 

@@ -36,6 +36,9 @@ namespace
 {
 namespace fs = std::filesystem;
 
+/// Taken where the joints' names leave the choice: a recording does not say which of a maker's arms it is of.
+constexpr const char* DEFAULT_ARM = "ur5";
+
 /// What a recording holds, by its first messages or its header.
 struct Contents
 {
@@ -186,7 +189,15 @@ Arms findArms(const ArmOptions& options, bool is_csv, Contents& contents)
       nearest = file.stem().string();
     }
   }
-  arms.taken = !options.arm.empty() ? options.arm : arms.fitting.empty() ? nearest : arms.fitting.front();
+  if (holds(arms.fitting, DEFAULT_ARM))
+  {
+    nearest = DEFAULT_ARM;
+  }
+  else if (!arms.fitting.empty())
+  {
+    nearest = arms.fitting.front();
+  }
+  arms.taken = options.arm.empty() ? nearest : options.arm;
   if (!arms.taken.empty() && !is_csv)
   {
     const ArmDescription arm = readArmDescription(findArm(arms.taken, directory));

@@ -27,7 +27,7 @@ struct ExportOptions : CommonOptions
 /// What other simulators can hold of the joint; all at the joint.
 struct ExportedJoint
 {
-  std::string name;
+  std::string name;             ///< as XML writes it
   double friction{};            ///< dry, of a straight line through the friction over the speed [N.m]
   double damping{};             ///< slope of that line [N.m.s/rad]
   double friction_deviation{};  ///< largest of the twin's friction from it [N.m]
@@ -37,6 +37,32 @@ struct ExportedJoint
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
 };
+
+std::string xmlText(const std::string& text)
+{
+  std::string escaped;
+  for (const char letter : text)
+  {
+    switch (letter)
+    {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += letter;
+    }
+  }
+  return escaped;
+}
 
 /// Straight line through the friction without load, over the speeds that the joint can have.
 void fitFriction(const Parameters& parameters, ExportedJoint& joint)
@@ -70,7 +96,7 @@ std::string missing(const ExportedJoint& joint, const Parameters& parameters, bo
                "" :
                "  Not in this format: inertia of the motor at the joint, " + text(joint.armature) + " kg.m^2.\n";
   lines += has_stiffness ? "" : "  Not in this format: stiffness in series, " + text(joint.stiffness) + " N.m/rad.\n";
-  return "<!--\n  Joint " + joint.name + " of harmonic_joint_twin; SI units, at the joint.\n" + lines + "-->\n";
+  return "<!--\n  A joint of harmonic_joint_twin; SI units, at the joint.\n" + lines + "-->\n";
 }
 
 std::string attribute(const char* name, double value)
@@ -152,7 +178,7 @@ int exportJoint(const ExportOptions& options)
     }
   }
   ExportedJoint joint;
-  joint.name = parameters.joint.name;
+  joint.name = xmlText(parameters.joint.name);
   joint.velocity = parameters.motor.speed_limit / ratio;
   joint.effort = parameters.motor.torque_limit * ratio;
   joint.armature = Motor(parameters.motor).inertia() * ratio * ratio;

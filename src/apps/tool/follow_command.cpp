@@ -313,7 +313,7 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
     "load less recorded [N.m]" }
 };
 
-/// Topics as those of ur5.launch. Null: no `--bag`.
+/// Topics as those of arm.launch. Null: no `--bag`.
 std::unique_ptr<TrackedBag> armBag(const ArmRecording& recording, const FollowOptions& options)
 {
   if (options.bag.empty())

@@ -24,10 +24,7 @@ namespace hjt
 namespace
 {
 constexpr double ARCMIN = PI / 180.0 / 60.0;
-constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
-constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
-constexpr int POSITIONS = 8;                            // of a tooth pitch
-constexpr int DIGITS = 6;                               // of a written value
+constexpr int DIGITS = 6;  // of a written value
 
 struct GearOptions : CommonOptions
 {
@@ -136,9 +133,9 @@ std::vector<Figure> figuresOf(const Parameters& designed, const GearFigures& cat
                           -row.output_angle / ARCMIN, "arcmin" });
     }
   }
-  const Breakaway breakaway = analyseBreakaway(parameters, POSITIONS);
+  const Breakaway breakaway = analyseBreakaway(parameters, FRICTION_POSITIONS);
   const auto losses =
-      analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0, catalogue.rated_torque }, POSITIONS, nullptr);
+      analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0, catalogue.rated_torque }, FRICTION_POSITIONS, nullptr);
   figures.push_back({ "starting torque", 1e3 * catalogue.starting_torque, 1e3 * breakaway.starting, "mN.m" });
   figures.push_back({ "back-driving torque", 0.0, breakaway.back_driving, "N.m" });
   figures.push_back(
@@ -175,7 +172,8 @@ std::string invalidRatio(const std::string& text)
 
 void declare(Command& command, GearOptions& options)
 {
-  command.add("--size", options.request.size, "of the gear, as catalogues count: 14, 17, 20, 25, 32 ...").range(5, 100);
+  command.add("--size", options.request.size, "of the gear, as catalogues count: 11, 14, 17, 20, 25, 32 ...")
+      .range(5, 100);
   command.add("--ratio", options.request.ratio, "with the circular spline held: half the flexspline's teeth")
       .check(invalidRatio);
   command.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
