@@ -2,20 +2,29 @@
 """Digital twin of a robot joint's harmonic drive, tooth by tooth: `import harmonic_joint_twin as hjt` (docs/python.md).
 
 Parameters, Twin, static analyses and Tracker come from the extension module _hjt, which is loaded when the first of
-them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it.
+them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it. The tool's commands on
+recordings and data sets come from _commands, whose extension module _tool is loaded when the first of them runs.
 """
 import importlib
 
 
-def _extension():
-    return importlib.import_module("harmonic_joint_twin._hjt")
+def _parts():
+    for name in "_hjt", "_commands":
+        yield importlib.import_module("harmonic_joint_twin." + name)
+
+
+def _names(part):
+    return getattr(part, "__all__", None) or [name for name in dir(part) if not name.startswith("_")]
 
 
 def __getattr__(name):
-    if not name.startswith("_") and hasattr(_extension(), name):
-        return getattr(_extension(), name)
+    if not name.startswith("_"):
+        for part in _parts():
+            if name in _names(part):
+                globals()[name] = getattr(part, name)
+                return globals()[name]
     raise AttributeError(f"module 'harmonic_joint_twin' has no attribute '{name}'")
 
 
 def __dir__():
-    return [name for name in dir(_extension()) if not name.startswith("_")]
+    return [name for part in _parts() for name in _names(part)]

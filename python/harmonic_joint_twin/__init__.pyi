@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from harmonic_joint_twin._hjt import *
+from harmonic_joint_twin._commands import *

@@ -19,6 +19,9 @@ public:
   Configuration(const py::args& overlays, const std::string& directory);
 
   const Parameters& values() const { return values_; }
+  const ParameterMap& map() const { return map_; }
+  /// The same with other values. @throws ParameterError.
+  Configuration with(const ParameterMap& map) const;
 
   py::object value(const std::string& key) const;  ///< @throws py::key_error
   bool contains(const std::string& key) const;

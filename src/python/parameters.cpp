@@ -305,6 +305,13 @@ void Configuration::overlay(const py::handle& what)
   readYamlFile(findConfiguration(py::cast<std::string>(path), directory_), map_);
 }
 
+Configuration Configuration::with(const ParameterMap& map) const
+{
+  Configuration other(*this);
+  other.take(map);
+  return other;
+}
+
 void Configuration::take(const ParameterMap& map)
 {
   values_ = parseParameters(map);

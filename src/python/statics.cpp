@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <optional>
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -11,6 +12,8 @@
 #include "python/configuration.hpp"
 #include "python/tooth_values.hpp"
 #include "statics/fatigue_law.hpp"
+#include "statics/gear_checks.hpp"
+#include "statics/gear_design.hpp"
 
 namespace hjt
 {
@@ -277,6 +280,40 @@ void bindInsertion(py::module& module)
              "Whether the teeth have room: FitCheck; worth a look after every change of a gear. NotConverged.");
 }
 
+/// The parameters of the gear wanted, and by what rule each of its parameters follows.
+py::tuple design(const Configuration& parameters, double size, int ratio, const std::optional<double>& bore_radius,
+                 const std::optional<double>& rim_thickness, const std::optional<double>& face_width)
+{
+  const GearRequest request{ size, ratio, bore_radius, rim_thickness, face_width };
+  const GearDesign designed = withoutLock([&] { return designGear(parameters.map(), request, gearFigures(request)); });
+  py::dict rules;
+  for (const DesignedParameter& parameter : designed.parameters)
+  {
+    rules[parameter.key.c_str()] = parameter.rule;
+  }
+  return py::make_tuple(parameters.with(designed.map), rules);
+}
+
+void bindDesign(py::module& module)
+{
+  module.def(
+      "design_gear", &design, py::arg("parameters"), py::arg("size"), py::arg("ratio") = 100,
+      py::arg("bore_radius") = py::none(), py::arg("rim_thickness") = py::none(), py::arg("face_width") = py::none(),
+      "A whole gear of the family by size (25: that of parameters, 5 ... 100) and ratio (circular spline held, 30 ... "
+      "320), as the tool's gear (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH, ratio 100, or a variant. "
+      "bore_radius and rim_thickness of the flexspline, face_width of the teeth: where they are known [m].\n\n"
+      "Returns Parameters, all of the joint included, and a dict of the parameters that were derived: key to rule. "
+      "ParameterError.");
+  module.def(
+      "gear_warnings",
+      [](const Configuration& parameters)
+      { return withoutLock([&, values = parameters.values()] { return gearWarnings(values); }); },
+      py::arg("parameters"),
+      "What of the gear does not go with the rest, as the tool warns at the start: list of str, each with key, value "
+      "and "
+      "what it should be near.");
+}
+
 void bindStiffness(py::module& module)
 {
   auto row = py::class_<StiffnessRow>(module, "StiffnessRow", "The gear under one load, wave generator locked.");
@@ -358,6 +395,7 @@ void bindStatics(py::module& module)
 {
   bindTeeth(module);
   bindInsertion(module);
+  bindDesign(module);
   bindStiffness(module);
   bindSlowMotion(module);
 }

@@ -159,6 +159,15 @@ private:
   GearDesign design_;
 };
 
+void requireInRange(const GearRequest& request)
+{
+  if (!(request.size >= 5.0 && request.size <= 100.0) || request.ratio < 30 || request.ratio > 320)
+  {
+    throw ParameterError("gear: size = " + numberText(request.size) + ", ratio = " + std::to_string(request.ratio) +
+                         " [-] out of range, allowed: size 5 ... 100, ratio 30 ... 320");
+  }
+}
+
 void applyRules(const Parameters& from, const GearRequest& request, Designer& designer)
 {
   const double size = request.size / CONFIGURED_SIZE;
@@ -364,6 +373,7 @@ GearFigures gearFigures(const GearRequest& request)
 
 GearDesign designGear(const ParameterMap& configured, const GearRequest& request, const GearFigures& figures)
 {
+  requireInRange(request);
   const Parameters from = parseParameters(configured);
   Designer designer(configured);
   applyRules(from, request, designer);

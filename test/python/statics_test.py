@@ -4,8 +4,10 @@
 import gc
 import json
 import math
+import os
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -56,6 +58,30 @@ class Statics(unittest.TestCase):
         single = hjt.Parameters({"contact.support": "single_balls"})
         ball_force = hjt.analyse_stiffness(single, [5.0])[0].ball_force
         self.assertEqual(ball_force.shape, (single["bearing.balls"],))
+
+    def test_a_gear_is_designed_as_the_tool_does(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "gear.yaml")
+            tool("gear", "--size", 20, "--ratio", 80, "--rim-thickness", "0.8e-3", "--out", path)
+            expected = hjt.Parameters(path)
+        before = dict(self.parameters)
+        designed, rules = hjt.design_gear(self.parameters, 20, 80, rim_thickness=0.8e-3)
+        self.assertEqual(dict(self.parameters), before)
+        for key, value in dict(expected).items():
+            if isinstance(value, (float, tuple)):
+                np.testing.assert_allclose(designed[key], value, rtol=1e-5, err_msg=key)
+            else:
+                self.assertEqual(designed[key], value, key)
+        self.assertEqual(rules["gear.rim_thickness"], "given")
+        self.assertEqual(set(rules), {key for key in rules if key in designed})
+        self.assertEqual(hjt.gear_warnings(designed), [])
+        for bad in ({"size": 1000}, {"size": 20, "ratio": 7}, {"size": float("nan")}, {"size": 20, "face_width": -1.0}):
+            with self.assertRaises(hjt.ParameterError):
+                hjt.design_gear(self.parameters, **bad)
+
+    def test_what_does_not_go_together_is_told(self):
+        [warning] = hjt.gear_warnings(hjt.Parameters({"ring.bending_stiffness": 20.0}))
+        self.assertIn("ring.bending_stiffness = 20 [N.m/rad] should be near 258", warning)
 
     def test_turning(self):
         expected = tool("turn", "--load", "20", "--angle-range", "0.2", "--steps", "10")["rows"]

@@ -13,6 +13,7 @@ from harmonic_joint_twin import _hjt
 
 TOOL = sys.argv.pop(1)
 STUB = os.path.join(os.path.dirname(harmonic_joint_twin.__file__), "_hjt.pyi")
+COMMANDS = os.path.join(os.path.dirname(harmonic_joint_twin.__file__), "_commands.py")
 
 
 def stub_body(node):
@@ -91,7 +92,7 @@ class Stub(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy here")
     def test_passes_the_type_checker(self):
         from mypy import api
-        output, errors, code = api.run(["--strict", "--cache-dir", os.devnull, STUB])
+        output, errors, code = api.run(["--strict", "--cache-dir", os.devnull, STUB, COMMANDS])
         self.assertEqual(code, 0, output + errors)
 
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/interrupt.hpp"
 
-#include <csignal>
-
 namespace hjt
 {
 namespace
@@ -28,5 +26,20 @@ void catchInterrupts()
 int interruptSignal()
 {
   return g_signal;
+}
+
+InterruptScope::InterruptScope()
+{
+  g_signal = 0;
+  struct sigaction action
+  {
+  };
+  action.sa_handler = [](int signal) { g_signal = signal; };
+  sigaction(SIGINT, &action, &before_);
+}
+
+InterruptScope::~InterruptScope()
+{
+  sigaction(SIGINT, &before_, nullptr);
 }
 }  // namespace hjt

@@ -9,6 +9,7 @@
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
+#include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
 #include "apps/sweep/run_file.hpp"
 #include "apps/sweep/sweep.hpp"
@@ -104,6 +105,7 @@ void addSweepOptions(Command& command, SweepArguments& arguments)
   command.add("--jobs", arguments.jobs, "runs at the same time").range(1, 4096);
   command.flag("--dry-run", arguments.dry_run, "check every run, tell time and size to expect, run nothing");
   command.flag("--list", arguments.list, "print the index with every run of the plan, run nothing");
+  command.flag("--json", arguments.json, "how many runs were done, as a JSON document on stdout");
   addConfigurationOptions(command, arguments);
 }
 
@@ -135,7 +137,16 @@ int sweep(const SweepArguments& arguments)
   const SweepResult result =
       runSweep(plan, directory, { arguments.out, arguments.jobs, arguments.shard, arguments.shards, arguments.quiet },
                sharedSurfaces(plan, arguments.jobs));
-  if (!arguments.quiet)
+  if (arguments.json && !arguments.quiet)
+  {
+    printReport(true, { { "index", "", arguments.out + "/index.csv" },
+                        { "runs", "", plan.runs() },
+                        { "done", "", result.done },
+                        { "present", "", result.present },
+                        { "failed", "", result.failed },
+                        { "damaged", "", result.damaged } });
+  }
+  else if (!arguments.quiet)
   {
     std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
               << " failed, " << result.damaged << " damaged ones done again; index: " << arguments.out

@@ -1,0 +1,229 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tool's commands from Python: its documents, its words, its files. Argument: the tool."""
+import csv
+import inspect
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import genpy
+import h5py
+import numpy as np
+import rosbag
+from sensor_msgs.msg import JointState
+
+import harmonic_joint_twin as hjt
+
+TOOL = sys.argv.pop(1)
+JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+ELBOW = ["joints/elbow.yaml", "recorded_load.yaml"]
+PERIOD = 0.008
+PLAN = """
+seed: 3
+duration: 0.3
+classes:
+  healthy: []
+  crack: [{kind: tooth_root_crack, severity: {grid: [0.3, 0.9]}, place: 40, onset: 0.0}]
+duty:
+  - {name: turning, speed: {constant: 1.0}, load: {constant: 10.0}}
+record:
+  start: 0.0
+  groups: {signals: {rate: 100.0, columns: [motor_angle, output_angle]}}
+"""
+
+
+def motion(seconds=20.0):
+    """Angles of six joints, shape (rows, 6), and the times."""
+    times = np.arange(0.0, seconds, PERIOD)
+    ends = np.array([0.6, -0.9, 1.1, -0.5, 0.4, 0.7])
+    return times, 0.5 * (1.0 - np.cos(1.3 * times))[:, None] * ends
+
+
+def write_csv(path, times, angles, currents):
+    names = ["timestamp"] + [f"actual_q_{i}" for i in range(6)] + [f"actual_current_{i}" for i in range(6)]
+    np.savetxt(path, np.column_stack([times, angles, currents]), "%.17g", ",", header=",".join(names), comments="")
+
+
+def write_bag(path, times, angles, currents):
+    with rosbag.Bag(path, "w") as bag:
+        for at, position, effort in zip(times, angles, currents):
+            stamp = genpy.Time.from_sec(1000.0 + at)
+            state = JointState(name=JOINTS, position=list(position), effort=list(effort))
+            state.header.stamp = stamp
+            bag.write("/joint_states", state, stamp)
+
+
+class Recordings(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        os.chdir(self.folder.name)
+        self.addCleanup(os.chdir, "/")
+
+    def tool(self, *words):
+        done = subprocess.run([TOOL, *map(str, words), "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True, check=False)
+        return json.loads(done.stdout)
+
+    def record(self, write=write_csv, name="arm.csv"):
+        """The recording of a sound arm: the currents are those that its twins predict."""
+        times, angles = motion()
+        write_csv("silent.csv", times, angles, np.zeros_like(angles))
+        rows = hjt.follow("silent.csv", arm="ur5")["comparison"]
+        currents = np.column_stack([np.interp(times, rows[joint]["time"], rows[joint]["current_predicted"])
+                                    for joint in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")])
+        write(name, times, angles, currents)
+
+
+class Commands(Recordings):
+    def test_follow_gives_the_rows_of_the_tool(self):
+        self.record()
+        found = hjt.follow("arm.csv", joint="elbow", overlays=[*ELBOW, {"telemetry.load": "model"}])
+        expected = self.tool("follow", "arm.csv", "--joint", "elbow", "--config", ELBOW[0], "--config", ELBOW[1],
+                             "--set", "telemetry.load=model", "--out", "rows.csv")
+        rows = found.pop("comparison")
+        self.assertEqual(found, expected)
+        with open("rows.csv", newline="", encoding="utf-8") as file:
+            written = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(written))
+        for name in rows.dtype.names:
+            self.assertEqual(rows.dtype[name], hjt.COMPARISON_DTYPE[name])
+            np.testing.assert_array_equal(rows[name], [float(row[name]) for row in written], name)
+
+    def test_a_bag_is_followed_and_one_is_written(self):
+        self.record(write_bag, "arm.bag")
+        found = hjt.follow("arm.bag", arm="ur5", bag="out.bag")
+        self.assertEqual(sorted(found["comparison"]), ["base", "elbow", "shoulder", "wrist_1", "wrist_2", "wrist_3"])
+        for rows in found["comparison"].values():
+            self.assertGreater(len(rows), 2000)
+            self.assertLess(np.sqrt(np.mean(rows["current_residual"]**2)), 0.05)
+        with rosbag.Bag("out.bag") as bag:
+            self.assertIn("/elbow/joint_twin/contact_forces", bag.get_type_and_topic_info().topics)
+
+    def test_check_and_identify_and_compare_answer_as_the_tool(self):
+        self.record()
+        self.assertEqual(hjt.check("arm.csv"), self.tool("check", "arm.csv"))
+        self.assertTrue(hjt.check("arm.csv", "ur5")["usable"])
+        found = hjt.identify("arm.csv", arm="ur5", out="identified", train=(0.0, 12.0), folds=2)
+        expected = self.tool("identify", "arm.csv", "--arm", "ur5", "--train", "0,12", "--folds", "2")
+        self.assertEqual(found, expected)
+        self.assertEqual(hjt.Parameters("identified/elbow.yaml")["joint.name"], "elbow_joint")
+        verdict = hjt.compare("arm.csv", "report", arm="ur5")
+        self.assertIn(verdict["level"], ("OK", "WARN", "not judged"))
+        with open("report/report.html", encoding="utf-8") as file:
+            self.assertIn(verdict["level"], file.read())
+
+    def test_checkup_writes_its_motion(self):
+        found = hjt.checkup("ur10e", "motion.csv", joint="wrist_1")
+        self.assertEqual(found, self.tool("checkup", "--arm", "ur10e", "--out", "other.csv", "--joint", "wrist_1")
+                         | {"output": "motion.csv"})
+        with open("motion.csv", "rb") as mine, open("other.csv", "rb") as other:
+            self.assertEqual(mine.read(), other.read())
+
+    def test_a_sweep_leaves_its_files_and_resumes(self):
+        with open("plan.yaml", "w", encoding="utf-8") as file:
+            file.write(PLAN)
+        found = hjt.sweep("plan.yaml", "data", jobs=2, shard=(0, 2))
+        self.assertEqual((found["runs"], found["done"], found["present"], found["failed"]), (3, 2, 0, 0))
+        found = hjt.sweep("plan.yaml", "data")
+        self.assertEqual((found["done"], found["present"]), (1, 2))
+        with open(found["index"], newline="", encoding="utf-8") as file:
+            lines = list(csv.DictReader(file))
+        self.assertEqual([line["status"] for line in lines], ["ok"] * 3)
+        with h5py.File(os.path.join("data", lines[2]["file"])) as file:
+            self.assertEqual(file["signals/motor_angle"].shape, (30,))
+        with self.assertRaisesRegex(hjt.InputError, "has no mapping 'lives'"):
+            hjt.lives("plan.yaml", "lives")
+
+
+class Errors(Recordings):
+    def test_have_the_words_of_the_tool(self):
+        for call, error, words in (
+                (lambda: hjt.check("none.csv"), hjt.InputError, "none.csv"),
+                (lambda: hjt.follow("none.csv"), hjt.InputError, "--joint"),
+                (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "--mode"),
+                (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),
+                (lambda: hjt.checkup("ur6", "a.csv"), hjt.ParameterError, "neither a file nor an arm"),
+                (lambda: hjt.sweep("no_plan.yaml", "data"), hjt.InputError, "no_plan.yaml"),
+                (lambda: hjt.identify("none.csv", joint="elbow", overlays=[{"mesh.stifness": 1.0}]),
+                 hjt.ParameterError, "did you mean mesh.stiffness"),
+                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "--folds")):
+            with self.assertRaises(error) as caught:
+                call()
+            self.assertIn(words, str(caught.exception))
+            self.assertNotIn("joint_twin:", str(caught.exception))
+
+    def test_what_the_tool_remarks_is_a_warning(self):
+        times, angles = motion(5.0)
+        write_csv("silent.csv", times, angles, np.zeros_like(angles))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            hjt.identify("silent.csv", joint="elbow", overlays=ELBOW[:1])
+        texts = [str(warning.message) for warning in caught]
+        self.assertTrue(any("holds no load of the joint" in text for text in texts), texts)
+        self.assertEqual({warning.filename for warning in caught}, {__file__})
+
+    def test_an_existing_file_is_kept(self):
+        hjt.checkup("ur5", "a.csv", joint="base")
+        with self.assertRaisesRegex(hjt.InputError, "a.csv"):
+            hjt.checkup("ur5", "a.csv", joint="base")
+        hjt.checkup("ur5", "a.csv", joint="base", force=True)
+
+
+class Interrupts(Recordings):
+    def plan(self):
+        with open("plan.yaml", "w", encoding="utf-8") as file:
+            file.write(PLAN.replace("duration: 0.3", "duration: 200.0"))
+
+    def test_ctrl_c_gets_through_and_python_has_its_handler_back(self):
+        self.plan()
+        before = signal.getsignal(signal.SIGINT)
+        threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            hjt.sweep("plan.yaml", "data", overlays=[{"solver.scene": "full_ring"}])
+        self.assertLess(time.monotonic() - start, 60.0)
+        self.assertIs(signal.getsignal(signal.SIGINT), before)
+        with self.assertRaises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+
+    def test_other_threads_run_meanwhile(self):
+        self.plan()
+        ticks = []
+        stop = threading.Event()
+
+        def tick():
+            while not stop.wait(0.01):
+                ticks.append(1)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            hjt.sweep("plan.yaml", "data", overlays=[{"solver.scene": "full_ring"}])
+        stop.set()
+        thread.join()
+        self.assertGreater(len(ticks), 20)
+
+
+class Names(unittest.TestCase):
+    def test_have_types_and_docstrings(self):
+        from harmonic_joint_twin import _commands
+        for name in _commands.__all__:
+            function = getattr(hjt, name)
+            self.assertIn("Returns" if name != "lives" else "result", inspect.getdoc(function), name)
+            for parameter in inspect.signature(function).parameters.values():
+                self.assertIsNot(parameter.annotation, inspect.Parameter.empty, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
