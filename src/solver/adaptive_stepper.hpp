@@ -18,8 +18,8 @@ namespace hjt
 /// Dry friction of motor shaft and output is set-valued, as the leapfrog has it: each of the two slides one way or
 /// sticks. Where a speed comes to zero, where a shaft breaks away and where the cup's sliders turn round, the step ends
 /// there; likewise where the drive's speed limit begins or ceases to hold torque back. Short of it the current's lag is
-/// an exact exponential, within it one more rate. The flanks' friction is regularised at FLANK_WIDTH while the motor turns; while it sticks, it belongs to the
-/// output's.
+/// an exact exponential, within it one more rate. The flanks' friction is regularised at FLANK_WIDTH while the motor
+/// turns; while it sticks, it belongs to the output's.
 class AdaptiveStepper
 {
 public:

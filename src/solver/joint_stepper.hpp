@@ -36,7 +36,8 @@ public:
   /// At rest where the joint has settled. @returns false if it has not.
   bool reset() noexcept;
 
-  /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False: the ring did not converge; the last good angles stay, at rest.
+  /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
+  /// the ring did not converge; the last good angles stay, at rest.
   ///
   /// Where it would be too long for the joint's fastest swing it is done in `substeps()` equal ones. Their number is
   /// fixed by the parameters, so that live equals offline, and odd: inputs then act from half a step before their

@@ -11,8 +11,8 @@ namespace
 /// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
 /// approached without overshoot however steep the fading. Leaves the drive's torque in `system`.
 ///
-/// `others`: torques but the drive's and friction [N.m]; `kept`: of the drive's old torque [N.m]; `share`: of the wanted
-/// torque that the current takes [-].
+/// `others`: torques but the drive's and friction [N.m]; `kept`: of the drive's old torque [N.m]; `share`: of the
+/// wanted torque that the current takes [-].
 Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
                      const Eigen::Vector2d& before, double dt) noexcept
 {
