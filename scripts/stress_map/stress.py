@@ -49,7 +49,6 @@ The solver's messages on a step:
 | message | condition | reason |
 |---|---|---|
 | steps too long | the joint's fastest natural mode (motor against output on the ring's present stiffness) advances more than 0.1 rad of phase in a substep (the twin divides a step by itself, by its parameters) | the leapfrog's phase error is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
-| steps too long | the speed limit's slope times the step exceeds the motor's inertia | the drive sees the speed once a step and overshoots |
 | with teeth jumping | a tooth changes its space below the tip circle | no tooth can pass a tip unnoticed: ratcheting, or a gear whose teeth do not fit |
 | cut | the ring's equilibrium was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
 | failed | no equilibrium was found | the last good state is held |

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
@@ -11,7 +12,8 @@ namespace hjt
 /// Motor with its drive: what of a commanded torque reaches the shaft.
 ///
 /// The command is clamped at the torque limit. Towards the speed limit the torque that would speed the motor up further
-/// fades out linearly over the last two per cent; braking torque is never held back.
+/// fades out linearly over the last two per cent; braking torque is never held back. The current follows what is left
+/// with a lag of first order.
 ///
 /// Shaft:   T (1 + r sin 6 p theta) - T_c sin n theta, the second from U = -(T_c / n) cos n theta
 /// where    T    torque of the drive, T_25 (1 + a (temperature - 25 degC)), T_25 that of its current  [N.m]
@@ -22,30 +24,40 @@ class Motor
 public:
   explicit Motor(const MotorParameters& parameters) : parameters_(parameters) {}
 
-  struct Drive
+  /// A command within the torque limit [N.m].
+  double clamped(double command) const noexcept
   {
-    double torque;  ///< at the shaft [N.m]
-    bool clamped;   ///< the command exceeded the torque limit
-    bool held;      ///< the speed limit held torque back
-    double slope;   ///< how fast the torque falls with speed there, else 0 [N.m.s/rad]
-  };
-
-  Drive drive(double command, double speed) const noexcept
-  {
-    constexpr double FADE = 0.02;  // share of the speed limit over which torque fades out
-    Drive drive;
-    drive.torque = std::clamp(command, -parameters_.torque_limit, parameters_.torque_limit);
-    drive.clamped = drive.torque != command;
-    const double room = (1.0 - std::abs(speed) / parameters_.speed_limit) / FADE;
-    drive.held = room < 1.0 && drive.torque * speed > 0.0;
-    drive.slope = 0.0;
-    if (drive.held)
-    {
-      drive.slope = std::abs(drive.torque) / (FADE * parameters_.speed_limit);
-      drive.torque *= std::max(room, 0.0);
-    }
-    return drive;
+    return std::clamp(command, -parameters_.torque_limit, parameters_.torque_limit);
   }
+
+  /// The speed limit holds back a torque at a speed.
+  bool fades(double torque, double speed) const noexcept
+  {
+    return torque * speed > 0.0 && std::abs(speed) > fadeSpeed();
+  }
+  double fadeSpeed() const noexcept { return (1.0 - FADE) * parameters_.speed_limit; }  ///< where that begins [rad/s]
+  double speedLimit() const noexcept { return parameters_.speed_limit; }                ///< [rad/s]
+
+  /// What is left of a torque that fades [N.m]: faded(T, 0) - fadeSlope(T) |speed|, and not below zero.
+  double faded(double torque, double speed) const noexcept
+  {
+    return torque * std::max(1.0 - std::abs(speed) / parameters_.speed_limit, 0.0) / FADE;
+  }
+  double limited(double torque, double speed) const noexcept  ///< a torque, held back or not [N.m]
+  {
+    return fades(torque, speed) ? faded(torque, speed) : torque;
+  }
+  double fadeSlope(double torque) const noexcept  ///< [N.m.s/rad]
+  {
+    return std::abs(torque) / (FADE * parameters_.speed_limit);
+  }
+
+  /// Share of a difference between the torque and the one wanted that is left after a time [s].
+  double currentLeft(double time) const noexcept
+  {
+    return parameters_.current_bandwidth > 0.0 ? std::exp(-currentRate() * time) : 0.0;
+  }
+  double currentRate() const noexcept { return TWO_PI * parameters_.current_bandwidth; }  ///< 0: at once [rad/s]
 
   /// Torque over the one of the same current at 25 degC [-].
   double torqueFactor(double temperature) const noexcept
@@ -87,6 +99,8 @@ public:
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
 
 private:
+  static constexpr double FADE = 0.02;  // share of the speed limit over which torque fades out
+
   bool cogs() const noexcept { return parameters_.cogging_torque != 0.0; }
 
   MotorParameters parameters_;

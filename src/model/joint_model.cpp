@@ -66,16 +66,15 @@ void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen
   const Groups sliding =
       ring_response.rms_slip_by_motor * running.speeds[0] + ring_response.rms_slip_by_output * running.speeds[1];
   const Groups coefficients = mesh_friction.coefficients(sliding);
-  std::size_t count = friction.terms.size();
-  friction.terms.resize(count + RingFrictionResponse::FLANK_GROUPS);
   for (int i = 0; i < RingFrictionResponse::FLANK_GROUPS; ++i)
   {
     const double by_motor = ring_response.flank_by_motor[i];
     const double by_output = ring_response.flank_by_output[i];
-    friction.terms[count] = { coefficients[i], { by_motor, by_output } };
-    count += by_motor != 0.0 || by_output != 0.0 ? 1 : 0;
+    if (by_motor != 0.0 || by_output != 0.0)
+    {
+      friction.terms.push_back({ coefficients[i], { by_motor, by_output } });
+    }
   }
-  friction.terms.resize(count);
   cup_friction.addTerm(cup_slip, friction);
   addOutput(friction);
   const Eigen::Vector3d& dashpots = ring_response.viscous;

@@ -19,7 +19,7 @@ namespace hjt
 /// What acts on the joint from outside, at one instant.
 struct JointInputs
 {
-  double motor_torque{};  ///< of the drive, after its limits [N.m]
+  double motor_torque{};  ///< wanted of the drive at 25 degC, within its torque limit [N.m]
   double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
   double temperature{};  ///< of the grease [degC]
@@ -43,20 +43,14 @@ struct JointModel
            motor.coggingEnergy(position.wave_generator_angle);
   }
 
-  /// All torques but friction, on motor and output [N.m].
-  Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position,
-                         const JointInputs& inputs) const noexcept
+  /// All torques but friction, on motor and output. `motor_torque`: of the drive; `load_torque`: as in JointInputs
+  /// [N.m].
+  Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position, double motor_torque,
+                         double load_torque) const noexcept
   {
     const double angle = position.wave_generator_angle;
-    return { motor.rippled(inputs.motor_torque, angle) + motor.coggingTorque(angle) +
-                 ring_response.wave_generator_torque,
-             ring_response.output_torque + load.gravityTorque(position.output_angle) - inputs.load_torque };
-  }
-
-  Eigen::Vector2d torque(const RingForces& forces, const DrivePosition& position,
-                         const JointInputs& inputs) const noexcept
-  {
-    return torque(summary(forces), position, inputs);
+    return { motor.rippled(motor_torque, angle) + motor.coggingTorque(angle) + ring_response.wave_generator_torque,
+             ring_response.output_torque + load.gravityTorque(position.output_angle) - load_torque };
   }
 
   static RingResponse summary(const RingForces& forces) noexcept

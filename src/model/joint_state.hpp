@@ -6,7 +6,7 @@
 namespace hjt
 {
 /// State of the joint and its energy ledger; a plain vector, so that Boost.odeint can march it.
-using JointState = Eigen::Matrix<double, 7, 1>;
+using JointState = Eigen::Matrix<double, 8, 1>;
 
 namespace joint_state
 {
@@ -17,5 +17,6 @@ constexpr int OUTPUT_SPEED = 3;  ///< [rad/s]
 constexpr int MOTOR_WORK = 4;    ///< done by the motor's torque [J]
 constexpr int LOAD_WORK = 5;     ///< done on the external load torque [J]
 constexpr int DISSIPATED = 6;    ///< by all friction [J]
+constexpr int DRIVE_TORQUE = 7;  ///< of the motor's current at 25 degC [N.m]
 }  // namespace joint_state
 }  // namespace hjt

@@ -76,8 +76,8 @@ public:
     }
     line_[oldest_] = now;
     oldest_ = oldest_ + 1 == line_.size() ? 0 : oldest_ + 1;
-    motor_velocity_.update(motor_encoder_.angle(motor_encoder_.count(sensed().motor_angle)));
-    output_velocity_.update(output_encoder_.unwrappedAngle(sensed().output_angle));
+    motor_velocity_.update(sensed().motor_angle);
+    output_velocity_.update(sensed().output_angle);
   }
 
   EncoderReadings encoders() const noexcept
@@ -85,10 +85,12 @@ public:
     EncoderReadings readings;
     readings.motor_count = motor_encoder_.count(sensed().motor_angle);
     readings.motor_angle = motor_encoder_.angle(readings.motor_count);
-    readings.motor_velocity = motor_velocity_.velocity();
+    readings.motor_velocity =
+        motor_velocity_.velocity([this](double angle) { return motor_encoder_.angle(motor_encoder_.count(angle)); });
     readings.output_count = output_encoder_.count(sensed().output_angle);
     readings.output_angle = output_encoder_.unwrappedAngle(sensed().output_angle);
-    readings.output_velocity = output_velocity_.velocity();
+    readings.output_velocity =
+        output_velocity_.velocity([this](double angle) { return output_encoder_.unwrappedAngle(angle); });
     return readings;
   }
 

@@ -33,8 +33,9 @@ public:
     count_ = std::min(count_ + 1, angles_.size());
   }
 
-  /// [rad/s]
-  double velocity() const noexcept
+  /// `resolved`: of an angle kept, what an encoder makes of it [rad]. @returns [rad/s]
+  template <class Resolved>
+  double velocity(Resolved&& resolved) const noexcept
   {
     if (count_ < 2)
     {
@@ -42,7 +43,7 @@ public:
     }
     const std::size_t intervals = count_ - 1;
     const std::size_t oldest = newest_ >= intervals ? newest_ - intervals : newest_ + angles_.size() - intervals;
-    return (angles_[newest_] - angles_[oldest]) / (static_cast<double>(intervals) * period_);
+    return (resolved(angles_[newest_]) - resolved(angles_[oldest])) / (static_cast<double>(intervals) * period_);
   }
 
 private:

@@ -44,12 +44,15 @@ bool AdaptiveStepper::covers(const JointInputs& inputs) const noexcept
 void AdaptiveStepper::start(JointState& x) noexcept
 {
   x[DISSIPATED] += dynamics_.accept();
+  x[DRIVE_TORQUE] = dynamics_.drive_torque = dynamics_.explicitDriveTorque(x);
   end_ = x;
   start_ = x;
   at_ = 0.0;
   length_ = 0.0;
   next_ = FIRST;
   event_ = true;
+  fades_ = false;
+  lag_ = 0.0;
 }
 
 bool AdaptiveStepper::advance(double length, JointState& x, double& left) noexcept
@@ -62,13 +65,15 @@ bool AdaptiveStepper::advance(double length, JointState& x, double& left) noexce
     if (steps_ == MOST_STEPS || !takeStep())
     {
       x = steps_ == MOST_STEPS ? end_ : start_;
+      x[DRIVE_TORQUE] = dynamics_.drive_torque;
       left = at_;
       return false;
     }
   }
   interpolate(at_, x);
   State unused;
-  (*this)(x, unused, 0.0);
+  (*this)(x, unused, at_);
+  x[DRIVE_TORQUE] = dynamics_.drive_torque;
   left = 0.0;
   return true;
 }
@@ -83,6 +88,12 @@ bool AdaptiveStepper::takeStep() noexcept
   }
   cup_rate_ = cupRate(end_);
   end_[DISSIPATED] += dynamics_.accept();
+  lag_ += length_;
+  if (event_)
+  {
+    end_[DRIVE_TORQUE] = currentTorque(end_, 0.0);
+    lag_ = 0.0;
+  }
   start_ = end_;
   if (event_)
   {
@@ -90,7 +101,7 @@ bool AdaptiveStepper::takeStep() noexcept
     event_ = false;
   }
   start_rate_ = end_rate_;
-  if (mode_[0] == 0 && mode_[1] == 0)
+  if (isAtRest())
   {
     length_ = whole_ = std::numeric_limits<double>::infinity();
     return true;
@@ -192,6 +203,22 @@ void AdaptiveStepper::endAtEvent() noexcept
       }
     }
   }
+  const double room = roomToFade(end_);
+  if (start_[MOTOR_SPEED] * dynamics_.inputs.motor_torque > 0.0 && (fades_ ? room > 0.0 : room < 0.0))
+  {
+    const auto left = [&](double time)
+    {
+      interpolate(time, x);
+      return fades_ ? -roomToFade(x) : roomToFade(x);
+    };
+    const double at_end = end < whole_ ? left(end) : -std::abs(room);
+    if (at_end < 0.0)
+    {
+      end = firstZero(left, end, std::max(left(0.0), 0.0), at_end);
+      stopped = -1;
+      event_ = true;
+    }
+  }
   if (event_)
   {
     interpolate(end, end_);
@@ -208,15 +235,16 @@ void AdaptiveStepper::endAtEvent() noexcept
 void AdaptiveStepper::chooseModes() noexcept
 {
   mode_ = { signOf(start_[MOTOR_SPEED]), signOf(start_[OUTPUT_SPEED]) };
+  fades_ = dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, start_[MOTOR_SPEED]);
+  (*this)(start_, end_rate_, 0.0);
   for (int i = 0; i < 2; ++i)
   {
-    (*this)(start_, end_rate_, 0.0);
     if (start_[MOTOR_SPEED + i] == 0.0 && std::abs(push_[i]) > strength_[i])
     {
       mode_[static_cast<std::size_t>(i)] = signOf(push_[i]);
+      (*this)(start_, end_rate_, 0.0);
     }
   }
-  (*this)(start_, end_rate_, 0.0);
 }
 
 /// Of a function that is positive at the start of the step and negative at `end`, by regula falsi (Illinois): a place
@@ -277,9 +305,35 @@ double AdaptiveStepper::cupRate(const JointState& x) const noexcept
   return dynamics_.cupRates().dot(x.segment<2>(MOTOR_SPEED));
 }
 
-void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double) noexcept
+/// Up to where the drive's torque fades [rad/s].
+double AdaptiveStepper::roomToFade(const JointState& x) const noexcept
+{
+  return dynamics_.model().motor.fadeSpeed() - std::abs(x[MOTOR_SPEED]);
+}
+
+/// Of the drive's current, `time` after the start of the step.
+double AdaptiveStepper::currentTorque(const JointState& x, double time) const noexcept
+{
+  const Motor& motor = dynamics_.model().motor;
+  const double wanted = dynamics_.inputs.motor_torque;
+  if (fades_)
+  {
+    return motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : motor.faded(wanted, x[MOTOR_SPEED]);
+  }
+  return wanted + motor.currentLeft(lag_ + time) * (x[DRIVE_TORQUE] - wanted);
+}
+
+/// Motor and output stick, and nothing changes.
+bool AdaptiveStepper::isAtRest() const noexcept
+{
+  constexpr double SETTLED = 1e-12;
+  return mode_[0] == 0 && mode_[1] == 0 && dynamics_.model().motor.currentLeft(lag_) < SETTLED;
+}
+
+void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double time) noexcept
 {
   rate.setZero();
+  dynamics_.drive_torque = currentTorque(x, time);
   if (!place(x))
   {
     left_surface_ = true;
@@ -329,6 +383,12 @@ void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double) 
   rate[MOTOR_WORK] = dynamics_.driveTorque() * speeds[0];
   rate[LOAD_WORK] = dynamics_.inputs.load_torque * speeds[1];
   rate[DISSIPATED] = -drag.dot(speeds);
+  if (fades_)
+  {
+    const Motor& motor = dynamics_.model().motor;
+    rate[DRIVE_TORQUE] =
+        motor.currentRate() * (motor.faded(dynamics_.inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
+  }
   drag_ = drag;
 }
 }  // namespace hjt

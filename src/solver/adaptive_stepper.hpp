@@ -17,8 +17,9 @@ namespace hjt
 ///
 /// Dry friction of motor shaft and output is set-valued, as the leapfrog has it: each of the two slides one way or
 /// sticks. Where a speed comes to zero, where a shaft breaks away and where the cup's sliders turn round, the step ends
-/// there. The flanks' friction is regularised at FLANK_WIDTH while the motor turns; while it sticks, it belongs to the
-/// output's.
+/// there; likewise where the drive's speed limit begins or ceases to hold torque back. Short of it the current's lag is
+/// an exact exponential, within it one more rate. The flanks' friction is regularised at FLANK_WIDTH while the motor
+/// turns; while it sticks, it belongs to the output's.
 class AdaptiveStepper
 {
 public:
@@ -45,7 +46,8 @@ public:
   const Eigen::Vector2d& frictionTorque() const noexcept { return drag_; }  ///< on motor and output [N.m]
   int steps() const noexcept { return steps_; }                             ///< taken in the last call of `advance`
 
-  void operator()(const JointState& x, JointState& rate, double t) noexcept;
+  /// `time`: since the start of the step [s].
+  void operator()(const JointState& x, JointState& rate, double time) noexcept;
 
 private:
   struct ErrorChecker
@@ -74,6 +76,9 @@ private:
   void interpolate(double time, JointState& x) const noexcept;
   bool place(const JointState& x) noexcept;
   double cupRate(const JointState& x) const noexcept;
+  double roomToFade(const JointState& x) const noexcept;
+  double currentTorque(const JointState& x, double time) const noexcept;
+  bool isAtRest() const noexcept;
   template <class Function>
   double firstZero(Function&& function, double end, double at_start, double at_end) const noexcept;
 
@@ -89,6 +94,8 @@ private:
   double cup_rate_{};    // of the rim at the start of the step [rad/s]
   bool event_{};         // the step ends at one
   bool left_surface_{};  // in an evaluation of the rates
+  bool fades_{};         // the drive's torque with the speed
+  double lag_{};         // since when the current follows: before the start of the step [s]
   int steps_{};
   std::array<int, 2> mode_{};     // of motor and output: the way they slide, 0 where they stick
   Eigen::Vector2d strength_;      // of the dry friction of each, at the last evaluation [N.m]

@@ -225,9 +225,13 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
   {
     RingFrictionResponse ring_friction;
     surface_->friction(place_, ring_friction);
-    const double cup_stiffness =
-        model_.ring.of<CupTorsion>().stiffnessAtTorque(response_.wave_generator_torque + response_.output_torque);
-    model_.friction(ring_friction, housing_stiffness_ / cup_stiffness, running, friction_);
+    Eigen::Vector2d cup_slip = cup_rates_;
+    if (!model_.cup_friction.hasState())
+    {
+      const double torque = response_.wave_generator_torque + response_.output_torque;
+      cup_slip = housing_stiffness_ / model_.ring.of<CupTorsion>().stiffnessAtTorque(torque);
+    }
+    model_.friction(ring_friction, cup_slip, running, friction_);
     return;
   }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
@@ -262,11 +266,14 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   {
     return;
   }
+  drive_torque = explicitDriveTorque(x);
   updateFriction(speeds);
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;
   const Eigen::Vector2d presliding(preslidingTorque(), 0.0);
   rate.segment<2>(MOTOR_SPEED) = (torque() + presliding + drag).cwiseQuotient(model_.inertia());
+  rate[DRIVE_TORQUE] =
+      model_.motor.currentRate() * (model_.motor.limited(inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
   rate[MOTOR_WORK] = driveTorque() * speeds[0];
   rate[LOAD_WORK] = inputs.load_torque * speeds[1];
   rate[DISSIPATED] = -(drag + presliding).dot(speeds);

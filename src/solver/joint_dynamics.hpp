@@ -54,11 +54,25 @@ public:
   /// All torques at the present ring but those of dry and viscous friction [N.m].
   Eigen::Vector2d torque() const noexcept
   {
-    return model_.torque(response_, position(), inputs) - now_.cup.torque * cup_rates_;
+    return model_.torque(response_, position(), shaftTorque(), inputs.load_torque) - now_.cup.torque * cup_rates_;
   }
 
-  /// That the drive does work with at the present angle of the motor [N.m].
-  double driveTorque() const noexcept { return model_.motor.rippled(inputs.motor_torque, motor_angle_); }
+  /// Of the drive, at the temperature of its magnets, without ripple [N.m].
+  double shaftTorque() const noexcept { return drive_torque * model_.motor.torqueFactor(inputs.temperature); }
+
+  /// Of the current as part of the state, or where it follows at once [N.m].
+  double explicitDriveTorque(const JointState& x) const noexcept
+  {
+    return model_.motor.currentRate() > 0.0 ? x[joint_state::DRIVE_TORQUE] :
+                                              model_.motor.limited(inputs.motor_torque, x[joint_state::MOTOR_SPEED]);
+  }
+
+  /// That the drive does work with at the present angle of the motor [N.m]; over the torque of its current [-].
+  double driveTorque() const noexcept { return model_.motor.rippled(shaftTorque(), motor_angle_); }
+  double driveGain() const noexcept
+  {
+    return model_.motor.rippled(model_.motor.torqueFactor(inputs.temperature), motor_angle_);
+  }
 
   /// Of friction at the motor shaft that builds up over its presliding angle, at the present ring [N.m].
   double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
@@ -95,7 +109,8 @@ public:
   double storedEnergy() const noexcept { return model_.storedEnergy(response_, position()) + now_.cup.energy; }
 
   JointInputs inputs;
-  SolveStatus status;  ///< worst since it was last cleared by its reader
+  double drive_torque{};  ///< of the motor's current at 25 degC: what limit and lag leave of that wanted [N.m]
+  SolveStatus status;     ///< worst since it was last cleared by its reader
 
 private:
   SolveStatus bringRing() noexcept;

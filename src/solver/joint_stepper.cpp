@@ -84,6 +84,18 @@ double JointStepper::divideStep(const Parameters& parameters)
            << needed << " rad/s at this solver.rate (brake.holding_torque counts)";
       throw ParameterError(text.str());
     }
+    const Motor& motor = dynamics_.model().motor;
+    const double fading = motor.fadeSlope(parameters.motor.torque_limit) / inertia[0];
+    const double drive = std::max(fading, motor.currentRate()) * substep_;
+    if (drive > 1.0)
+    {
+      std::ostringstream text;
+      text
+          << "solver.stepper = runge_kutta4 takes the drive explicitly: its torque follows motor.current_bandwidth and "
+             "fades towards motor.speed_limit in "
+          << drive << " times less than a step of " << substep_ << " s; solver.rate has to be that much higher";
+      throw ParameterError(text.str());
+    }
   }
   return frequency;
 }
@@ -102,6 +114,7 @@ bool JointStepper::reset() noexcept
 {
   marches_ = false;
   dynamics_.inputs = {};
+  dynamics_.drive_torque = 0.0;
   const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
   x_[OUTPUT_ANGLE] = dynamics_.outputAngle();
@@ -117,8 +130,10 @@ bool JointStepper::reset() noexcept
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
 {
+  constexpr double SETTLED = 1e-9;  // of the torque wanted, that the current may be away from it
   const JointInputs& last = dynamics_.inputs;
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
+         std::abs(x_[DRIVE_TORQUE] - inputs.motor_torque) <= SETTLED * std::abs(inputs.motor_torque) &&
          inputs.load_torque == last.load_torque && inputs.brake_engaged == last.brake_engaged &&
          inputs.temperature == last.temperature;
 }
@@ -253,6 +268,7 @@ bool JointStepper::stepRungeKutta(double length) noexcept
   speeds_ = x_.segment<2>(MOTOR_SPEED);
   dynamics_.updateFriction(speeds_);
   x_[DISSIPATED] += dynamics_.accept();
+  x_[DRIVE_TORQUE] = dynamics_.drive_torque = dynamics_.explicitDriveTorque(x_);
   friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
   friction_[0] += dynamics_.preslidingTorque();
   const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
@@ -267,14 +283,14 @@ double JointStepper::phaseAdvance() const noexcept
     return 0.0;
   }
   const RingResponse& ring = dynamics_.response();
-  const Eigen::Vector2d inertia = dynamics_.model().inertia();
+  const Eigen::Vector2d inverse = dynamics_.model().inertia().cwiseInverse();
   const Eigen::Matrix2d friction = dynamics_.frictionStiffness();
   const double motor =
-      (ring.motor_stiffness + friction(0, 0) + dynamics_.model().motor.coggingStiffness()) / inertia[0];
-  const double output = (ring.output_stiffness + friction(1, 1)) / inertia[1];
+      (ring.motor_stiffness + friction(0, 0) + dynamics_.model().motor.coggingStiffness()) * inverse[0];
+  const double output = (ring.output_stiffness + friction(1, 1)) * inverse[1];
   const double cross = ring.velocity_ratio * ring.output_stiffness - friction(0, 1);
   const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
-                                                            cross * cross / (inertia[0] * inertia[1]));
+                                                            cross * cross * inverse[0] * inverse[1]);
   return substep_ * std::sqrt(std::max(fastest, 0.0));
 }
 

@@ -36,7 +36,8 @@ public:
   /// At rest where the joint has settled. @returns false if it has not.
   bool reset() noexcept;
 
-  /// One step with `inputs` at its end. False: the ring did not converge; the last good angles stay, at rest.
+  /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
+  /// the ring did not converge; the last good angles stay, at rest.
   ///
   /// Where it would be too long for the joint's fastest swing it is done in `substeps()` equal ones. Their number is
   /// fixed by the parameters, so that live equals offline, and odd: inputs then act from half a step before their
@@ -58,6 +59,12 @@ public:
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
+  double driveTorque() const noexcept { return x_[joint_state::DRIVE_TORQUE]; }  ///< of the current, at 25 degC [N.m]
+  /// The drive holds torque back at its speed limit.
+  bool isSpeedLimited() const noexcept
+  {
+    return dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, speeds_[0]);
+  }
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
   /// By all friction [J].
   double dissipatedEnergy() const noexcept

@@ -1,8 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/leapfrog.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hjt
 {
+namespace
+{
+/// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
+/// approached without overshoot however steep the fading. Leaves the drive's torque in `system`.
+///
+/// `others`: torques but the drive's and friction [N.m]; `kept`: of the drive's old torque [N.m]; `share`: of the
+/// wanted torque that the current takes [-].
+Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
+                     const Eigen::Vector2d& before, double dt) noexcept
+{
+  const Motor& motor = system.model().motor;
+  const double wanted = system.inputs.motor_torque;
+  const double gain = std::max(system.driveGain(), 0.0);
+  const auto kick = [&](double torque, double slope)
+  {
+    // A torque that falls with the speed at the end is a larger inertia.
+    Eigen::Vector2d inertia = system.model().inertia();
+    const Eigen::Vector2d momentum = inertia.cwiseProduct(before) + dt * (others + Eigen::Vector2d(gain * torque, 0.0));
+    inertia[0] += dt * gain * slope;
+    return system.dryFriction()
+        .withMotor(inertia[0])
+        .solve(system.friction(), system.velocityRatio(), before, momentum.cwiseQuotient(inertia), dt);
+  };
+  Eigen::Vector2d after = kick(kept + share * motor.faded(wanted, 0.0), share * motor.fadeSlope(wanted));
+  if (std::abs(after[0]) > motor.speedLimit())
+  {
+    after = kick(kept, 0.0);
+  }
+  system.drive_torque = kept + share * motor.faded(wanted, after[0]);
+  return after;
+}
+}  // namespace
+
 void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) noexcept
 {
   using namespace joint_state;
@@ -14,13 +50,17 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
     speeds_.setZero();
     return;
   }
+  const Motor& motor = system.model().motor;
   const Eigen::Vector2d inertia = system.model().inertia();
   const double slipped = system.accept();
+  const double wanted = system.inputs.motor_torque;
+  const double lag = motor.currentLeft(dt);
+  system.drive_torque = wanted + lag * (x[DRIVE_TORQUE] - wanted);
   system.updateFriction(before);
   const double presliding = system.preslidingTorque();
   Eigen::Vector2d torque = system.torque();
   torque[0] += presliding;
-  const Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
+  Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
   Eigen::Vector2d after;
   // On the surface the friction is in few terms, and all is done to be quick.
   if (!system.onSurface() ||
@@ -28,11 +68,19 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   {
     after = system.dryFriction().solve(system.friction(), system.velocityRatio(), before, free, dt);
   }
+  if (motor.fades(wanted, after[0]))
+  {
+    torque[0] -= system.driveTorque();
+    after = fade(system, torque, lag * x[DRIVE_TORQUE], 1.0 - lag, before, dt);
+    torque[0] += system.driveTorque();
+    free = before + dt * torque.cwiseQuotient(inertia);
+  }
   speeds_ = 0.5 * (before + after);
   friction_ = inertia.cwiseProduct(after - free) / dt;
   friction_[0] += presliding;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
+  x[DRIVE_TORQUE] = system.drive_torque;
 
   // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
   const double motor_work = dt * system.driveTorque() * speeds_[0];

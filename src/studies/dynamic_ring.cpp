@@ -56,10 +56,8 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   model_.ring.forces(shape_, position_, forces_);
   const auto& contact = forces_.of<WaveGeneratorContact>();
   force_.head(2 * teeth()) = forces_.teeth;
-  JointInputs inputs;
-  inputs.motor_torque = drive_.motor_torque;
-  inputs.load_torque = drive_.load_torque;
-  const Eigen::Vector2d torque = model_.torque(forces_, position_, inputs);
+  const Eigen::Vector2d torque =
+      model_.torque(JointModel::summary(forces_), position_, drive_.motor_torque, drive_.load_torque);
   force_.tail<2>() = torque;
   force_[waveGenerator()] -= model_.motor.viscousFriction() * motor_speed;
   force_[output()] -= model_.load.viscousFriction() * output_speed;

@@ -35,8 +35,8 @@ public:
     inputs_.temperature = parameters.input.temperature;
   }
 
-  /// For the next step, with the drive's limits at the present speed [rad/s].
-  JointInputs next(const Motor& motor, double motor_speed)
+  /// For the next step.
+  JointInputs next()
   {
     constexpr double MILLISECOND = 1e-3;  // all changes fall on whole ones, so that every step meets them
     constexpr double BRAKE_CHANCE = 0.2;
@@ -49,7 +49,7 @@ public:
       inputs_.load_torque = chance(random_) < 0.5 ? load_ * (2.0 * chance(random_) - 1.0) : inputs_.load_torque;
       inputs_.brake_engaged = brake_ && chance(random_) < BRAKE_CHANCE;
     }
-    inputs_.motor_torque = motor.drive(command_, motor_speed).torque;
+    inputs_.motor_torque = command_;
     return inputs_;
   }
 
@@ -89,7 +89,7 @@ inline LedgerResult runLedger(const Parameters& parameters, const RandomDriveSet
   {
     const double angle = stepper.motorAngle();
     const double speed = stepper.speeds()[0];
-    converged = stepper.step(drive.next(model.motor, speed));
+    converged = stepper.step(drive.next());
     result.residual = std::max(result.residual, std::abs(stepper.energyResidual()));
     result.travel += std::abs(stepper.motorAngle() - angle);
     result.top_speed = std::max(result.top_speed, std::abs(stepper.speeds()[0]));

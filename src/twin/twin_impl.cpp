@@ -37,9 +37,6 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , assessor(given)
   , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
-  , current_share(given.motor.current_bandwidth > 0.0 ?
-                      -std::expm1(-TWO_PI * given.motor.current_bandwidth / given.solver.rate) :
-                      1.0)
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
 {
@@ -102,7 +99,6 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   load_clamped = false;
   temperature = parameters.input.temperature;
   resetHeat();
-  drive_torque = 0.0;
   brake_engaged = parameters.brake.engaged_at_start;
   brake_commanded = brake_engaged;
   sensors.reset();
@@ -112,7 +108,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   outputs = {};
   last_failed = std::numeric_limits<Stamp>::min();
   last_doubtful = last_failed;
-  fillOutputs(0.0, true);
+  fillOutputs(true);
   observe();
   return settled;
 }
@@ -226,12 +222,6 @@ double Twin::Impl::commandInForce() noexcept
   return commanded ? command : 0.0;
 }
 
-/// Whether the drive, which sees the motor's speed once a step, holds the speed limit too stiffly for that.
-bool Twin::Impl::overshoots(const Motor::Drive& drive) const noexcept
-{
-  return drive.slope > model.motor.inertia() * parameters.solver.rate;
-}
-
 void Twin::Impl::step() noexcept
 {
   now += step_length;
@@ -240,19 +230,18 @@ void Twin::Impl::step() noexcept
   takeInputs();
   moveBrake();
   takeSurface();
-  const Motor::Drive drive = model.motor.drive(commandInForce(), stepper.speeds()[0]);
-  driveCurrent(drive.torque);
-  const double motor_torque = drive_torque * model.motor.torqueFactor(greaseTemperature());
-  const bool converged = stepper.step({ motor_torque, load_torque, brake_engaged, greaseTemperature() }) && followed;
-  takeHeat(drive_torque);
+  const double wanted = commandInForce();
+  const double within_limit = model.motor.clamped(wanted);
+  const bool converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  takeHeat(stepper.driveTorque());
   ++counters.steps;
-  counters.torque_clamped += drive.clamped ? 1 : 0;
-  counters.speed_limited += drive.held ? 1 : 0;
+  counters.torque_clamped += within_limit != wanted ? 1 : 0;
+  counters.speed_limited += stepper.isSpeedLimited() ? 1 : 0;
   counters.load_clamped += load_clamped ? 1 : 0;
   const bool cut = stepper.status().cuts > 0;
   const bool jumped = stepper.status().jumps > 0;
-  fillOutputs(motor_torque, converged);
-  const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE || overshoots(drive);
+  fillOutputs(converged);
+  const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE;
   counters.overloads += std::abs(outputs.joint_torque) > parameters.output.torque_limit ? 1 : 0;
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += cut ? 1 : 0;
@@ -261,12 +250,6 @@ void Twin::Impl::step() noexcept
   last_failed = converged ? last_failed : now;
   last_doubtful = cut || jumped || coarse ? now : last_doubtful;
   observe();
-}
-
-/// The current loop, of first order.
-void Twin::Impl::driveCurrent(double torque) noexcept
-{
-  drive_torque = current_share == 1.0 ? torque : drive_torque + current_share * (torque - drive_torque);
 }
 
 /// Carries out the last command of the brake once its delay is over.
@@ -312,7 +295,7 @@ void Twin::Impl::takeHeat(double motor_torque) noexcept
   }
 }
 
-void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
+void Twin::Impl::fillOutputs(bool converged) noexcept
 {
   const RingResponse& ring = stepper.dynamics().response();
   const Eigen::Vector2d& friction = stepper.frictionTorque();
@@ -321,7 +304,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
   outputs.motor_velocity = stepper.speeds()[0];
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
-  outputs.motor_torque = motor_torque;
+  outputs.motor_torque = stepper.dynamics().shaftTorque();
   outputs.load_torque = load_torque;
   outputs.temperature = greaseTemperature();
   outputs.housing_temperature = heat ? heat->housing() : temperature;
@@ -343,7 +326,7 @@ void Twin::Impl::fillOutputs(double motor_torque, bool converged) noexcept
 /// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
-  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, drive_torque);
+  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, stepper.driveTorque());
   monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
                    outputs.motor_torque, outputs.joint_torque });
   if (watching && now / step_length % steps_per_sample == 0)

@@ -54,10 +54,9 @@ struct Twin::Impl
   bool load_clamped{};
   double temperature{};  // received or configured: of the drive, or of its surroundings [degC]
   std::optional<DriveHeat> heat;
-  Stamp heat_stamp{};     // up to where the losses are in it
-  double heat_booked{};   // of the dissipated energy [J]
-  double copper_heat{};   // not yet in it [J]
-  double drive_torque{};  // of the motor's current at 25 degC [N.m]
+  Stamp heat_stamp{};    // up to where the losses are in it
+  double heat_booked{};  // of the dissipated energy [J]
+  double copper_heat{};  // not yet in it [J]
   bool brake_engaged{};
   bool brake_commanded{};
   Stamp brake_moves{};  // when the command is carried out
@@ -69,7 +68,6 @@ struct Twin::Impl
   Stamp steps_per_sample;
   Stamp steps_per_heat;
   bool watching{};               // indicators are made of the readings
-  double current_share;          // of the way to the torque wanted that the current takes in a step [-]
   Eigen::VectorXd tooth_angles;  // at rest [rad]
   Stamp last_failed{};           // instant of the last step that did not converge; before any: the earliest
   Stamp last_doubtful{};         // likewise of one that was cut, too long, or in which a tooth jumped
@@ -82,13 +80,11 @@ private:
   void takeInputs() noexcept;
   void takeSurface() noexcept;
   double commandInForce() noexcept;
-  bool overshoots(const Motor::Drive& drive) const noexcept;
   double greaseTemperature() const noexcept;
   void resetHeat() noexcept;
   void takeHeat(double motor_torque) noexcept;
-  void driveCurrent(double torque) noexcept;
   void moveBrake() noexcept;
-  void fillOutputs(double motor_torque, bool converged) noexcept;
+  void fillOutputs(bool converged) noexcept;
   void observe() noexcept;
   void takeReadings() noexcept;
 };

@@ -152,12 +152,57 @@ TEST(AdaptiveStepper, followsRandomInputs)
     {
       input.stamp = (input.stamp / MILLISECOND + 1) * MILLISECOND;
     }
-    // The drive's speed limit acts by the speed at the last instant.
     const Course fixed = run(onSurface({ "solver.rate=200000" }), inputs, DURATION);
-    const Course course = run(adaptive("1.0e-8", { "solver.rate=10000" }), inputs, DURATION);
+    const Course course = run(adaptive("1.0e-8"), inputs, DURATION);
     EXPECT_LT(between(fixed, course).output_angle, 1e-3) << seed;
     EXPECT_LT(imbalance(course), 3e-3) << seed;
   }
+}
+
+/// At the speed limit from 30 ms on, off it under load and back, the torque reversed there and up to the limit again.
+Inputs limitedInputs()
+{
+  return { { MILLISECOND, InputKind::MOTOR_TORQUE, 1.0, {} },
+           { 120 * MILLISECOND, InputKind::LOAD_TORQUE, 90.0, {} },
+           { 200 * MILLISECOND, InputKind::LOAD_TORQUE, -40.0, {} },
+           { 260 * MILLISECOND, InputKind::MOTOR_TORQUE, -1.0, {} } };
+}
+
+TEST(AdaptiveStepper, holdsTheDrivesLimitAndLagAtAnyRate)
+{
+  constexpr double LIMIT = 60.0;  // [rad/s]
+  for (const char* bandwidth : { "0.0", "150.0", "2000.0" })
+  {
+    const std::vector<std::string> drive{ "motor.speed_limit=60.0",
+                                          std::string("motor.current_bandwidth=") + bandwidth };
+    std::vector<std::string> fixed = drive;
+    fixed.emplace_back("solver.rate=1.0e+6");
+    const Course fine = run(onSurface(fixed), limitedInputs(), EVENTFUL);
+    const Course course = run(adaptive("1.0e-9", drive), limitedInputs(), EVENTFUL);
+    const Differences apart = between(fine, course);
+    EXPECT_LT(apart.motor_angle, 2e-3) << bandwidth;  // of 10 rad
+    EXPECT_LT(apart.output_angle, 4e-5) << bandwidth;
+    EXPECT_GT(course[99].motor_velocity, 0.98 * LIMIT);
+    EXPECT_LT(imbalance(course), 1e-3) << bandwidth;
+    for (std::size_t i = 0; i < course.size(); ++i)
+    {
+      ASSERT_NEAR(course[i].motor_torque, fine[i].motor_torque, 0.05) << bandwidth << " at " << i;
+    }
+  }
+}
+
+TEST(AdaptiveStepper, breaksAwayWhenTheCurrentHasRisen)
+{
+  // 1 N.m in the end, 0.08 N.m after 13 ms.
+  const std::vector<std::string> slow{ "motor.current_bandwidth=1.0" };
+  const Inputs inputs{ { MILLISECOND, InputKind::MOTOR_TORQUE, 1.0, {} } };
+  const Course course = run(adaptive("1.0e-9", slow), inputs, 60 * MILLISECOND);
+  std::vector<std::string> fixed = slow;
+  fixed.emplace_back("solver.rate=1.0e+6");
+  const Course fine = run(onSurface(fixed), inputs, 60 * MILLISECOND);
+  EXPECT_EQ(course[4].motor_angle, 0.0);
+  EXPECT_GT(course[59].motor_angle, 0.1);
+  EXPECT_LT(between(course, fine).motor_angle, 1e-3 * course[59].motor_angle);
 }
 
 TEST(AdaptiveStepper, balancesItsEnergy)

@@ -122,7 +122,7 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
   double worst = 0.0;
   for (int i = 0; i < 10000; ++i)
   {
-    dynamics.inputs = drive.next(model.motor, leapfrog.speeds()[0]);
+    dynamics.inputs = drive.next();
     leapfrog.do_step(dynamics, x, 0.0, 1e-4);
     ASSERT_TRUE(dynamics.status.ok());
     const Eigen::Vector2d after = x.segment<2>(MOTOR_SPEED);
@@ -158,7 +158,7 @@ TEST(Dissipation, IsNeverNegative)
   x[OUTPUT_ANGLE] = dynamics.ring().position().output_angle;
   for (int i = 0; i < 10000; ++i)
   {
-    dynamics.inputs = drive.next(model.motor, leapfrog.speeds()[0]);
+    dynamics.inputs = drive.next();
     const Eigen::Vector2d before = x.segment<2>(MOTOR_SPEED);
     const double dissipated = x[DISSIPATED];
     leapfrog.do_step(dynamics, x, 0.0, 1e-4);
@@ -434,7 +434,7 @@ TEST(DividedStep, GoesAsThatManyStepsDo)
     double fastest = 0.0;
     for (int i = 0; i < 1000; ++i)
     {
-      const JointInputs inputs = drive.next(model.motor, divided.speeds()[0]);
+      const JointInputs inputs = drive.next();
       ASSERT_TRUE(divided.step(inputs));
       for (int j = 0; j < substeps; ++j)
       {

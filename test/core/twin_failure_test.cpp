@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -150,16 +151,27 @@ TEST(DoubtfulStep, IsDividedWhereTheParametersSaySo)
   EXPECT_NEAR(coarse.outputs().phase_advance, 0.28 / 11.0, 0.002);
 }
 
-TEST(DoubtfulStep, IsSaidWhenTheDriveHoldsItsSpeedTooStiffly)
+TEST(SpeedLimit, IsHeldHoweverStiffly)
 {
-  for (const bool stiff : { false, true })
+  // The drive gives its torque up within 0.2 rad/s, by 35 times the motor's momentum there in a step.
+  const std::vector<std::string> stiff{ "motor.torque_limit=12.0", "motor.speed_limit=10.0" };
+  // A lag overshoots for less than a step.
+  for (const auto& [bandwidth, error] : { std::pair("0.0", 4e-3), std::pair("2000.0", 2e-2) })
   {
-    Twin twin(
-        goldenParameters({ "motor.torque_limit=12.0", stiff ? "motor.speed_limit=10.0" : "motor.speed_limit=700.0" }));
+    std::vector<std::string> drive = stiff;
+    drive.push_back(std::string("motor.current_bandwidth=") + bandwidth);
+    Twin twin(goldenParameters(drive));
+    drive.emplace_back("solver.rate=1.0e+5");
+    Twin fine(goldenParameters(drive));
     twin.commandMotorTorque(0, 12.0);
+    fine.commandMotorTorque(0, 12.0);
     const TwinCounters counters = countersAfter(twin, 80 * MILLISECOND);
-    EXPECT_GT(counters.speed_limited, 0U);
-    EXPECT_EQ(counters.coarse_steps > 0, stiff);
+    countersAfter(fine, 80 * MILLISECOND);
+    EXPECT_GT(counters.speed_limited, 600U);
+    EXPECT_EQ(counters.coarse_steps, 0U);
+    EXPECT_GT(twin.outputs().motor_velocity, 9.8);
+    EXPECT_LT(twin.outputs().motor_velocity, 10.0);
+    EXPECT_NEAR(twin.outputs().motor_angle, fine.outputs().motor_angle, error) << bandwidth;
   }
 }
 

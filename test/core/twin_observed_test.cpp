@@ -105,8 +105,9 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
 /// What one reader of the health was told of the solver, another is told as well.
 TEST(ObservedHealth, HasAReportForEveryReader)
 {
-  Twin twin(shippedParameters({ "motor.speed_limit=1.0" }));  // steps are too long for how stiffly the drive holds it
-  twin.commandMotorTorque(0, 2.0);
+  // Steps are too long for the swing on a shaft that gives way, under a load that presses the bearing.
+  Twin twin(goldenParameters({ "motor.presliding_angle=1.2e-3", "input.temperature=0.0" }));
+  twin.commandLoadTorque(0, 150.0);
   advance(twin, 20 * MILLISECOND);
   for (int reader = 0; reader < 2; ++reader)
   {
