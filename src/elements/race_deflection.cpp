@@ -70,6 +70,26 @@ void RaceDeflection::addIdleBall(int ball, double depth) noexcept
   add({ Where::UNDER_BALL, ball, 0.0, depth, 0.0 });
 }
 
+double RaceDeflection::shareAt(double angle, double ball_pitch) noexcept
+{
+  return bump(angle, 0.0, ball_pitch).value;
+}
+
+double RaceDeflection::deepest() const noexcept
+{
+  double sum = 0.0;
+  for (std::size_t k = 0; k < size_; ++k)
+  {
+    sum += spalls_[k].depth;
+  }
+  return sum;
+}
+
+bool RaceDeflection::dropsOneBall() const noexcept
+{
+  return size_ == 1 && (spalls_[0].where == Where::BALL || 2.0 * spalls_[0].half <= TWO_PI / balls_);
+}
+
 double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const noexcept
 {
   return TWO_PI * ball / balls_ + cage_rate_ * wave_generator_angle;

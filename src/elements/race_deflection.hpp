@@ -51,6 +51,14 @@ public:
   /// How far a ball drops through all its spalls.
   Drop drop(int ball, double wave_generator_angle) const noexcept;
 
+  /// Share of a ball's drop that the race sags by, at an angle from the ball [-].
+  static double shareAt(double angle, double ball_pitch) noexcept;
+
+  /// No ball drops deeper [m].
+  double deepest() const noexcept;
+  /// Whether no two balls ever drop at once: one defect, shorter than from ball to ball.
+  bool dropsOneBall() const noexcept;
+
   int balls() const noexcept { return balls_; }
   /// Of a ball in the housing [rad], not within a turn.
   double ballPlace(int ball, double wave_generator_angle) const noexcept;

@@ -77,9 +77,10 @@ SurfaceCell::Energy SurfaceCell::energy() const noexcept
            value(left.curvature, right.curvature) * per_height_ * per_height_ };
 }
 
-ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations)
+ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations, std::optional<BallDrops> balls)
   : table_(std::move(table))
   , deviations_(std::move(deviations))
+  , balls_(std::move(balls))
   , pitches_per_radian_(1.0 / table_.pitch)
   , inverse_ratio_(1.0 / table_.ratio)
   , line_index_(table_.lines)
@@ -121,8 +122,9 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   place.deviation = {};
   if (!deviations_.pitches.empty())
   {
-    locateDeviation(pitch, part, place);
+    locateDeviation(pitch - deviations_.shift, part, place);
   }
+  place.balls = balls_ ? balls_->at(motor_angle, v) : BallDrops::Change{};
   return true;
 }
 
@@ -182,6 +184,10 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
     response.velocity_ratio += place.deviation.value(SurfaceNode::VELOCITY_RATIO);
     response.output_stiffness += place.deviation.value(SurfaceNode::OUTPUT_STIFFNESS);
   }
+  if (balls_)
+  {
+    addBalls(place.balls, energy, response);
+  }
   const double per_pitch = pitches_per_radian_;
   const double k_uu = energy.by_uu * per_pitch * per_pitch;
   const double k_uv = energy.by_uv * per_pitch;
@@ -194,6 +200,25 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
   housing_stiffness[1] = by_output;
   return response;
+}
+
+/// The energy's own curvature changes stiffness and velocity ratio: that between motor and output is -ratio times stiffness.
+void ResponseSurface::addBalls(const BallDrops::Change& change, SurfaceCell::Energy& energy,
+                               RingResponse& response) const noexcept
+{
+  energy.value += change.energy;
+  energy.by_u += change.by_u;
+  energy.by_v += change.by_v;
+  energy.by_uu += change.by_uu;
+  energy.by_uv += change.by_uv;
+  energy.by_vv += change.by_vv;
+  const double stiffness = response.output_stiffness + change.by_vv;
+  const double across = change.by_uv * pitches_per_radian_ - change.by_vv * inverse_ratio_;
+  if (stiffness > 0.0)
+  {
+    response.velocity_ratio = (response.velocity_ratio * response.output_stiffness - across) / stiffness;
+    response.output_stiffness = stiffness;
+  }
 }
 
 void ResponseSurface::friction(const Place& place, RingFrictionResponse& friction) const noexcept
@@ -217,6 +242,12 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
     friction.flank_by_output[i] = x[FLANKS + GROUPS + i];
     friction.rms_slip_by_motor[i] = x[FLANKS + 2 * GROUPS + i];
     friction.rms_slip_by_output[i] = x[FLANKS + 3 * GROUPS + i];
+  }
+  if (balls_)
+  {
+    friction.contact_force += place.balls.contact_force;
+    friction.flank_by_motor *= 1.0 + place.balls.flanks;
+    friction.flank_by_output *= 1.0 + place.balls.flanks;
   }
 }
 }  // namespace hjt

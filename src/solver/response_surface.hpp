@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "model/ring_response.hpp"
+#include "solver/ball_drops.hpp"
 
 namespace hjt
 {
@@ -138,6 +140,7 @@ struct DeviationTable
   };
   std::vector<Pitch> pitches;  ///< none: there are no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
+  int shift{};                 ///< of the pattern against that of the table: so many teeth on; >= 0
 };
 
 /// Which of ascending values lies below a given one, in constant time.
@@ -218,15 +221,17 @@ private:
 };
 
 /// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
-/// again after one tooth pitch; with deviations, for one that is the same again after more.
+/// again after one tooth pitch; with deviations, for one that is the same again after more; with drops of balls, for one
+/// whose bearing is faulty.
 ///
 /// The stored energy is one function, piecewise bicubic after Hermite, from its values, slopes and mixed derivative at
 /// the nodes; both torques are its derivatives, so what goes in comes out again. What friction needs is bilinear.
 class ResponseSurface
 {
 public:
-  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table.
-  explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {});
+  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table. `balls`: of the same
+  /// gear, if its bearing is faulty.
+  explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {}, std::optional<BallDrops> balls = {});
 
   /// A place on the surface.
   struct Place
@@ -235,6 +240,7 @@ public:
     SurfaceCell deviation;  ///< empty where nothing departs
     bool lobes_swapped{};   ///< against how the deviations were measured
     double at{};            ///< v [rad]
+    BallDrops::Change balls;
   };
 
   /// False, and nothing done, outside the table or at angles that are no numbers.
@@ -260,7 +266,8 @@ public:
   /// Bilinear, of any value but the energy's.
   static double value(const Place& place, int which) noexcept
   {
-    return place.cell.value(which) + (place.deviation.empty() ? 0.0 : place.deviation.value(which));
+    return place.cell.value(which) + (place.deviation.empty() ? 0.0 : place.deviation.value(which)) +
+           (which == SurfaceNode::CONTACT_FORCE ? place.balls.contact_force : 0.0);
   }
 
   /// All of these, without those of the energy.
@@ -279,14 +286,17 @@ public:
 
   const SurfaceTable& table() const noexcept { return table_; }
   const DeviationTable& deviations() const noexcept { return deviations_; }
+  const std::optional<BallDrops>& balls() const noexcept { return balls_; }
   double lowest() const noexcept { return table_.lines.front(); }  ///< of v [rad]
   double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
 
 private:
+  void addBalls(const BallDrops::Change& change, SurfaceCell::Energy& energy, RingResponse& response) const noexcept;
   void locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept;
 
   SurfaceTable table_;
   DeviationTable deviations_;
+  std::optional<BallDrops> balls_;
   double pitches_per_radian_;
   double inverse_ratio_;
   LineIndex line_index_;

@@ -23,7 +23,7 @@ struct CachedFile
 
 bool beginsLikeATable(const std::string& name)
 {
-  return name.rfind("surface_", 0) == 0 || name.rfind("deviations_", 0) == 0;
+  return name.rfind("surface_", 0) == 0 || name.rfind("deviations_", 0) == 0 || name.rfind("balls_", 0) == 0;
 }
 
 std::string megabytes(std::uintmax_t bytes)

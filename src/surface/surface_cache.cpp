@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.hpp"
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
 #include "base/whole_file.hpp"
@@ -26,6 +27,7 @@
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
 #include "solver/arc_elimination.hpp"
+#include "surface/ball_builder.hpp"
 #include "surface/cache_folder.hpp"
 #include "surface/deviation_builder.hpp"
 #include "surface/mapped_file.hpp"
@@ -95,6 +97,24 @@ std::string body(const DeviationTable& table)
     append(bytes, pitch.lines.data(), pitch.lines.size());
     append(bytes, pitch.nodes.data(), pitch.nodes.size());
   }
+  return bytes;
+}
+
+std::string body(const BallTable& table)
+{
+  std::string bytes;
+  const std::array<double, 10> numbers{ table.pitch,
+                                        table.ratio,
+                                        table.deepest,
+                                        table.turn,
+                                        table.scale,
+                                        table.lowest,
+                                        table.step,
+                                        static_cast<double>(table.lines),
+                                        static_cast<double>(table.columns),
+                                        static_cast<double>(table.places) };
+  append(bytes, numbers.data(), numbers.size());
+  append(bytes, table.coefficients.data(), table.coefficients.size());
   return bytes;
 }
 
@@ -207,6 +227,36 @@ bool parseBody(BodyReader& reader, DeviationTable& table)
   return good && reader.complete();
 }
 
+bool parseBody(BodyReader& reader, BallTable& table)
+{
+  for (double* number :
+       { &table.pitch, &table.ratio, &table.deepest, &table.turn, &table.scale, &table.lowest, &table.step })
+  {
+    reader.number(*number);
+  }
+  const std::size_t lines = reader.size(1.0);
+  const std::size_t columns = reader.size(1.0);
+  const std::size_t places = reader.size(1.0);
+  std::vector<double> numbers;
+  reader.numbers(numbers, (lines + 3) * columns * places * BallTable::VALUES);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const auto is_positive = [](double x) { return std::isfinite(x) && x > 0.0; };
+  if (!reader.complete() || !std::all_of(numbers.begin(), numbers.end(), is_finite) || !is_finite(table.lowest) ||
+      !is_positive(table.pitch) || !is_finite(table.ratio) || !is_positive(table.turn) || !is_positive(table.scale) ||
+      !is_positive(table.step))
+  {
+    return false;
+  }
+  table.lines = static_cast<int>(lines);
+  table.columns = static_cast<int>(columns);
+  table.places = static_cast<int>(places);
+  for (std::size_t i = 0; i < numbers.size(); i += BallTable::VALUES)
+  {
+    table.coefficients.emplace_back(Eigen::Map<const BallTable::Coefficients>(&numbers[i]));
+  }
+  return true;
+}
+
 /// A file holds the header, the body and the hash of both. The table's nodes stay in it.
 template <class Table>
 bool readFile(const std::string& path, const std::string& wanted, Table& table)
@@ -298,6 +348,27 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   }
   return std::move(built.table);
 }
+/// Beside a twin that runs, one processor is left to it.
+unsigned threadsFor(const SurfaceSource& source)
+{
+  return std::max(1u, processors() - (source.background ? 1u : 0u));
+}
+
+/// From the cache, or built and put there.
+std::optional<BallTable> obtainBallTable(const Parameters& parameters, const JointModel& model,
+                                         const std::string& faults, const SurfaceTable& surface,
+                                         const SurfaceSource& source)
+{
+  RaceDeflection spalled(parameters.bearing);
+  spalled.addOuterSpall(0.0, parameters.fault_scale.spall_depth, parameters.fault_scale.spall_length);
+  const double deepest = std::max(spalled.deepest(), parameters.fault_scale.cage_deflection);
+  return obtain<BallTable>("balls", header(parameters, faults + "a ball that drops by " + numberText(deepest)), source,
+                           [&]
+                           {
+                             return buildBallTable(parameters, model, deepest, surface.lines.front(),
+                                                   surface.lines.back(), source.progress, threadsFor(source));
+                           });
+}
 }  // namespace
 
 std::string surfaceCacheDirectory()
@@ -331,8 +402,7 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
     return std::nullopt;
   }
   const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
-  // Beside a twin that runs, one processor is left to it.
-  const unsigned threads = std::max(1u, processors() - (source.background ? 1u : 0u));
+  const unsigned threads = threadsFor(source);
   std::optional<SurfaceTable> table = obtain<SurfaceTable>(
       "surface", key, source,
       [&] { return buildSurface(equal_parameters, equal, source.progress, MAX_SURFACE_POINTS, threads); });
@@ -369,5 +439,27 @@ SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointMode
                     nullptr;
   };
   return source.pool ? source.pool->obtain(header(parameters, faults), make) : make();
+}
+
+SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
+                                       const SurfaceSource& source)
+{
+  const auto make = [&]() -> SurfacePool::Surface
+  {
+    std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
+    if (tables && !tables->deviations.pitches.empty())
+    {
+      tell(source, NO_SURFACE + "the bearing is faulty and teeth differ" + FULL_RING_INSTEAD);
+      return nullptr;
+    }
+    std::optional<BallTable> balls =
+        tables ? obtainBallTable(parameters, model, faults, tables->table, source) : std::nullopt;
+    return balls ?
+               std::make_shared<const ResponseSurface>(std::move(tables->table), DeviationTable{},
+                                                       BallDrops(std::make_shared<const BallTable>(std::move(*balls)),
+                                                                 RaceDeflection(parameters.bearing))) :
+               nullptr;
+  };
+  return source.pool ? source.pool->obtain(header(parameters, faults) + "with balls that drop", make) : make();
 }
 }  // namespace hjt

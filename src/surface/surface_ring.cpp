@@ -187,15 +187,20 @@ double SurfaceRing::frictionTolerance(const Node& node) const noexcept
              std::max(motorTolerance(node), SHARE * frictionTorque(node));
 }
 
-double SurfaceRing::frictionTorque(const Node& node) const noexcept
+double SurfaceRing::flankFriction(const Node& node) noexcept
 {
   double flanks = 0.0;
   for (int i = SurfaceNode::FLANKS; i < SurfaceNode::FLANKS + RingFrictionResponse::FLANK_GROUPS; ++i)
   {
     flanks += std::abs(node[i] + node[SurfaceNode::VELOCITY_RATIO] * node[i + RingFrictionResponse::FLANK_GROUPS]);
   }
+  return flanks;
+}
+
+double SurfaceRing::frictionTorque(const Node& node) const noexcept
+{
   return model_.bearing.torque(0.0, node[SurfaceNode::CONTACT_FORCE], temperature_) + node[SurfaceNode::RING_TORQUE] +
-         static_friction_ * flanks;
+         static_friction_ * flankFriction(node);
 }
 
 bool SurfaceRing::isMirrored()

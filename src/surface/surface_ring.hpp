@@ -39,6 +39,9 @@ public:
   double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]
   double torqueLimit() const noexcept { return torque_limit_; }  ///< of load or motor, at the output [N.m]
   const JointModel& model() const noexcept { return model_; }
+  JointModel& editModel() noexcept { return model_; }  ///< between two moves
+  /// Of the wave generator on each tooth, N, at the present place [N].
+  const Eigen::VectorXd& contactForce() const noexcept { return ring_.forces().of<WaveGeneratorContact>().force; }
 
   /// Departure from no load that brings about this torque on the softest slope of the cup [rad].
   double twist(double torque) const noexcept { return torque / softest_; }
@@ -56,6 +59,9 @@ public:
 
   /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
+
+  /// Of the flanks alone, per unit of their coefficient [N.m].
+  static double flankFriction(const SurfaceNode& node) noexcept;
 
   /// Teeth that the gear must turn by to be the same again at the same v: 1 where all teeth are equal, half a turn or a
   /// whole one where those of one member differ; 0: none of these. As torques of both signs tell, sampled once a pitch.

@@ -5,9 +5,11 @@
 #include <exception>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "base/number_text.hpp"
 #include "model/faults/joint_faults.hpp"
+#include "params/variants.hpp"
 
 namespace hjt
 {
@@ -30,35 +32,82 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// Balls meet a spall differently at every turn: a table over the angles of motor and output cannot contain that.
-bool isOfTheBalls(const ActiveFault& active) noexcept
+/// The one fault of a gear of equal teeth that sits on a tooth or segment of the flexspline; null: it is not so.
+const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& faults)
 {
-  const FaultKind kind = active.fault.kind;
-  return kind == FaultKind::BEARING_INNER_RACE || kind == FaultKind::BEARING_OUTER_RACE ||
-         kind == FaultKind::BEARING_BALL || kind == FaultKind::BEARING_CAGE;
+  Parameters without = parameters;
+  without.faults.clear();
+  const Fault* fault = faults.size() == 1 ? &faults.begin()->fault : nullptr;
+  const bool local =
+      fault != nullptr && fault->place > 0 &&
+      (describe(fault->kind).place == FaultPlace::TOOTH || describe(fault->kind).place == FaultPlace::SEGMENT);
+  return local && teethAreAlike(without) ? fault : nullptr;
+}
+
+/// The surface of a fault of tooth 0 serves for all: the gear is the same, turned by so many pitches.
+SurfacePool::Surface shiftedSurface(const Parameters& parameters, Fault fault, const SurfaceSource& source)
+{
+  const int place = fault.place;
+  fault.place = 0;
+  FaultList first;
+  first.set(fault, 0);
+  const SurfacePool::Surface surface =
+      sharedSurface(parameters, JointFaults(parameters, first).model(), keyOf(first), source);
+  if (!surface)
+  {
+    return nullptr;
+  }
+  DeviationTable deviations = surface->deviations();
+  deviations.shift = place;
+  return std::make_shared<const ResponseSurface>(surface->table(), std::move(deviations));
+}
+
+SurfacePool::Surface none(const std::string& why, const SurfaceSource& source)
+{
+  if (source.notice)
+  {
+    source.notice("no response surface " + why + ": the twin solves the full ring at every step");
+  }
+  return nullptr;
 }
 }  // namespace
+
+bool isOfTheBalls(const Fault& fault) noexcept
+{
+  return fault.kind == FaultKind::BEARING_INNER_RACE || fault.kind == FaultKind::BEARING_OUTER_RACE ||
+         fault.kind == FaultKind::BEARING_BALL || fault.kind == FaultKind::BEARING_CAGE;
+}
 
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source)
 {
   if (parameters.contact.support == SupportKind::SINGLE_BALLS)
   {
-    if (source.notice)
-    {
-      source.notice("no response surface on single balls: the twin solves the full ring at every step");
-    }
-    return nullptr;
+    return none("on single balls", source);
   }
-  if (std::any_of(faults.begin(), faults.end(), isOfTheBalls))
+  FaultList of_the_balls;
+  FaultList others;
+  for (const ActiveFault& active : faults)
   {
-    if (source.notice)
-    {
-      source.notice("no response surface with a fault of the bearing: the twin solves the full ring at every step");
-    }
-    return nullptr;
+    (isOfTheBalls(active.fault) ? of_the_balls : others).set(active.fault, active.since);
   }
-  return sharedSurface(parameters, JointFaults(parameters, faults).model(), keyOf(faults), source);
+  const JointModel model = JointFaults(parameters, others).model();
+  if (of_the_balls.empty())
+  {
+    const Fault* of_a_tooth = singleFaultOfATooth(parameters, others);
+    return of_a_tooth != nullptr ? shiftedSurface(parameters, *of_a_tooth, source) :
+                                   sharedSurface(parameters, model, keyOf(others), source);
+  }
+  const RaceDeflection bearing =
+      JointFaults(parameters, of_the_balls).model().ring.of<WaveGeneratorContact>().bearing();
+  if (!bearing.dropsOneBall())
+  {
+    return none("with more than one fault of the bearing, or a spall longer than from ball to ball", source);
+  }
+  const SurfacePool::Surface surface = sharedBallSurface(parameters, model, keyOf(others), source);
+  return surface ? std::make_shared<const ResponseSurface>(surface->table(), DeviationTable{},
+                                                           BallDrops(surface->balls()->table(), bearing)) :
+                   nullptr;
 }
 
 SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source)

@@ -13,6 +13,9 @@
 
 namespace hjt
 {
+/// Of the wave generator's bearing: a table over the angles of motor and output does not contain them.
+bool isOfTheBalls(const Fault& fault) noexcept;
+
 /// The response surface of the drive with these faults; if there is none, the source gets the reason.
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -57,27 +58,83 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   }
 }
 
-/// The surface of the drive with the faults it starts with.
+/// The surfaces of the drive with its configured faults, or a thread that obtains that of the present ones.
 void Twin::Impl::prepareSurface(const SurfaceSource& source)
 {
-  surface_faults = active;
   if (source.background)
   {
+    surface_faults = active;
     surface_worker = std::make_unique<SurfaceWorker>(parameters, active, source);
   }
   else
   {
-    surface = surfaceWithFaults(parameters, active, source);
+    prepareStages(source);
   }
+}
+
+/// One surface for each set of faults that the configured ones make as they set in one after the other. Where these are
+/// so many as a fault that grows makes, only for the first and the last: their tables would take longer than the run.
+void Twin::Impl::prepareStages(SurfaceSource source)
+{
+  if (!source.pool)
+  {
+    source.pool = std::make_shared<SurfacePool>(1);  // faults of the bearing that grow have the gear's table in common
+  }
+  FaultSchedule later = waiting;
+  FaultList faults = active;
+  Stamp since = 0;
+  int tables = 1;
+  for (bool more = true; more;)
+  {
+    Fault fault;
+    Stamp stamp{};
+    more = later.pop(std::numeric_limits<Stamp>::max(), fault, stamp);
+    if (!more || stamp > since)
+    {
+      stages.push_back({ faults, nullptr });
+      since = stamp;
+    }
+    if (more)
+    {
+      faults.set(fault, stamp);
+      tables += isOfTheBalls(fault) ? 0 : 1;
+    }
+  }
+  const bool few = tables <= MAX_STAGE_TABLES;
+  for (Stage& stage : stages)
+  {
+    if (few || &stage == &stages.front() || &stage == &stages.back())
+    {
+      stage.surface = surfaceWithFaults(parameters, stage.faults, source);
+    }
+  }
+  if (!few && source.notice)
+  {
+    source.notice(
+        "response surfaces of the first and the last faults only: the twin solves the full ring while "
+        "the others set in, more than " +
+        std::to_string(MAX_STAGE_TABLES));
+  }
+}
+
+/// That of the faults that are active, if it is there.
+const ResponseSurface* Twin::Impl::presentSurface() const noexcept
+{
+  if (surface_worker)
+  {
+    return isSame(active, surface_faults) ? surface_worker->surface() : nullptr;
+  }
+  const auto stage =
+      std::find_if(stages.begin(), stages.end(), [this](const Stage& each) { return isSame(active, each.faults); });
+  return stage != stages.end() ? stage->surface.get() : nullptr;
 }
 
 /// The surface while it is that of the present faults; else the full ring, until one is there that was built beside.
 void Twin::Impl::useSurface() noexcept
 {
-  const ResponseSurface* ready = surface_worker ? surface_worker->surface() : surface.get();
-  const bool fits = ready != nullptr && isSame(active, surface_faults);
-  stepper.useSurface(fits ? ready : nullptr);
-  surface_awaited = surface_worker && !fits;
+  const ResponseSurface* present = presentSurface();
+  stepper.useSurface(present);
+  surface_awaited = surface_worker && present == nullptr;
 }
 
 bool Twin::Impl::reset(Stamp stamp) noexcept

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "elements/drive_heat.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
@@ -36,8 +37,16 @@ struct Twin::Impl
   const JointModel& model;
   FaultList active;
   FaultSchedule waiting;
-  FaultList surface_faults;  // of the surface requested
-  std::shared_ptr<const ResponseSurface> surface;
+  static constexpr int MAX_STAGE_TABLES = 4;
+
+  /// A set of faults of the configured ones, with its surface.
+  struct Stage
+  {
+    FaultList faults;
+    std::shared_ptr<const ResponseSurface> surface;  ///< may be none
+  };
+  std::vector<Stage> stages;  // where the twin waits for its surfaces
+  FaultList surface_faults;   // of the surface requested, where it does not
   std::unique_ptr<SurfaceWorker> surface_worker;
   bool surface_awaited{};
   JointStepper stepper;
@@ -74,6 +83,8 @@ struct Twin::Impl
 
 private:
   void prepareSurface(const SurfaceSource& source);
+  void prepareStages(SurfaceSource source);
+  const ResponseSurface* presentSurface() const noexcept;
   void useSurface() noexcept;
   void scheduleConfigured(Stamp stamp) noexcept;
   bool takeFaults() noexcept;

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/ball_drops.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hjt
+{
+namespace
+{
+using Weights = std::array<double, 4>;
+
+/// Cubic B-splines of the four nearest knots and their derivatives, `t` from the second to the third one.
+struct Spline
+{
+  explicit Spline(double t) noexcept
+  {
+    const double s = 1.0 - t;
+    value = { s * s * s / 6.0, (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0, (4.0 - 3.0 * s * s * (2.0 - s)) / 6.0,
+              t * t * t / 6.0 };
+    rate = { -0.5 * s * s, 0.5 * t * (3.0 * t - 4.0), 0.5 * s * (4.0 - 3.0 * s), 0.5 * t * t };
+    second = { s, 3.0 * t - 2.0, 1.0 - 3.0 * t, t };
+  }
+  Weights value;
+  Weights rate;
+  Weights second;
+};
+
+/// A place on an even grid that is the same again after `count` intervals.
+struct RoundPlace
+{
+  RoundPlace(double at, int count) noexcept
+  {
+    const double turned = at - std::floor(at);
+    const double place = turned * count;
+    const int below = std::min(static_cast<int>(place), count - 1);
+    part = place - below;
+    for (int i = 0; i < 4; ++i)
+    {
+      const int knot = below + i - 1;
+      knots[static_cast<std::size_t>(i)] = knot < 0 ? knot + count : knot < count ? knot : knot - count;
+    }
+  }
+  double part;
+  std::array<int, 4> knots{};
+};
+}  // namespace
+
+BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
+{
+  Change sum;
+  for (int ball = 0; ball < bearing_.balls(); ++ball)
+  {
+    const RaceDeflection::Drop drop = bearing_.drop(ball, motor_angle);
+    if (drop.value != 0.0)
+    {
+      add(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop, sum);
+    }
+  }
+  return sum;
+}
+
+/// Of one ball at a place in the housing [rad].
+void BallDrops::add(double motor_angle, double v, double place, const RaceDeflection::Drop& drop,
+                    Change& sum) const noexcept
+{
+  using Energies = Eigen::Array4d;
+  const BallTable& table = *table_;
+  const RoundPlace u(motor_angle / table.pitch, table.columns);
+  const RoundPlace chi((place - motor_angle) / table.turn, table.places);
+  const double line = (std::asinh(v / table.scale) - table.lowest) / table.step;
+  const int below = std::clamp(static_cast<int>(line), 0, table.lines - 1);
+  const Spline by_u(u.part);
+  const Spline by_w(line - below);
+  const Spline by_chi(chi.part);
+
+  // Energy by the numbers of derivatives: of u, w, chi.
+  Energies e000(0.0, 0.0, 0.0, 0.0);
+  Energies e100 = e000;
+  Energies e010 = e000;
+  Energies e001 = e000;
+  Energies e200 = e000;
+  Energies e110 = e000;
+  Energies e101 = e000;
+  Energies e020 = e000;
+  Energies e011 = e000;
+  Energies e002 = e000;
+  Energies forces = e000;
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    for (std::size_t j = 0; j < 4; ++j)
+    {
+      const BallTable::Coefficients* row = &table.coefficients[static_cast<std::size_t>(
+          ((below + static_cast<int>(i)) * table.columns + u.knots[j]) * table.places)];
+      Energies value(0.0, 0.0, 0.0, 0.0);
+      Energies rate = value;
+      Energies second = value;
+      Energies force = value;
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        const BallTable::Coefficients& c = row[chi.knots[k]];
+        value += by_chi.value[k] * c.head<4>();
+        rate += by_chi.rate[k] * c.head<4>();
+        second += by_chi.second[k] * c.head<4>();
+        force += by_chi.value[k] * c.tail<4>();
+      }
+      const double here = by_w.value[i] * by_u.value[j];
+      const double along = by_w.value[i] * by_u.rate[j];
+      const double across = by_w.rate[i] * by_u.value[j];
+      e000 += here * value;
+      e100 += along * value;
+      e010 += across * value;
+      e001 += here * rate;
+      e200 += by_w.value[i] * by_u.second[j] * value;
+      e110 += by_w.rate[i] * by_u.rate[j] * value;
+      e101 += along * rate;
+      e020 += by_w.second[i] * by_u.value[j] * value;
+      e011 += across * rate;
+      e002 += here * second;
+      forces += here * force;
+    }
+  }
+
+  const double x = drop.value / table.deepest;
+  const Energies power(x, x * x, x * x * x, x * x * x * x);
+  const Energies by_power = Energies(1.0, 2.0 * x, 3.0 * x * x, 4.0 * x * x * x) / table.deepest;
+  const Energies by_power_twice = Energies(0.0, 2.0, 6.0 * x, 12.0 * x * x) / (table.deepest * table.deepest);
+  const auto times = [](const Energies& a, const Energies& b) { return (a * b).sum(); };
+
+  const double root = 1.0 / std::sqrt(v * v + table.scale * table.scale);
+  const double w_v = root / table.step;  // of w, in lines, by v
+  const double w_vv = -v * root * root * root / table.step;
+  const double u_u = table.columns;  // of u, in columns, by pitches
+  // The ball's place against the wave generator, in grid intervals, and its drop by pitches.
+  const double chi_u = (bearing_.cageRate() - 1.0) * table.pitch * table.places / table.turn;
+  const double h_u = drop.rate * table.pitch;
+  const double h_uu = drop.second * table.pitch * table.pitch;
+
+  sum.energy += times(e000, power);
+  sum.by_u += u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
+  sum.by_v += w_v * times(e010, power);
+  sum.by_uu += u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
+               chi_u * (chi_u * times(e002, power) + 2.0 * h_u * times(e001, by_power)) +
+               h_u * h_u * times(e000, by_power_twice) + h_uu * times(e000, by_power);
+  sum.by_uv += w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
+  sum.by_vv += w_v * w_v * times(e020, power) + w_vv * times(e010, power);
+  sum.contact_force += forces[0] * x + forces[1] * x * x;
+  sum.flanks += forces[2] * x + forces[3] * x * x;
+}
+}  // namespace hjt

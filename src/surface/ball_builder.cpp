@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/ball_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "gear/angle.hpp"
+#include "surface/surface_ring.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int LINES = 48;         // intervals of w
+constexpr int COLUMNS = 8;        // of u over a pitch
+constexpr int PLACES = 80;        // of chi over half a turn
+constexpr double SCALE = 1e-3;    // of v: lines are even below it and in even ratios above [rad]
+constexpr double LONGEST = 1e-3;  // way of v at once [rad]
+
+using Coefficients = BallTable::Coefficients;
+
+/// Coefficients of the cubic spline through values on an even grid that is the same again after them.
+void makeRoundSpline(std::vector<Coefficients>& values)
+{
+  // (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]: the inverse is a sum of powers of this, both ways round.
+  const double pole = std::sqrt(3.0) - 2.0;
+  const std::size_t count = values.size();
+  const double closed = 1.0 / (1.0 - std::pow(pole, static_cast<double>(count)));
+  Coefficients sum = Coefficients::Zero();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    sum = values[i] + pole * sum;
+  }
+  sum *= closed;  // of all before the first
+  for (Coefficients& value : values)
+  {
+    sum = value + pole * sum;
+    value = sum;
+  }
+  sum.setZero();
+  for (std::size_t i = count; i-- > 0;)
+  {
+    sum = values[i] + pole * sum;
+  }
+  sum *= closed;
+  for (std::size_t i = count; i-- > 0;)
+  {
+    sum = values[i] + pole * sum;
+    values[i] = -6.0 * pole * sum;
+  }
+}
+
+/// Of the spline without curvature at its ends: two coefficients more than values.
+std::vector<Coefficients> naturalSpline(const std::vector<Coefficients>& values)
+{
+  const std::size_t last = values.size() - 1;
+  std::vector<Coefficients> inner = values;  // at the ends the coefficient is the value
+  std::vector<double> factor(values.size());
+  for (std::size_t i = 1; i < last; ++i)
+  {
+    const double pivot = 4.0 - (i > 1 ? factor[i - 1] : 0.0);
+    factor[i] = 1.0 / pivot;
+    inner[i] = (6.0 * values[i] - inner[i - 1]) / pivot;
+    if (i + 1 == last)
+    {
+      inner[i] -= values[last] / pivot;
+    }
+  }
+  for (std::size_t i = last - 1; i-- > 1;)
+  {
+    inner[i] -= factor[i] * inner[i + 1];
+  }
+  std::vector<Coefficients> all{ 2.0 * inner[0] - inner[1] };
+  all.insert(all.end(), inner.begin(), inner.end());
+  all.push_back(2.0 * inner[last] - inner[last - 1]);
+  return all;
+}
+
+/// One line of the table: a ring from cold, led to it.
+class BallLine
+{
+public:
+  BallLine(const Parameters& parameters, const JointModel& sound, double deepest, double turn)
+    : ring_(parameters, sound)
+    , sound_gap_(sound.ring.of<WaveGeneratorContact>().gap())
+    , deepest_(deepest)
+    , turn_(turn)
+    , ball_pitch_(TWO_PI / parameters.bearing.balls)
+    , share_(Eigen::VectorXd::Zero(sound_gap_.size()))
+  {
+  }
+
+  /// `values`: column by column, place by place. False: no equilibrium.
+  bool measure(double v, int columns, int places, std::vector<Coefficients>& values)
+  {
+    bool good = ring_.insert();
+    const int pieces = static_cast<int>(std::ceil(std::abs(v) / LONGEST));
+    for (int i = 1; i <= pieces && good; ++i)
+    {
+      good = ring_.moveTo(0.0, v * i / pieces);
+    }
+    for (int column = 0; column < columns && good; ++column)
+    {
+      const double angle = ring_.pitch() * column / columns;
+      good = dropTo(0.0, angle, v);
+      const Sample sound = sample();
+      const Eigen::VectorXd force = ring_.contactForce();
+      for (int place = 0; place < places && good; ++place)
+      {
+        for (Eigen::Index i = 0; i < share_.size(); ++i)
+        {
+          share_[i] = RaceDeflection::shareAt(static_cast<double>(i) * ring_.pitch() - angle - turn_ * place / places,
+                                              ball_pitch_);
+        }
+        const double by_drop = -deepest_ * force.dot(share_);
+        values.emplace_back(Coefficients::Zero());
+        // A ball that carries nothing may drop.
+        good = by_drop == 0.0 || measureBall(angle, v, sound, by_drop, values.back());
+      }
+    }
+    return good;
+  }
+
+private:
+  struct Sample
+  {
+    double energy, by_drop, contact_force, flanks;
+  };
+
+  /// The ring where it is. `by_drop` is known of the present `share_`.
+  Sample sample()
+  {
+    const SurfaceNode node = ring_.measure();
+    return { node[SurfaceNode::ENERGY], -deepest_ * ring_.contactForce().dot(share_), node[SurfaceNode::CONTACT_FORCE],
+             ring_.flankFriction(node) };
+  }
+
+  /// With the ball dropped by a part of the deepest.
+  bool dropTo(double part, double angle, double v)
+  {
+    ring_.editModel().ring.edit<WaveGeneratorContact>().gap() = sound_gap_ + part * deepest_ * share_;
+    return ring_.moveTo(angle, v);
+  }
+
+  /// `c1`: derivative of the energy by x in the sound gear [J].
+  bool measureBall(double angle, double v, const Sample& sound, double c1, Coefficients& coefficients)
+  {
+    if (!dropTo(0.5, angle, v))
+    {
+      return false;
+    }
+    const Sample half = sample();
+    if (!dropTo(1.0, angle, v))
+    {
+      return false;
+    }
+    const Sample whole = sample();
+    // U = c1 x + c2 x^2 + c3 x^3 + c4 x^4 with its slopes at 0 and 1 and its values at 1/2 and 1.
+    const double at_half = 16.0 * (half.energy - sound.energy - 0.5 * c1);
+    const double at_whole = whole.energy - sound.energy - c1;
+    const double c2 = at_half - 5.0 * at_whole + whole.by_drop - c1;
+    const double c3 = at_half - at_whole - 3.0 * c2;
+    coefficients.head<4>() << c1, c2, c3, at_whole - c2 - c3;
+    const double square = 2.0 * (whole.contact_force - 2.0 * half.contact_force + sound.contact_force);
+    const double flanks = whole.flanks / sound.flanks - 1.0;
+    const double flanks_square = 2.0 * (flanks - 2.0 * (half.flanks / sound.flanks - 1.0));
+    coefficients.tail<4>() << whole.contact_force - sound.contact_force - square, square, flanks - flanks_square,
+        flanks_square;
+    if (!(sound.flanks > 0.0))
+    {
+      coefficients.tail<2>().setZero();
+    }
+    return true;
+  }
+
+  SurfaceRing ring_;
+  Eigen::VectorXd sound_gap_;
+  double deepest_;
+  double turn_;
+  double ball_pitch_;
+  Eigen::VectorXd share_;  // of the drop that the race sags by over each tooth
+};
+}  // namespace
+
+BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
+                         double highest, const std::function<void(double)>& progress, unsigned threads)
+{
+  BallBuild result;
+  BallTable& table = result.table;
+  const bool lobes_alike = sound.ring.of<WaveGeneratorContact>().repeats();
+  const SurfaceRing reference(parameters, sound);
+  table.pitch = reference.pitch();
+  table.ratio = reference.ratio();
+  table.deepest = deepest;
+  table.turn = lobes_alike ? PI : TWO_PI;
+  table.scale = SCALE;
+  table.lowest = std::asinh(lowest / SCALE);
+  table.lines = LINES;
+  table.step = (std::asinh(highest / SCALE) - table.lowest) / LINES;
+  table.columns = COLUMNS;
+  table.places = lobes_alike ? PLACES : 2 * PLACES;
+
+  std::array<std::vector<Coefficients>, LINES + 1> lines;
+  std::atomic<bool> failed{ false };
+  runTasks(
+      lines.size(), threads,
+      [&](std::size_t i)
+      {
+        if (!failed)
+        {
+          const double v = SCALE * std::sinh(table.lowest + static_cast<double>(i) * table.step);
+          failed =
+              !BallLine(parameters, sound, deepest, table.turn).measure(v, table.columns, table.places, lines[i]) ||
+              failed;
+        }
+      },
+      [&](std::size_t done)
+      {
+        if (progress)
+        {
+          progress(static_cast<double>(done) / static_cast<double>(lines.size()));
+        }
+      });
+  if (failed)
+  {
+    result.failure_reason = "the ring finds no equilibrium where a ball drops";
+    return result;
+  }
+  const auto columns = static_cast<std::size_t>(table.columns);
+  const auto places = static_cast<std::size_t>(table.places);
+  for (std::vector<Coefficients>& line : lines)
+  {
+    for (std::size_t j = 0; j < columns; ++j)
+    {
+      std::vector<Coefficients> row(line.begin() + static_cast<std::ptrdiff_t>(j * places),
+                                    line.begin() + static_cast<std::ptrdiff_t>((j + 1) * places));
+      makeRoundSpline(row);
+      std::copy(row.begin(), row.end(), line.begin() + static_cast<std::ptrdiff_t>(j * places));
+    }
+    for (std::size_t k = 0; k < places; ++k)
+    {
+      std::vector<Coefficients> row;
+      for (std::size_t j = 0; j < columns; ++j)
+      {
+        row.push_back(line[j * places + k]);
+      }
+      makeRoundSpline(row);
+      for (std::size_t j = 0; j < columns; ++j)
+      {
+        line[j * places + k] = row[j];
+      }
+    }
+  }
+  const std::size_t size = columns * places;
+  table.coefficients.resize((lines.size() + 2) * size);
+  for (std::size_t k = 0; k < size; ++k)
+  {
+    std::vector<Coefficients> across;
+    for (const std::vector<Coefficients>& line : lines)
+    {
+      across.push_back(line[k]);
+    }
+    const std::vector<Coefficients> spline = naturalSpline(across);
+    for (std::size_t i = 0; i < spline.size(); ++i)
+    {
+      table.coefficients[i * size + k] = spline[i];
+    }
+  }
+  return result;
+}
+}  // namespace hjt
