@@ -26,10 +26,10 @@ struct Channel
   double PublishParameters::*rate;     ///< [Hz]; divides solver.rate
   std::size_t slots;                   ///< messages that may wait for the publisher's thread
   Message (*make)(const Parameters&);  ///< with names and arrays in place
-  /// At the twin's current instant; gets that of the topic's last message [ns]. No allocation, no throw. False: nothing
-  /// to say.
-  bool (*fill)(Twin&, Stamp, Message&);
+  /// At the twin's current instant. No allocation, no throw. False: nothing to say.
+  bool (*fill)(Twin&, const SinceMessage&, Message&);
   bool of_signals{};  ///< filled only while the twin watches its signals
+  bool summarises{};  ///< `fill` gets the spans of the signals since the last message
 };
 
 /// Slots for messages of a few numbers: seconds of joint states at 1 kHz.
@@ -46,7 +46,7 @@ inline constexpr auto CHANNELS = std::make_tuple(
     Channel<harmonic_joint_twin::ContactForces>{ topics::CONTACT_FORCES, &PublishParameters::contact_forces_rate,
                                                  LARGE_MESSAGE_SLOTS, makeContactForces, fillContactForces },
     Channel<harmonic_joint_twin::Health>{ topics::HEALTH, &PublishParameters::health_rate, SMALL_MESSAGE_SLOTS,
-                                          makeMessage<harmonic_joint_twin::Health>, fillHealth },
+                                          makeMessage<harmonic_joint_twin::Health>, fillHealth, false, true },
     Channel<harmonic_joint_twin::Stress>{ topics::STRESS, &PublishParameters::stress_rate, LARGE_MESSAGE_SLOTS,
                                           makeStress, fillStress },
     Channel<harmonic_joint_twin::Indicators>{ topics::INDICATORS, &PublishParameters::indicators_rate,
@@ -89,13 +89,24 @@ public:
         [&twin](auto& output)
         {
           const auto& channel = output.channel;
-          if (output.sink.isWanted() && twin.stamp() % output.period == 0 &&
-              (!channel.of_signals || twin.watchesSignals()))
+          if (!output.sink.isWanted())
+          {
+            if (channel.summarises)
+            {
+              output.since = {};
+            }
+            return;
+          }
+          if (channel.summarises)
+          {
+            output.since.add(twin);
+          }
+          if (twin.stamp() % output.period == 0 && (!channel.of_signals || twin.watchesSignals()))
           {
             output.sink.write(
                 [&](auto& message)
                 {
-                  const Stamp since = std::exchange(output.last, twin.stamp());
+                  const SinceMessage since = std::exchange(output.since, SinceMessage(twin.stamp()));
                   return channel.fill(twin, since, message);
                 });
           }
@@ -148,7 +159,7 @@ private:
 
     Row channel;
     Stamp period;  // [ns]
-    Stamp last{};  // instant of the last message [ns]
+    SinceMessage since;
     Sink<typename Row::Message> sink;
   };
 

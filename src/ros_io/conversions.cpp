@@ -67,7 +67,7 @@ sensor_msgs::JointState makeJointStates(const Parameters& parameters)
   return message;
 }
 
-bool fillJointStates(Twin& twin, Stamp /*since*/, sensor_msgs::JointState& message) noexcept
+bool fillJointStates(Twin& twin, const SinceMessage& /*since*/, sensor_msgs::JointState& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
   const EncoderReadings readings = twin.encoders();
@@ -81,7 +81,7 @@ bool fillJointStates(Twin& twin, Stamp /*since*/, sensor_msgs::JointState& messa
   return true;
 }
 
-bool fillEncoders(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Encoders& message) noexcept
+bool fillEncoders(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Encoders& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
   fillEncoders(outputs.stamp, twin.encoders(), outputs.motor_angle, outputs.output_angle, message);
@@ -124,7 +124,7 @@ void swapArrays(ToothForces& forces, harmonic_joint_twin::ContactForces& message
 }
 }  // namespace
 
-bool fillContactForces(Twin& twin, Stamp /*since*/, harmonic_joint_twin::ContactForces& message) noexcept
+bool fillContactForces(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::ContactForces& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
   message.header.stamp = toRosTime(outputs.stamp);
@@ -207,7 +207,7 @@ bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::
 }
 }  // namespace
 
-bool fillStress(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Stress& message) noexcept
+bool fillStress(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Stress& message) noexcept
 {
   return fillStress(twin.stamp(), twin.parameters(), message,
                     [&](ToothStress& stress) { return twin.toothStress(stress); });
@@ -224,10 +224,17 @@ void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& paramet
              });
 }
 
-bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept
+void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept
+{
+  least = span.least();
+  mean = span.mean();
+  greatest = span.greatest();
+}
+
+bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Health& message) noexcept
 {
   const JointOutputs& outputs = twin.outputs();
-  const HealthReport report = twin.health(since);
+  const HealthReport report = twin.health(since.stamp);
   message.header.stamp = toRosTime(outputs.stamp);
   message.transmission_ratio_valid = report.motion.transmission_ratio.valid;
   message.transmission_ratio = report.motion.transmission_ratio.value;
@@ -248,6 +255,9 @@ bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) n
   message.kinematic_error = report.motion.kinematic_error.value;
   message.motor_torque = outputs.motor_torque;
   message.joint_torque = outputs.joint_torque;
+  fillSpan(since.torsion, message.torsion_min, message.torsion_mean, message.torsion_max);
+  fillSpan(since.motor_torque, message.motor_torque_min, message.motor_torque_mean, message.motor_torque_max);
+  fillSpan(since.joint_torque, message.joint_torque_min, message.joint_torque_mean, message.joint_torque_max);
   message.energy_residual = outputs.energy_residual;
   message.solver_state = static_cast<std::uint8_t>(report.solver_state);
   message.solver_iterations = outputs.iterations;

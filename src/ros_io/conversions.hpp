@@ -14,6 +14,7 @@
 #include "harmonic_joint_twin/Indicators.h"
 #include "harmonic_joint_twin/Stress.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "ros_io/signal_span.hpp"
 #include "tracking/measured_gear.hpp"
 
 namespace hjt
@@ -47,9 +48,9 @@ Message makeMessage(const Parameters& parameters)
 sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 
 /// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
-bool fillJointStates(Twin& twin, Stamp since, sensor_msgs::JointState& message) noexcept;
+bool fillJointStates(Twin& twin, const SinceMessage& since, sensor_msgs::JointState& message) noexcept;
 
-bool fillEncoders(Twin& twin, Stamp since, harmonic_joint_twin::Encoders& message) noexcept;
+bool fillEncoders(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Encoders& message) noexcept;
 /// The angles are the true ones [rad].
 void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_angle, double output_angle,
                   harmonic_joint_twin::Encoders& message) noexcept;
@@ -57,20 +58,21 @@ void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_ang
 /// One entry per tooth in every array.
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
 /// False: the full ring found no equilibrium.
-bool fillContactForces(Twin& twin, Stamp since, harmonic_joint_twin::ContactForces& message) noexcept;
+bool fillContactForces(Twin& twin, const SinceMessage& since, harmonic_joint_twin::ContactForces& message) noexcept;
 void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept;
 
 harmonic_joint_twin::Stress makeStress(const Parameters& parameters);
-bool fillStress(Twin& twin, Stamp since, harmonic_joint_twin::Stress& message) noexcept;
+bool fillStress(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Stress& message) noexcept;
 void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
                 harmonic_joint_twin::Stress& message) noexcept;
 
-/// The solver's state is that of the steps after `since`.
-bool fillHealth(Twin& twin, Stamp since, harmonic_joint_twin::Health& message) noexcept;
+void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept;
+/// The solver's state and the spans are those of the steps after `since`.
+bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);
 void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_joint_twin::Indicators& message) noexcept;
-inline bool fillIndicators(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Indicators& message) noexcept
+inline bool fillIndicators(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Indicators& message) noexcept
 {
   fillIndicators(twin.stamp(), twin.signalIndicators(), message);
   return true;
@@ -85,7 +87,7 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
 
 harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters);
 void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
-inline bool fillAssessment(Twin& twin, Stamp /*since*/, harmonic_joint_twin::Assessment& message) noexcept
+inline bool fillAssessment(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Assessment& message) noexcept
 {
   fillAssessment(twin.stamp(), twin.assessment(), message);
   return true;

@@ -18,11 +18,27 @@ MeasuredDrive::MeasuredDrive(const Parameters& parameters)
 {
 }
 
+double MeasuredDrive::motorTorque(const Comparison& comparison) const noexcept
+{
+  const TelemetryParameters& telemetry = parameters_.telemetry;
+  return telemetry.torque_per_current / ratio_ * (comparison.current.measured - telemetry.current_offset);
+}
+
+void MeasuredDrive::note(const Comparison& comparison, bool is_wanted) noexcept
+{
+  if (!is_wanted)
+  {
+    since_ = {};
+    return;
+  }
+  since_.motor_torque.add(motorTorque(comparison));
+  since_.joint_torque.add(comparison.joint_torque);
+}
+
 bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
 {
   now_ = comparison;
-  const TelemetryParameters& telemetry = parameters_.telemetry;
-  motor_torque_ = telemetry.torque_per_current / ratio_ * (comparison.current.measured - telemetry.current_offset);
+  motor_torque_ = motorTorque(comparison);
   const bool found = gear_.moveTo(comparison.position.measured, comparison.joint_torque);
   failures_ += found ? 0 : 1;
   return found;
@@ -59,6 +75,11 @@ void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Health& message) noex
   message.housing_temperature = now_.housing_temperature;
   message.motor_torque = motor_torque_;
   message.joint_torque = now_.joint_torque;
+  since_.torsion.add(message.torsion);
+  fillSpan(since_.torsion, message.torsion_min, message.torsion_mean, message.torsion_max);
+  fillSpan(since_.motor_torque, message.motor_torque_min, message.motor_torque_mean, message.motor_torque_max);
+  fillSpan(since_.joint_torque, message.joint_torque_min, message.joint_torque_mean, message.joint_torque_max);
+  since_ = {};
   message.solver_residual = gear_.residual();
   message.solver_failures = failures_;
 }

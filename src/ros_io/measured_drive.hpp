@@ -22,6 +22,9 @@ public:
   bool moveTo(const Comparison& comparison) noexcept;
   std::uint64_t failures() const noexcept { return failures_; }
 
+  /// Takes the torques of a row into those of the next Health; where none is wanted they are forgotten.
+  void note(const Comparison& comparison, bool is_wanted) noexcept;
+
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
   /// The noise of the sensors is that of the sample in the stamp's period of publish.encoders_rate.
@@ -30,6 +33,8 @@ public:
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:
+  double motorTorque(const Comparison& comparison) const noexcept;
+
   const Parameters parameters_;
   const Stamp encoders_period_;  // [ns]
   const double ratio_;
@@ -37,6 +42,7 @@ private:
   JointSensors sensors_;
   Comparison now_;
   double motor_torque_{};  // [N.m]
+  SinceMessage since_;     // that of Health
   std::uint64_t failures_{};
 };
 }  // namespace hjt

@@ -68,6 +68,7 @@ public:
       fillAssessment(stamp, tracker.assessment(), assessment_.message());
       assessment_.send();
     }
+    drive_.note(comparison, std::get<RingTopic<harmonic_joint_twin::Health>>(ring_topics_).sink.isWanted());
     bool is_any_due = false;
     const auto look = [&](auto& topic)
     {

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/conversions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/channels.hpp"
 #include "ros_io/time.hpp"
@@ -78,6 +84,84 @@ TEST_F(Messages, CarryEncoderAnglesAndTorquesUnderBothNames)
   EXPECT_EQ(message.velocity, (std::vector<double>{ readings.motor_velocity, readings.output_velocity }));
   EXPECT_EQ(message.effort, (std::vector<double>{ twin_.outputs().motor_torque, twin_.outputs().joint_torque }));
   EXPECT_GT(message.position[0], 0.1);
+}
+
+struct HealthListener
+{
+  bool is_listening{ true };
+  std::vector<harmonic_joint_twin::Health> messages;
+};
+
+/// Gives the listener its messages; of the other topics none is wanted.
+template <class Message>
+class HealthSink
+{
+public:
+  HealthSink(HealthListener* listener, const Channel<Message>& /*channel*/, Message first)
+    : listener_(*listener), message_(std::move(first))
+  {
+  }
+  bool isWanted() const { return std::is_same_v<Message, harmonic_joint_twin::Health> && listener_.is_listening; }
+
+  template <class Fill>
+  void write(Fill&& fill)
+  {
+    ASSERT_TRUE(fill(message_));
+    if constexpr (std::is_same_v<Message, harmonic_joint_twin::Health>)
+    {
+      listener_.messages.push_back(message_);
+    }
+  }
+
+private:
+  HealthListener& listener_;
+  Message message_;
+};
+
+TEST_F(Messages, SummariseTheStepsSinceTheLastHealth)
+{
+  HealthListener listener;
+  Outputs<HealthSink> outputs(&listener, parameters_);
+  const double ratio = nominalRatio(parameters_.gear);
+  std::vector<double> torsions;
+  std::vector<double> torques;
+  twin_.push({ twin_.stamp(), InputKind::LOAD_TORQUE, 20.0, {} });
+  const auto run = [&](Stamp length)
+  {
+    for (const Stamp end = twin_.stamp() + length; twin_.stamp() < end;)
+    {
+      twin_.commandMotorTorque(twin_.stamp(), 0.3 * std::sin(60.0 * toSeconds(twin_.stamp())));
+      twin_.step(end);
+      torsions.push_back(twin_.outputs().motor_angle / ratio - twin_.outputs().output_angle);
+      torques.push_back(twin_.outputs().joint_torque);
+      outputs.offer(twin_);
+    }
+  };
+  run(100'000'000);
+  torsions.clear();
+  torques.clear();
+  run(100'000'000);
+  ASSERT_EQ(listener.messages.size(), 2u);
+  const harmonic_joint_twin::Health& message = listener.messages.back();
+  EXPECT_EQ(torques.size(), 1000u);
+  EXPECT_EQ(message.torsion_min, *std::min_element(torsions.begin(), torsions.end()));
+  EXPECT_EQ(message.torsion_max, *std::max_element(torsions.begin(), torsions.end()));
+  EXPECT_EQ(message.joint_torque_min, *std::min_element(torques.begin(), torques.end()));
+  EXPECT_EQ(message.joint_torque_max, *std::max_element(torques.begin(), torques.end()));
+  EXPECT_NEAR(message.joint_torque_mean, std::accumulate(torques.begin(), torques.end(), 0.0) / 1000.0, 1e-9);
+  EXPECT_LT(message.motor_torque_min, -0.25);
+  EXPECT_GT(message.motor_torque_max, 0.25);
+  EXPECT_LT(message.torsion_min, message.torsion_mean);
+  EXPECT_LT(message.torsion_mean, message.torsion_max);
+
+  // What passed while nobody listened is not in it.
+  listener.is_listening = false;
+  run(150'000'000);
+  torques.clear();
+  listener.is_listening = true;
+  run(50'000'000);
+  ASSERT_EQ(listener.messages.size(), 3u);
+  EXPECT_EQ(listener.messages.back().joint_torque_max, *std::max_element(torques.begin(), torques.end()));
 }
 
 TEST_F(Messages, HoldTheForcesOfEveryTooth)

@@ -13,7 +13,8 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from harmonic_joint_twin.msg import ContactForces, Encoders, Health, Stress, Timing
-from ros_support import OK, PACKAGE, PATIENCE, WARN, Diagnostics, Listener, listen_to_all, numbers_in, wait_until
+from ros_support import (OK, PACKAGE, PATIENCE, WARN, Diagnostics, Listener, layout_curves, listen_to_all, number_at,
+                         numbers_in, wait_until)
 
 NODE = "/joint_twin"
 JOINT = "elbow_joint"
@@ -72,6 +73,10 @@ class Live(unittest.TestCase):
         for array in ("wave_generator_force", "rim_tension", "bending_force", "mesh_force", "tooth_x", "tooth_y"):
             self.assertEqual(len(getattr(contact_forces, array)), TEETH, array)
         self.assertGreater(sum(contact_forces.wave_generator_force), 0.0)
+        self.assertGreaterEqual(set(PERIODS) | {"comparison"}, set(layout_curves()))  # ur5_test has a comparison
+        for topic, paths in layout_curves().items():
+            for path in paths if topic in listeners else []:
+                self.assertTrue(math.isfinite(number_at(listeners[topic].messages()[-1], path)), (topic, path))
         encoders = listeners["encoders"].messages()[-1]
         self.assertNotEqual(encoders.motor_count, 0)
         self.assertAlmostEqual(encoders.motor_angle, encoders.motor_angle_true, delta=2.0 * math.pi / 4320)

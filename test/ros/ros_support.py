@@ -3,9 +3,11 @@
 clock and generous, conditions are polled: a busy machine makes these tests slower, not red."""
 import glob
 import os
+import re
 import subprocess
 import threading
 import time
+import xml.etree.ElementTree as xml
 
 import roslib.message
 import roslib.packages
@@ -76,6 +78,23 @@ def numbers_in(message):
                 yield entry
             elif hasattr(entry, "__slots__"):
                 yield from numbers_in(entry)
+
+
+def layout_curves():
+    """What PlotJuggler's layout draws: by topic, without the node's name, the paths of its numbers."""
+    curves = {}
+    for curve in xml.parse(package_path("config", "plotjuggler.xml")).iter("curve"):
+        topic, number = re.fullmatch(r"/joint_twin/(\w+)/([\w\[\]/]+)", curve.get("name")).groups()
+        curves.setdefault(topic, []).append(number)
+    return curves
+
+
+def number_at(message, path):
+    """As PlotJuggler finds it: field/field[index]."""
+    for name, index in re.findall(r"(\w+)(?:\[(\d+)\])?", path):
+        message = getattr(message, name)
+        message = message[int(index)] if index else message
+    return float(message)
 
 
 def listen_to_all(node):

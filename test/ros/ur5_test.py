@@ -19,7 +19,8 @@ import rostest
 from sensor_msgs.msg import JointState, Temperature
 
 from harmonic_joint_twin.msg import Assessment, Comparison, ContactForces, Encoders, Health, Indicators
-from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, executable, listen_to_all, numbers_in, wait_until
+from ros_support import (OK, PACKAGE, WARN, Diagnostics, Listener, executable, layout_curves, listen_to_all, number_at,
+                         numbers_in, wait_until)
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint",
           "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}
@@ -172,6 +173,8 @@ class UR5(unittest.TestCase):
             self.assertTrue(all(math.isfinite(getattr(message, field)) for message in messages for field in FIELDS),
                             twin)
             self.assertEqual(sum(message.after_gap for message in messages), 1, twin)
+            for path in layout_curves()["comparison"]:
+                self.assertTrue(math.isfinite(number_at(messages[-1], path)), path)
 
     def test_the_load_is_that_of_the_arm_and_the_sick_joint_stands_out(self):
         for mode in ARMS:
