@@ -50,6 +50,7 @@
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "surface/surface_worker.hpp"
+#include "test/support/allocation_count.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
@@ -930,6 +931,8 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
     int on_ring = 0;
     Eigen::Array2d misses = Eigen::Array2d::Zero();
     double released = 0.0;
+    ring.reserve(STEPS);
+    const std::size_t before = allocationCount();
     for (int i = 0; i < STEPS; ++i)
     {
       const Stamp next = twin.stamp() + twin.stepLength();
@@ -952,6 +955,7 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
         released = now.released_energy;
       }
     }
+    EXPECT_EQ(allocationCount(), before) << scene;
     EXPECT_LT(std::abs(twin.outputs().energy_residual), 2e-4 * through) << scene;
     if (parameters.solver.scene == SceneKind::AUTO)
     {
