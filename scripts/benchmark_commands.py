@@ -135,10 +135,11 @@ CASES = (
     Case("sweep, HDF5 and indicators", sweep(1), "1000", 120.0),
     Case("simulate to CSV, tooth_wear", simulate("csv", "--fault", "tooth_wear:0.5"), "200", 120.0),
     Case("simulate to CSV, tooth_root_crack", simulate("csv", "--fault", "tooth_root_crack:0.5:40"), "200", 120.0),
-    Case("simulate to CSV, flexspline_crack", simulate("csv", "--fault", "flexspline_crack:0.5:40"), "200", 6.0),
-    Case("simulate to CSV, bearing_outer_race", simulate("csv", "--fault", "bearing_outer_race:0.5"), "200", 6.0),
-    Case("simulate to CSV, bearing_ball", simulate("csv", "--fault", "bearing_ball:0.5"), "200", 6.0),
-    Case("simulate to CSV, tooth_wear from 1 s on", simulate("csv", "--fault", "tooth_wear:0.5:-1:1.0"), "200", 6.0),
+    Case("simulate to CSV, flexspline_crack", simulate("csv", "--fault", "flexspline_crack:0.5:40"), "200", 60.0),
+    Case("simulate to CSV, bearing_outer_race", simulate("csv", "--fault", "bearing_outer_race:0.5"), "200", 60.0),
+    Case("simulate to CSV, bearing_ball", simulate("csv", "--fault", "bearing_ball:0.5"), "200", 60.0),
+    Case("simulate to CSV, bearing_cage", simulate("csv", "--fault", "bearing_cage:0.5"), "200", 60.0),
+    Case("simulate to CSV, tooth_wear from 1 s on", simulate("csv", "--fault", "tooth_wear:0.5:-1:1.0"), "200", 60.0),
 )
 
 

@@ -91,8 +91,9 @@ void BallDrops::add(double motor_angle, double v, double place, const RaceDeflec
   {
     for (std::size_t j = 0; j < 4; ++j)
     {
-      const BallTable::Coefficients* row = &table.coefficients[static_cast<std::size_t>(
-          ((below + static_cast<int>(i)) * table.columns + u.knots[j]) * table.places)];
+      const int number = (below + static_cast<int>(i)) * table.columns + u.knots[j];
+      const BallTable::Coefficients* row =
+          &table.coefficients[static_cast<std::size_t>(number) * static_cast<std::size_t>(table.places)];
       Energies value(0.0, 0.0, 0.0, 0.0);
       Energies rate = value;
       Energies second = value;

@@ -202,7 +202,8 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   return response;
 }
 
-/// The energy's own curvature changes stiffness and velocity ratio: that between motor and output is -ratio times stiffness.
+/// The energy's own curvature changes stiffness and velocity ratio: the stiffness between motor and output is minus
+/// ratio times that of the output.
 void ResponseSurface::addBalls(const BallDrops::Change& change, SurfaceCell::Energy& energy,
                                RingResponse& response) const noexcept
 {

@@ -221,8 +221,8 @@ private:
 };
 
 /// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
-/// again after one tooth pitch; with deviations, for one that is the same again after more; with drops of balls, for one
-/// whose bearing is faulty.
+/// again after one tooth pitch; with deviations, for one that is the same again after more; with drops of balls, for
+/// one whose bearing is faulty.
 ///
 /// The stored energy is one function, piecewise bicubic after Hermite, from its values, slopes and mixed derivative at
 /// the nodes; both torques are its derivatives, so what goes in comes out again. What friction needs is bilinear.

@@ -369,28 +369,9 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                                                    surface.lines.back(), source.progress, threadsFor(source));
                            });
 }
-}  // namespace
-
-std::string surfaceCacheDirectory()
-{
-  const auto variable = [](const char* name)
-  {
-    const char* value = std::getenv(name);
-    return std::string(value != nullptr ? value : "");
-  };
-  const std::string cache = variable("XDG_CACHE_HOME");
-  const std::string home = variable("HOME");
-  const std::string base = !cache.empty() ? cache : !home.empty() ? home + "/.cache" : "";
-  return base.empty() ? "" : base + "/harmonic_joint_twin";
-}
-
-std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory)
-{
-  return fileOf("surface", header(parameters, {}), directory);
-}
-
-std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
-                                           const std::string& faults, const SurfaceSource& source)
+/// See obtainSurface. `teeth_alike`: it is wanted without deviations only.
+std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
+                                          const std::string& faults, const SurfaceSource& source, bool teeth_alike)
 {
   // The cache is asked only for gears that repeat: what stops others is not in its keys.
   const int repetition = SurfaceRing(parameters, model).repetition();
@@ -399,6 +380,11 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
   if (repetition == 0 || (repetition > 1 && SurfaceRing(equal_parameters, equal).repetition() != 1))
   {
     tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
+    return std::nullopt;
+  }
+  if (repetition > 1 && teeth_alike)
+  {
+    tell(source, NO_SURFACE + "the bearing is faulty and teeth differ" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
   const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
@@ -428,6 +414,31 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
   }
   return tables;
 }
+}  // namespace
+
+std::string surfaceCacheDirectory()
+{
+  const auto variable = [](const char* name)
+  {
+    const char* value = std::getenv(name);
+    return std::string(value != nullptr ? value : "");
+  };
+  const std::string cache = variable("XDG_CACHE_HOME");
+  const std::string home = variable("HOME");
+  const std::string base = !cache.empty() ? cache : !home.empty() ? home + "/.cache" : "";
+  return base.empty() ? "" : base + "/harmonic_joint_twin";
+}
+
+std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory)
+{
+  return fileOf("surface", header(parameters, {}), directory);
+}
+
+std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
+                                           const std::string& faults, const SurfaceSource& source)
+{
+  return obtainTables(parameters, model, faults, source, false);
+}
 
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                    const SurfaceSource& source)
@@ -446,12 +457,7 @@ SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const Joint
 {
   const auto make = [&]() -> SurfacePool::Surface
   {
-    std::optional<SurfaceTables> tables = obtainSurface(parameters, model, faults, source);
-    if (tables && !tables->deviations.pitches.empty())
-    {
-      tell(source, NO_SURFACE + "the bearing is faulty and teeth differ" + FULL_RING_INSTEAD);
-      return nullptr;
-    }
+    std::optional<SurfaceTables> tables = obtainTables(parameters, model, faults, source, true);
     std::optional<BallTable> balls =
         tables ? obtainBallTable(parameters, model, faults, tables->table, source) : std::nullopt;
     return balls ?

@@ -36,8 +36,8 @@ std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const J
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                    const SurfaceSource& source);
 
-/// The surface of a gear whose balls can drop as far as any fault of the bearing lets them, the bearing still sound; from
-/// the source's pool if it has one. None where teeth differ. `model`: with a sound bearing.
+/// The surface of a gear whose balls can drop as far as any fault of the bearing lets them, the bearing still sound;
+/// from the source's pool if it has one. None where teeth differ. `model`: with a sound bearing.
 SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                        const SurfaceSource& source);
 

@@ -39,7 +39,7 @@ const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& 
   without.faults.clear();
   const Fault* fault = faults.size() == 1 ? &faults.begin()->fault : nullptr;
   const bool local =
-      fault != nullptr && fault->place > 0 &&
+      fault != nullptr && fault->place >= 0 &&
       (describe(fault->kind).place == FaultPlace::TOOTH || describe(fault->kind).place == FaultPlace::SEGMENT);
   return local && teethAreAlike(without) ? fault : nullptr;
 }
@@ -91,12 +91,16 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
   {
     (isOfTheBalls(active.fault) ? of_the_balls : others).set(active.fault, active.since);
   }
-  const JointModel model = JointFaults(parameters, others).model();
+  const Fault* of_a_tooth = singleFaultOfATooth(parameters, others);
+  const auto surface_of_others = [&]
+  {
+    return of_a_tooth != nullptr ?
+               shiftedSurface(parameters, *of_a_tooth, source) :
+               sharedSurface(parameters, JointFaults(parameters, others).model(), keyOf(others), source);
+  };
   if (of_the_balls.empty())
   {
-    const Fault* of_a_tooth = singleFaultOfATooth(parameters, others);
-    return of_a_tooth != nullptr ? shiftedSurface(parameters, *of_a_tooth, source) :
-                                   sharedSurface(parameters, model, keyOf(others), source);
+    return surface_of_others();
   }
   const RaceDeflection bearing =
       JointFaults(parameters, of_the_balls).model().ring.of<WaveGeneratorContact>().bearing();
@@ -104,9 +108,14 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
   {
     return none("with more than one fault of the bearing, or a spall longer than from ball to ball", source);
   }
-  const SurfacePool::Surface surface = sharedBallSurface(parameters, model, keyOf(others), source);
-  return surface ? std::make_shared<const ResponseSurface>(surface->table(), DeviationTable{},
-                                                           BallDrops(surface->balls()->table(), bearing)) :
+  // One tooth alone changes little in what a ball does.
+  const bool adds_up = of_a_tooth != nullptr && describe(of_a_tooth->kind).place == FaultPlace::TOOTH;
+  const FaultList felt_by_balls = adds_up ? FaultList() : others;
+  const SurfacePool::Surface balls =
+      sharedBallSurface(parameters, JointFaults(parameters, felt_by_balls).model(), keyOf(felt_by_balls), source);
+  const SurfacePool::Surface surface = balls && adds_up ? surface_of_others() : balls;
+  return surface ? std::make_shared<const ResponseSurface>(surface->table(), surface->deviations(),
+                                                           BallDrops(balls->balls()->table(), bearing)) :
                    nullptr;
 }
 
