@@ -258,6 +258,16 @@ class UR5(unittest.TestCase):
                         self.assertAlmostEqual(health.joint_torque, row.joint_torque, places=9)
                         self.assertEqual(sum(abs(force) > 0.0 for force in forces.mesh_force), health.teeth_loaded)
                         self.assertAlmostEqual(sum(forces.wave_generator_force), health.wave_generator_load, places=6)
+                        self.assertEqual((health.torsion_min, health.torsion_max), (health.torsion, health.torsion))
+                    # The rows since the message before.
+                    for before, health in zip(topics["health"], topics["health"][1:]):
+                        torques = [row.joint_torque for stamp, row in rows.items()
+                                   if before.header.stamp < stamp <= health.header.stamp]
+                        self.assertAlmostEqual(health.joint_torque_min, min(torques), places=9)
+                        self.assertAlmostEqual(health.joint_torque_max, max(torques), places=9)
+                        self.assertAlmostEqual(health.joint_torque_mean, sum(torques) / len(torques), places=6)
+                        self.assertLessEqual(health.motor_torque_min, health.motor_torque_mean)
+                        self.assertLessEqual(health.motor_torque_mean, health.motor_torque_max)
 
     def test_processor_time(self):
         print(f"six joints, motion mode, {1.0 / PERIOD:.0f} Hz, all topics heard: {100.0 * self.share:.1f} % of a core")
