@@ -244,17 +244,17 @@ Run rungeKutta4(const OperatingProblem& problem, double step, double limit)
                 });
 }
 
-/// Units that a tolerance of 1 means: 1 mrad at the motor, 10 urad at the output, their speeds, and joules.
+/// Units that a tolerance of 1 means: 1 mrad at the motor, 10 urad at the output, their speeds, joules, and 1 N.m.
 JointState scale()
 {
   JointState scale;
-  scale << 1e-3, 1e-5, 1.0, 1e-2, 1.0, 1.0, 1.0;
+  scale << 1e-3, 1e-5, 1.0, 1e-2, 1.0, 1.0, 1.0, 1.0;
   return scale;
 }
 
 Run dopri5(const OperatingProblem& problem, double tolerance, double limit)
 {
-  using State = std::array<double, 7>;
+  using State = std::array<double, JointState::SizeAtCompileTime>;
   Journey journey(problem);
   auto stepper = make_controlled(tolerance, 0.0, runge_kutta_dopri5<State>());
   const JointState unit = scale();
@@ -295,7 +295,7 @@ Run dopri5(const OperatingProblem& problem, double tolerance, double limit)
                 });
 }
 
-/// CVODE on the four states of the joint (the ledger's three are left out), dense Jacobian by differences.
+/// CVODE on the four states of the joint (those of ledger and drive are left out), dense Jacobian by differences.
 Run cvode(const OperatingProblem& problem, int method, double tolerance, double limit)
 {
   constexpr int STATES = 4;

@@ -12,9 +12,9 @@ using namespace joint_state;
 
 namespace
 {
-constexpr double SHORTEST = 1e-10;  // step [s]
-constexpr double FIRST = 1e-5;      // step tried after a start [s]
-constexpr int MOST_STEPS = 10000;   // to an instant
+constexpr double SHORTEST = 1e-10;    // step [s]
+constexpr double FIRST_PHASE = 0.15;  // of the step tried after a start [rad]
+constexpr int MOST_STEPS = 10000;     // to an instant
 
 int signOf(double value) noexcept
 {
@@ -32,6 +32,7 @@ AdaptiveStepper::AdaptiveStepper(JointDynamics& dynamics, double tolerance, doub
   , controlled_(ErrorChecker{ perUnit(tolerance, ratio, frequency) },
                 boost::numeric::odeint::default_step_adjuster<double, double>(MAX_PHASE / frequency))
   , speed_tolerance_(tolerance * frequency)
+  , first_(FIRST_PHASE / frequency)
 {
 }
 
@@ -49,7 +50,7 @@ void AdaptiveStepper::start(JointState& x) noexcept
   start_ = x;
   at_ = 0.0;
   length_ = 0.0;
-  next_ = FIRST;
+  next_ = first_;
   event_ = true;
   fades_ = false;
   lag_ = 0.0;

@@ -85,6 +85,7 @@ private:
   JointDynamics& dynamics_;
   Controlled controlled_;
   double speed_tolerance_;  // of the output [rad/s]
+  double first_;            // step after a start [s]
   State start_, end_;       // of the step
   State start_rate_, end_rate_;
   double whole_{};       // the step, as it was taken [s]
