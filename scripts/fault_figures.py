@@ -9,7 +9,7 @@ import h5py
 import matplotlib
 import numpy
 
-from health_runs import JUDGED, RATIO, place_of
+from health_runs import RATIO, TOOTH, place_of
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -47,7 +47,7 @@ def plan(duty, classes):
 def record(tool, work, duty, kinds):
     """Signals of the healthy run and of each faulty one, by kind."""
     classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: 1.0, "
-               f"place: {place_of(kind, JUDGED.tooth)}, onset: 0.0}}"
+               f"place: {place_of(kind, TOOTH)}, onset: 0.0}}"
                for kind in kinds]
     path, out = work / f"figure_{duty}.yaml", work / f"figure_{duty}"
     path.write_text(plan(duty, classes))

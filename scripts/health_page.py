@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Evaluates the assessment on sound and faulty joints with real sensors, and writes docs/health.md."""
 import argparse
-import collections
+import itertools
 import math
 import pathlib
-import statistics
+import re
 import sys
 
 import matplotlib
@@ -14,58 +14,45 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, JUDGED, NOISY, POINTS, STEADY_POINTS, TURNING, WARM
+from health_runs import CALIBRATED, CALIBRATED_UNEVEN, CHECK_UP, FITTED, GREASE, JUDGED, QUICK
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
-ALARM_SHARE = 0.01    # false alarms allowed for the smallest severity detected
-# Kinds that a joint's signals tell from each other only by how strong they are, if at all.
-CAUSE_SETS = [("rear_section_crack", "flange_crack"), ("tooth_root_crack", "tooth_tip_crack", "pitting")]
-ARCSEC = math.pi / 180.0 / 3600.0
-
-Evidence = collections.namedtuple("Evidence", "sound faulty delayed")
+SURE = 0.3            # severity from which on the cause should be right
+SET = 0.9             # probability that the causes of a set have together
+BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
+COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:green"}
 
 
-def collect(bench, sound_hours):
-    """Verdicts on all runs."""
+def collect(bench, trial, sound_windows):
+    """(sound, faulty, not judged) runs of a trial, each compared with the reference of its gear and motion."""
+    drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     sound, faulty = [], []
-    for condition in (WARM, NOISY):
-        reference = bench.reference(condition)
-        for point in health_runs.points_of(condition):
-            window = health_runs.window_time(point)
-            repeats = max(round(3600.0 * sound_hours / (health_runs.SOUND_WINDOWS * window)), 1)
-            bags = bench.sound("sound", condition, point, health_runs.SOUND_WINDOWS, repeats, 4)
-            sound += bench.judge(bags, condition, point, reference)
-            faulty += bench.judge(bench.faulty(JUDGED, condition, point), condition, point, reference)
-    return sound, faulty, bench.judge(bench.setting_in(WARM), WARM, CHECK_UP, bench.reference(WARM))
+    for gear, motion in health_runs.pairs(trial):
+        bags = bench.sound("sound", gear, motion, drawn, sound_windows, 4)
+        sound += bench.judge(bags, gear, motion)
+        faulty += bench.judge(bench.faulty(trial, gear, motion, drawn), gear, motion)
+    missing = [run for run in [*sound, *faulty] if run.window is None]
+    return [run for run in sound if run.window], [run for run in faulty if run.window], missing
 
 
-def alarms(run):
-    """How often WARN or ERROR begins."""
-    levels = ["OK", *[window.level for window in run.windows]]
-    return sum(before == "OK" and after != "OK" for before, after in zip(levels, levels[1:]))
+def beyond(run):
+    return run.window.largest > 1.0
 
 
-def alarm(run):
-    """The first window with WARN or ERROR; None: there was none."""
-    return next((window for window in run.windows if window.level != "OK"), None)
+def right(run):
+    return run.window.cause == run.kind
 
 
-def sound_table(sound):
-    lines = ["| motion | window [s] | hours | windows | beyond the threshold | alarms | 95 % bound of alarms in 1000 h "
-             "|",
-             "|---|---|---|---|---|---|---|"]
-    rows = [(f"{point.name}", [run for run in sound if run.point == point]) for point in POINTS]
-    for name, own in [*rows, ("all", sound)]:
-        windows = sum(len(run.windows) for run in own)
-        hours = sum(len(run.windows) * health_runs.window_time(run.point) for run in own) / 3600.0
-        beyond = sum(window.largest > 1.0 for run in own for window in run.windows)
-        count = sum(alarms(run) for run in own)
-        length = "" if name == "all" else f"{health_runs.window_time(own[0].point):.0f}"
-        lines.append(f"| {name} | {length} | {hours:.1f} | {windows} | {beyond} | {count} | "
-                     f"{1000.0 * poisson_bound(count) / hours:.0f} |")
-    return lines
+def in_set(run):
+    """Right, or among the causes that have SET of the probability together."""
+    return right(run) or run.kind in run.window.alternatives
+
+
+def share(flags):
+    flags = list(flags)
+    return f"{sum(flags)} of {len(flags)}" if flags else "-"
 
 
 def poisson_bound(count):
@@ -75,168 +62,126 @@ def poisson_bound(count):
     return 0.5 * degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
 
 
-def limits(sound):
-    """By point and condition the score that 1 % of the sound windows exceed."""
-    groups = collections.defaultdict(list)
-    for run in sound:
-        groups[run.point, run.condition] += [window.largest for window in run.windows]
-    return {key: float(numpy.quantile(scores, 1.0 - ALARM_SHARE)) for key, scores in groups.items()}
-
-
-def weakest(run):
-    """Smallest score among a faulty run's windows, which decides on an alarm."""
-    return min((window.largest for window in run.windows), default=0.0)
-
-
-def smallest(kind, faulty, limit, points):
-    """Smallest severity from which on every window lies beyond the limit, at the best of the points."""
-    best = (math.inf, "none")
-    for point in points:
-        severities = {run.severity: weakest(run) > limit[run.point, run.condition] for run in faulty
-                      if (run.kind, run.point, run.condition) == (kind, point, WARM)}
-        seen = math.inf
-        for severity in sorted(severities, reverse=True):
-            if not severities[severity]:
-                break
-            seen = severity
-        best = min(best, (seen, point.name), key=lambda entry: entry[0])
-    return best
-
-
-def right(run):
-    cause = alarm(run).cause
-    return cause == run.kind, cause == run.kind or any({cause, run.kind} <= set(group) for group in CAUSE_SETS)
-
-
-def share(flags):
-    flags = list(flags)
-    return f"{sum(flags)} of {len(flags)}" if flags else "-"
-
-
-def fault_table(kinds, faulty, limit):
-    severities = JUDGED.severities
-    lines = ["| kind | " + " | ".join(f"alarms at {severity:g}" for severity in severities)
-             + " | smallest severity at 1 % false alarms: check-up | steady, where best | cause right, of alarms | or "
-             "of its set |",
-             "|---|" + "---|" * (len(severities) + 4)]
-    totals = []
-    for kind in kinds:
-        own = [run for run in faulty if run.kind == kind["kind"]]
-        alarmed = [run for run in own if alarm(run)]
-        totals += alarmed
-        cells = [share(alarm(run) is not None for run in own if run.severity == severity) for severity in severities]
-        check_up, (best, where) = smallest(kind["kind"], faulty, limit,
-                                           [CHECK_UP]), smallest(kind["kind"], faulty, limit, STEADY_POINTS)
-        lines.append(f"| `{kind['kind']}` | " + " | ".join(cells)
-                     + f" | {check_up[0] if check_up[0] < math.inf else '> 1'} "
-                     f"| {f'{best} ({where})' if best < math.inf else '> 1'} "
-                     f"| {share(right(run)[0] for run in alarmed)} | {share(right(run)[1] for run in alarmed)} |")
-    lines.append("| all | " + " | ".join(share(alarm(run) is not None for run in faulty if run.severity == severity)
-                                         for severity in severities)
-                 + f" | | | {share(right(run)[0] for run in totals)} | {share(right(run)[1] for run in totals)} |")
+def sound_table(sound):
+    lines = ["| gear, motion | windows | hours | beyond the threshold | two in a row | 95 % bound of alarms in 1000 h "
+             "| the same, windows independent |", "|---|---|---|---|---|---|---|"]
+    groups = [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
+              itertools.groupby(sound, key=lambda run: (run.gear.name, run.motion.name))]
+    for name, own in [*groups, ("all", sound)]:
+        hours = sum(run.motion.window for run in own) / 3600.0
+        count = sum(beyond(run) for run in own)
+        pairs = sum(beyond(one) and beyond(other) for one, other in zip(own, own[1:]))
+        bound = poisson_bound(count) / len(own)
+        lines.append(f"| {name} | {len(own)} | {hours:.2f} | {count} | {pairs} | "
+                     f"{1000.0 * poisson_bound(pairs) / hours:.0f} | {1000.0 * bound ** 2 * len(own) / hours:.1f} |")
     return lines
 
 
-def size_table(kinds, sound, faulty):
-    """The indicator with the largest change at severity 1, relative to sound drives."""
-    lines = ["| kind | where it stands out most | indicator | sound: mean ± spread | severity 1 | change over spread |",
-             "|---|---|---|---|---|---|"]
-    for kind in kinds:
-        rows = []
-        for run in faulty:
-            if (run.kind, run.severity, run.condition) != (kind["kind"], 1.0, WARM) or not run.windows:
-                continue
-            window = min(run.windows, key=lambda window: window.largest)
-            scored = {name: score for name, score in window.scores.items() if score is not None}
-            name = max(scored, key=lambda name: abs(scored[name]))
-            rows.append((abs(scored[name]), run.point, name, window.values[name]))
-        if not rows:
+def detectabilities(page):
+    """d' by kind from the table of the bound on the page: motor and output encoder, current; check-up and at work."""
+    text = page.read_text(encoding="utf-8")
+    table = text[text.index("<!-- bound:begin -->"):text.index("<!-- bound:end -->")]
+    rows = re.findall(r"^\| `(\w+)` \|(.*)\|$", table, re.MULTILINE)
+    return {kind: [cell.strip() for cell in cells.split("|")] for kind, cells in rows}
+
+
+def severities_of(faulty):
+    return sorted({run.severity for run in faulty})
+
+
+def fault_table(kinds, faulty, bound):
+    severities = severities_of(faulty)
+    lines = ["| kind | " + " | ".join(f"check-up, {severity:g}" for severity in severities) + " | d′ at best, 0.2 | "
+             + " | ".join(f"at work, {severity:g}" for severity in severities) + " | d′ at best, 0.2 |",
+             "|---|" + "---|" * (2 * len(severities) + 2)]
+    names = [kind["kind"] for kind in kinds]
+    for name in [*names, "all"]:
+        cells = []  # of the check-up, then at work
+        for at_work, column in ((False, 1), (True, 4)):
+            cells += [share(beyond(run) for run in faulty if name in (run.kind, "all") and run.severity == severity
+                            and (run.motion != CHECK_UP) == at_work) for severity in severities]
+            cells.append(bound[name][column] if name in bound else "")
+        lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def cause_table(kinds, faulty):
+    lines = [f"| kind | cause right, of alarms, severity {SURE} on | or in the set | named instead | severity: "
+             "estimate less true, mean ± spread | its stated deviation |", "|---|---|---|---|---|---|"]
+    for name in [*[kind["kind"] for kind in kinds], "all"]:
+        own = [run for run in faulty if name in (run.kind, "all") and run.severity >= SURE and beyond(run)]
+        if not own:
+            lines.append(f"| `{name}` | - | - | | | |")
             continue
-        _, point, name, value = max(rows, key=lambda row: row[0])
-        healthy = [window.values[name] for run in sound if run.point == point and run.condition is WARM
-                   for window in run.windows if window.values[name] is not None]
-        mean, spread = statistics.mean(healthy), statistics.stdev(healthy)
-        scale, unit = unit_of(name)
-        lines.append(f"| `{kind['kind']}` | {point.name} | `{name}` | {scale * mean:.4g} ± {scale * spread:.2g} {unit} "
-                     f"| {scale * value:.4g} | {(value - mean) / spread:+.3g} |")
+        wrong = [run.window.cause for run in own if not right(run)]
+        instead = ", ".join(f"`{cause}` {wrong.count(cause)}" for cause in dict.fromkeys(wrong) if name != "all")
+        errors = [run.window.severity - run.severity for run in own if right(run)]
+        stated = [run.window.deviation for run in own if right(run)]
+        sizes = f"{numpy.mean(errors):+.2f} ± {numpy.std(errors):.2f} | {numpy.mean(stated):.2f}" if errors else "|"
+        lines.append(f"| {name if name == 'all' else f'`{name}`'} | {share(map(right, own))} "
+                     f"| {share(map(in_set, own))} | {instead} | {sizes} |")
     return lines
 
 
-def unit_of(name):
-    if name.startswith("error") or name in ("kinematic_error", "lost_motion", "residual_rms"):
-        return 1.0 / ARCSEC, "″"
-    if name.startswith("torque") or name in ("running_torque", "coulomb_torque"):
-        return 1e3, "mN·m"
-    units = {"torsional_stiffness": (1e-3, "kN·m/rad"), "hysteresis_area": (1e3, "mJ"),
-             "viscous_friction": (1e6, "µN·m·s/rad")}
-    return units.get(name, (1.0, ""))
+def reliability(faulty):
+    """(mean confidence, share right, number) by class of confidence, and the mean distance of the first two."""
+    alarms = [run for run in faulty if beyond(run)]
+    rows = []
+    for low, high in zip(BINS, BINS[1:]):
+        own = [run for run in alarms if low < run.window.confidence <= high]
+        if own:
+            rows.append((numpy.mean([run.window.confidence for run in own]), numpy.mean([right(run) for run in own]),
+                         len(own)))
+    return rows, sum(abs(stated - found) * count for stated, found, count in rows) / max(len(alarms), 1)
 
 
-def loop_table(sound, faulty):
-    """Stiffness, lost motion and loop over severity, in the check-up."""
-    names = ["torsional_stiffness", "lost_motion", "hysteresis_area"]
-
-    def means(runs):
-        values = [[window.values[name] for run in runs for window in run.windows if window.values[name] is not None]
-                  for name in names]
-        return [f"{unit_of(name)[0] * statistics.mean(own):.2f}" if own else "-" for name, own in zip(names, values)]
-
-    lines = ["| kind | severity | K1 [kN·m/rad] | lost motion [″] | loop [mJ] |", "|---|---|---|---|---|",
-             "| sound | 0 | "
-             + " | ".join(means([run for run in sound if run.point == CHECK_UP and run.condition is WARM]))
-             + " |"]
-    for kind in ["interface_wear", "tooth_wear", "wave_generator_wear", "rear_section_crack", "flange_crack",
-                 "buckling"]:
-        for severity in JUDGED.severities:
-            own = [run for run in faulty if (run.kind, run.severity, run.point, run.condition)
-                   == (kind, severity, CHECK_UP, WARM)]
-            lines.append(f"| `{kind}` | {severity:g} | " + " | ".join(means(own)) + " |")
-    return lines
+def draw_reliability(rows, path):
+    figure, axis = plt.subplots(figsize=(4.6, 4.2), constrained_layout=True)
+    axis.plot([0, 1], [0, 1], "k:", linewidth=1)
+    for stated, found, count in rows:
+        error = math.sqrt(max(found * (1.0 - found), 0.25 / count) / count)
+        axis.errorbar(stated, found, error, fmt="o", color="tab:blue", capsize=3)
+        axis.annotate(f"{count}", (stated, found), textcoords="offset points", xytext=(7, -12))
+    axis.set_xlim(0, 1.05)
+    axis.set_ylim(0, 1.05)
+    axis.set_xlabel("stated confidence")
+    axis.set_ylabel("share of alarms with the right cause")
+    axis.grid(alpha=0.3)
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
 
 
-def delay_table(kinds, delayed):
-    lines = ["| kind | from the onset to the end of the window with the alarm [motor turns] |", "|---|---|"]
-    for kind in kinds:
-        for run in delayed:
-            if run.kind == kind["kind"]:
-                first = alarm(run)
-                turns = (first.number - health_runs.SET_IN) * health_runs.WINDOW_TURNS if first else math.inf
-                lines.append(f"| `{run.kind}` | {f'{turns:.0f}' if first else 'no alarm'} |")
-    return lines
-
-
-def draw_seen(kinds, faulty, path):
-    """Score by kind and motion, at two severities."""
-    severities = [0.3, 1.0]
-    figure, axes = plt.subplots(1, len(severities), figsize=(12, 6), sharey=True, constrained_layout=True)
-    for axis, severity in zip(axes, severities):
-        table = numpy.full((len(kinds), len(POINTS)), numpy.nan)
-        for row, kind in enumerate(kinds):
-            for column, point in enumerate(POINTS):
-                for run in faulty:
-                    if (run.kind, run.severity, run.point, run.condition) == (kind["kind"], severity, point, WARM):
-                        table[row, column] = weakest(run)
-        image = axis.imshow(numpy.log10(numpy.maximum(table, 0.1)), cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
-        for (row, column), value in numpy.ndenumerate(table):
-            if numpy.isfinite(value):
-                axis.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=8,
-                          color="white" if abs(math.log10(max(value, 0.1))) > 0.6 else "black")
-        axis.set_title(f"severity {severity:g}")
-        axis.set_xticks(range(len(POINTS)), [point.name.split(":")[0] for point in POINTS], rotation=40, ha="right",
-                        fontsize=8)
-        axis.set_yticks(range(len(kinds)), [kind["kind"] for kind in kinds], fontsize=8)
-    figure.colorbar(image, ax=axes, ticks=[-1, 0, 1], shrink=0.6).set_ticklabels(["0.1", "1: threshold", "10"])
+def draw_scores(kinds, sound, faulty, path):
+    """Score of every window over the threshold, by kind and severity; sound ones on top."""
+    names = ["sound", *[kind["kind"] for kind in kinds]]
+    severities = severities_of(faulty)
+    figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
+    for run in [*sound, *faulty]:
+        row = names.index("sound" if run.kind == "healthy" else run.kind)
+        shift = 0.0 if run.kind == "healthy" else 0.28 * (severities.index(run.severity) - (len(severities) - 1) / 2)
+        axis.plot(max(run.window.largest, 0.02), row + shift, "o" if run.motion == CHECK_UP else "x",
+                  color=COLOURS[run.motion.name], markersize=4, alpha=0.7)
+    for name, colour in COLOURS.items():
+        axis.plot([], [], "o" if name == CHECK_UP.name else "x", color=colour, label=name)
+    axis.axvline(1.0, color="k", linewidth=1)
+    axis.set_xscale("log")
+    axis.set_yticks(range(len(names)), names)
+    axis.invert_yaxis()
+    axis.set_xlabel("score of the window over the threshold; from top to bottom severity "
+                    + ", ".join(f"{severity:g}" for severity in severities))
+    axis.grid(alpha=0.3, axis="x")
+    axis.legend(frameon=False, loc="lower right")
     figure.savefig(path, dpi=90)
     plt.close(figure)
 
 
 def draw_confusion(kinds, faulty, path):
     names = [kind["kind"] for kind in kinds]
-    causes = names + ["circular_spline_tooth"]
+    causes = names + ["circular_spline_tooth", "none"]
     matrix = numpy.zeros((len(names), len(causes)))
     for run in faulty:
-        if alarm(run):
-            matrix[names.index(run.kind), causes.index(alarm(run).cause)] += 1
+        if beyond(run):
+            matrix[names.index(run.kind), causes.index(run.window.cause)] += 1
     figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
     axis.imshow(matrix / numpy.maximum(matrix.sum(axis=1, keepdims=True), 1), cmap="Blues", vmin=0, vmax=1)
     for (row, column), count in numpy.ndenumerate(matrix):
@@ -245,34 +190,40 @@ def draw_confusion(kinds, faulty, path):
                       color="white" if count > matrix[row].sum() / 2 else "black")
     axis.set_xticks(range(len(causes)), causes, rotation=60, ha="right")
     axis.set_yticks(range(len(names)), names)
-    axis.set_xlabel("cause at the first alarm")
+    axis.set_xlabel("cause named in the window with the alarm")
     axis.set_ylabel("fault, all severities and motions")
     figure.savefig(path, dpi=90)
     plt.close(figure)
 
 
-def draw_roc(sound, faulty, path):
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, constrained_layout=True)
-    for axis, name, points in ((axes[0], "steady speed and load", STEADY_POINTS),
-                               (axes[1], "swinging load", [TURNING, CHECK_UP])):
-        healthy = numpy.array([window.largest for run in sound if run.point in points for window in run.windows])
-        thresholds = numpy.unique(numpy.concatenate([healthy, numpy.linspace(0.0, 5.0, 400)]))
-        share_sound = [(healthy > threshold).mean() for threshold in thresholds]
-        for severity in JUDGED.severities:
-            scores = numpy.array([window.largest for run in faulty if run.severity == severity and run.point in points
-                                  for window in run.windows])
-            axis.step(share_sound, [(scores > threshold).mean() for threshold in thresholds],
-                      label=f"severity {severity:g}")
-        axis.set_xscale("symlog", linthresh=1e-3)
-        axis.set_xlim(0, 1)
-        axis.set_ylim(0, 1)
-        axis.set_title(name, fontsize=9)
-        axis.set_xlabel("share of sound windows beyond the threshold")
-        axis.grid(alpha=0.3)
-    axes[0].set_ylabel("share of faulty windows beyond it")
-    axes[1].legend(frameon=False, loc="lower right")
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+def split_table():
+    def row(name, trial):
+        return (f"| {name} | {', '.join(gear.name for gear in trial.gears)} | "
+                f"{', '.join(motion.name for motion in trial.motions)} | "
+                f"{', '.join(f'{severity:g}' for severity in trial.severities)} | "
+                f"{', '.join(f'{severity:g}' for severity in trial.bearing_severities)} | {trial.tooth or ''} | "
+                f"{trial.seed} |")
+
+    return ["| runs | gears | motions | severities | of bearings | tooth | seed |", "|---|---|---|---|---|---|---|",
+            row("signatures fitted to", FITTED),
+            row("their errors fitted to", CALIBRATED), row("and", CALIBRATED_UNEVEN),
+            row("judged by", JUDGED)]
+
+
+def report(bench, sound, faulty, missing, page):
+    bound = detectabilities(page)
+    rows, error = reliability(faulty)
+    return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
+            f"{GREASE[1]:g} °C. {len(missing)} more were not judged: fewer than eight windows of the reference lie at "
+            "their operating point.", "", *split_table(), "",
+            "### Sound drives", "", *sound_table(sound), "",
+            "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
+            "![Score of every window over the threshold](images/health/seen.png)", "",
+            "### Cause and severity", "", *cause_table(bench.kinds, faulty), "",
+            "![Fault against the assessed cause](images/health/confusion.png)", "",
+            f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
+            "class of confidence.", "",
+            "![Share of right causes against the stated confidence](images/health/reliability.png)"]
 
 
 def main():
@@ -282,35 +233,29 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
     parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes again, and nothing else")
-    parser.add_argument("--sound-hours", type=float, default=2.0, help="of sound running in each motion [2]")
+    parser.add_argument("--quick", action="store_true", help="one gear, one severity, no bearings: tables on the "
+                        "terminal, the page stays")
+    parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
+    page = options.docs / "health.md"
     if options.fit:
         source = options.docs.parent / "src" / "health" / "fitted_signatures.hpp"
         health_signatures.write(bench, source, options.docs / "indicators.md")
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
+    if options.quick:
+        print("\n".join(report(bench, *collect(bench, QUICK, 40), page)))
+        return
     images = options.docs / "images" / "health"
-    fault_figures.draw_all(options.tool, options.work, bench.kinds, images)
-    sound, faulty, delayed = collect(bench, options.sound_hours)
-    draw_seen(bench.kinds, faulty, images / "seen.png")
+    if options.figures:
+        fault_figures.draw_all(options.tool, options.work, bench.kinds, images)
+    sound, faulty, missing = collect(bench, JUDGED, 40)
+    draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
-    draw_roc(sound, faulty, images / "roc.png")
-    page_section.write(options.docs / "health.md", "health", [
-        f"{len(sound)} sound and {len(faulty) + len(delayed)} faulty runs; " + ", ".join(
-            f"`{condition.name}`: {condition.temperatures[0]:g} to {condition.temperatures[1]:g} °C, noise of the "
-            f"encoders × {condition.noise:g}"
-            for condition in sorted({run.condition for run in faulty}, key=lambda condition: condition.noise)) + ".",
-        "",
-        "### Sound drives", "", *sound_table(sound), "",
-        "### Faults", "", *fault_table(bench.kinds, faulty, limits(sound)), "",
-        "![Score of every fault in every motion, over the threshold](images/health/seen.png)", "",
-        "![Share of faulty windows beyond a threshold against that of sound ones](images/health/roc.png)", "",
-        "![Fault against the assessed cause](images/health/confusion.png)", "",
-        "### Sizes against the noise", "", *size_table(bench.kinds, sound, faulty), "",
-        "### Stiffness and loop", "", *loop_table(sound, faulty), "",
-        "### Faults that set in on the way", "", *delay_table(bench.kinds, delayed)])
-    print(f"evaluate_health: wrote {options.docs / 'health.md'}", file=sys.stderr)
+    draw_reliability(reliability(faulty)[0], images / "reliability.png")
+    page_section.write(page, "health", report(bench, sound, faulty, missing, page))
+    print(f"evaluate_health: wrote {page}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of sound and faulty joints with real sensors, and the indicators of their windows by `joint_twin indicators`.
+"""Runs of sound and faulty joints with real sensors, one window of the indicators each, and what `joint_twin
+indicators` makes of them. The split into runs for the fit and runs for judgement is here.
 
 Runs are made by `joint_twin sweep`, in bags that hold the windows' indicators only; a run that is there already is not
 made again."""
@@ -11,106 +12,115 @@ import subprocess
 import sys
 
 RATIO = 101.0
-WINDOW_TURNS = 101.0      # of the motor: one of the joint
-START = 0.5               # of a run, before it is steady [s]
-# sound runs that make the reference at each point; of each two windows, or as many as fit [s]
-COMMISSIONING = (20, 40.0)
-WINDOWS = 2               # of a faulty run: as many as an alarm takes
-SOUND_WINDOWS = 20        # of a sound run
-SET_IN = 1.5              # windows after which a fault sets in on the way
-ONE_TOOTH = {"pitting"}   # at one tooth, though it may be at all
+TOOTH = 40                # of the figures of the single faults
+ACCELERATION = 300.0      # of a motion at work [deg/s^2]
 
-# `degrees` a second at the joint, in the mean; `speed` and `load` as plans have them; `window`: turns and time at most.
-Point = collections.namedtuple("Point", "name tag degrees speed load window", defaults=[(WINDOW_TURNS, 100.0)])
+# `payload`: with the weight and inertia of anything from none to one of some 2.5 kg at the end of a straight arm.
+Motion = collections.namedtuple("Motion", "name tag window payload moves")
+CHECK_UP = Motion("check-up", "check_up", 29.0, False, None)
 
+# Moves at work: to an angle about the upright arm [deg] at a speed [deg/s], in a loop.
+STACKING = Motion("stacking", "stacking", 20.0, True, [(-25, 70), (20, 100), (-10, 50), (30, 80), (-5, 40)])
+PICK_AND_PLACE = Motion("pick-and-place", "pick_and_place", 20.0, True, [(-50, 90), (35, 90), (-20, 60), (50, 120)])
+SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 55)])
 
-def constant_speed(degrees):
-    """Within 0.4 s up to it: a step would throw the teeth."""
-    speed = math.radians(degrees)
-    return f"{{trapezoid: {{peak: {speed:.6f}, slope: {speed / 0.4:.6f}, hold: 1.0e+6, pause: 0.0}}}}"
-
-
-def steady(degrees, load):
-    return Point(f"{degrees:g}°/s, {load:g} N·m", f"steady_{degrees:g}", degrees, constant_speed(degrees),
-                 f"{{constant: {load}}}")
+# `alike`: all teeth are, so that a response surface of any fault of the whole gear takes no time. Else every tooth is
+# solved in faulty runs, which takes less time than a surface for a run or two.
+Gear = collections.namedtuple("Gear", "name alike settings")
+EVEN = Gear("shipped", True, [])
+LOOSE = Gear("loose", True, ["  cup.torsion_stiffness: [31.0e+3, 52.5e+3, 61.0e+3]", "  mesh.flank_clearance: -0.7e-6",
+                             "  bearing.race_preload: 450.0", "  bearing.viscosity: 300.0e-6"])
+TIGHT = Gear("tight", True, ["  cup.torsion_stiffness: [35.0e+3, 59.0e+3, 68.5e+3]", "  mesh.flank_clearance: -1.4e-6",
+                             "  bearing.race_preload: 590.0", "  bearing.viscosity: 380.0e-6"])
 
 
-def sinus(amplitude, frequency):
-    return f"{{sinus: {{mean: 0.0, amplitude: {amplitude:.6f}, frequency: {frequency:.9f}, phase: 0.0}}}}"
+def uneven(seed):
+    """Pitch errors as in a UR5's joint, on one member, so that sound runs have a response surface."""
+    return Gear(f"pitch errors {seed}", False, ["  manufacture.circular_spline_pitch_deviation: 9.5e-6",
+                                                f"  manufacture.circular_spline_pitch_seed: {seed}"])
 
 
-SWING = 70.0              # greatest speed of the check-up motion [°/s]
-PERIOD = math.pi * 360.0 / (2.0 * SWING)  # in which it travels one turn of the joint, there and back together [s]
-TURNING = Point("turning under its weight: 30°/s, ±130 N·m once a turn", "turning", 30.0,
-                constant_speed(30.0), sinus(130.0, 30.0 / 360.0))
-# A window is one period, so that what stands fast in the joint is the same in all of them.
-CHECK_UP = Point("check-up: to and fro at up to 70°/s, ±130 N·m once a second", "check_up", 360.0 / PERIOD,
-                 sinus(math.radians(SWING), 1.0 / PERIOD), sinus(130.0, 8.0 / PERIOD), (1000.0, PERIOD))
-STEADY_POINTS = [steady(5.0, 140.0), steady(15.0, 60.0), steady(45.0, 110.0), steady(90.0, 0.0), steady(170.0, 30.0)]
-POINTS = [*STEADY_POINTS, TURNING, CHECK_UP]
-TRAINING_POINTS = POINTS[1:]
-SHORT_POINTS = [POINTS[1], POINTS[3], POINTS[4], CHECK_UP]  # for what takes long: see `takes_long`
+# The split. `bearing_severities`: each ball is solved, which takes twice as long. Bearings and single teeth, if any,
+# are run on the first gear, in the check-up only, and so are all kinds on a gear whose teeth differ.
+Trial = collections.namedtuple("Trial", "name gears motions severities bearing_severities tooth seed")
+FITTED = Trial("fitted", [EVEN], [CHECK_UP, STACKING], [0.15, 0.4, 1.0], [0.4, 1.0], 90, 2)
+CALIBRATED = Trial("calibrated", [LOOSE], [CHECK_UP, STACKING], [0.25, 0.6], [], 15, 3)
+CALIBRATED_UNEVEN = Trial("calibrated", [uneven(777)], [CHECK_UP], [0.2, 0.5], [0.5], 40, 5)
+JUDGED = Trial("judged", [uneven(4321), TIGHT], [CHECK_UP, PICK_AND_PLACE, SEAM], [0.2, 0.5], [], None, 5)
+QUICK = Trial("quick", [TIGHT], [CHECK_UP, PICK_AND_PLACE], [0.5], [], None, 5)
 
-# The grease's temperature is anywhere in a band [°C]; noise of both encoders, times that of real_sensors.yaml.
-Condition = collections.namedtuple("Condition", "name temperatures noise")
-COOL = Condition("cool", (21.0, 29.0), 1.0)
-WARM = Condition("warm", (41.0, 49.0), 1.0)
-NOISY = Condition("noisy", (41.0, 49.0), 3.0)
-CONDITIONS = [COOL, WARM, NOISY]
+GREASE = (10.0, 50.0)     # [degC]
+# Of the reference, away from the edges of its classes [degC].
+COMMISSIONING = [10.0 * step + offset for step in range(1, 5) for offset in (1.0, 3.0, 5.0, 7.0, 9.0)]
+SAME = [20.0, 40.0]       # of the runs that the signatures are differences of [degC]
 
-Trial = collections.namedtuple("Trial", "name severities slow_severities tooth seed")
-TRAINING = Trial("training", [0.2, 0.6], [0.6], 90, 2)   # that the signatures are fitted to
-JUDGED = Trial("judged", [0.1, 0.3, 1.0], [0.3, 1.0], 40, 3)
-
-# A window: number in its run from 1 on, values and scores by indicator, scores by feature, strongest score over its
-# threshold, verdict.
-Window = collections.namedtuple("Window", "number values scores features largest level cause confidence")
-Run = collections.namedtuple("Run", "point condition kind severity windows")
-
-
-def window_time(point):
-    return WINDOW_TURNS * 360.0 / (point.degrees * RATIO)
-
-
-def points_of(condition):
-    return SHORT_POINTS if condition is NOISY else POINTS
-
-
-def takes_long(kind):
-    """Has no response surface, at some severity: every tooth is solved at every step."""
-    return kind["kind"].startswith("bearing_") or kind["kind"] in ("tooth_wear", "flange_crack")
+Window = collections.namedtuple("Window", "largest cause confidence alternatives severity deviation")
+Run = collections.namedtuple("Run", "gear motion kind severity window")
 
 
 def place_of(kind, tooth):
-    """The whole member where that may be, else a place in the middle."""
-    whole = kind["first_place"] < 0 and kind["kind"] not in ONE_TOOTH
-    return -1 if whole else min(tooth, kind["last_place"])
+    """The whole member where that may be, else a place in the middle; pitting at one tooth, though it may be at all."""
+    whole = kind["first_place"] < 0 and kind["kind"] != "pitting"
+    return -1 if whole else min(tooth or 0, kind["last_place"])
+
+
+def pairs(trial):
+    """Gears and motions that are run."""
+    return [(gear, motion) for motion in trial.motions for gear in trial.gears if gear.alike or motion == CHECK_UP]
+
+
+def group_of(kind):
+    """Of runs that take as long."""
+    return "bearing" if kind["kind"].startswith("bearing_") else "alike" if place_of(kind, 0) < 0 else "teeth"
+
+
+def speed_rows(moves, end):
+    """Corners of the trapezoids of a loop that ends before `end`: time [s], speed of the joint [rad/s]."""
+    time, position, rows = 0.5, 0.0, [(0.0, 0.0), (0.5, 0.0)]
+    while True:
+        for target, speed in moves:
+            distance = abs(target - position)
+            peak = min(speed, math.sqrt(distance * ACCELERATION))
+            rise, hold = peak / ACCELERATION, distance / peak - peak / ACCELERATION
+            if time + 2.0 * rise + hold > end:
+                return rows
+            signed = math.radians(math.copysign(peak, target - position))
+            rows += [(time + rise, signed), (time + rise + hold + 1e-4, signed), (time + 2.0 * rise + hold + 2e-4, 0.0)]
+            time += 2.0 * rise + hold + 0.01
+            rows.append((time, 0.0))
+            position = target
 
 
 class Bench:
     """Makes runs below a folder."""
 
     def __init__(self, tool, work, jobs):
-        self.tool, self.work, self.jobs = tool, work, jobs
+        self.tool, self.work, self.jobs = tool, work.resolve(), jobs
         work.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run([tool, "faults", "--json"], check=True, capture_output=True, text=True).stdout
         self.kinds = json.loads(listed)
+        subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", "shoulder", "--force", "--out",
+                        work / "check_up.csv"], check=True, stdout=subprocess.DEVNULL)
+        for motion in (STACKING, PICK_AND_PLACE, SEAM):
+            (work / f"{motion.tag}.csv").write_text("time,shoulder_velocity\n" + "".join(
+                f"{time:.6f},{speed:.9f}\n" for time, speed in speed_rows(motion.moves, motion.window)))
 
-    def sweep(self, name, condition, point, windows, repeats, seed, classes):
+    def sweep(self, name, gear, motion, temperature, classes, repeats=1, seed=1, scene="auto", others=()):
         """Bags of the runs that went well, each with its row of the index."""
-        noise = [f"  sensors.motor_noise: {5.0e-5 * condition.noise:.7f}",
-                 f"  sensors.output_noise: {1.2e-5 * condition.noise:.7f}"]
-        low, high = condition.temperatures
-        lines = [f"name: {name}", f"seed: {seed}", f"duration: {START + (windows + 0.1) * window_time(point):.3f}",
-                 "overlays: [real_sensors.yaml]", "set:", "  solver.scene: auto", *noise,
-                 f"  input.temperature: {{uniform: [{low}, {high}]}}", f"  indicators.window_turns: {point.window[0]}",
-                 f"  indicators.window_time: {point.window[1]:.6f}",
-                 f"  publish.indicators_rate: {1.0 if window_time(point) > 5.0 else 10.0}",
-                 "  publish.joint_states_rate: 0.001",
-                 "  publish.encoders_rate: 0.001", "  publish.contact_forces_rate: 0.001",
-                 "  publish.health_rate: 0.001",
-                 f"repeats: {repeats}", "duty:", f"  - name: {point.tag}", f"    speed: {point.speed}",
-                 "    bandwidth: 8.0", f"    load: {point.load}", "classes:", *classes, "record:", "  format: bag"]
+        name = name.replace(" ", "_")
+        lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.window + 0.3:.3f}",
+                 "overlays: [joints/shoulder.yaml, real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
+                 f"  input.temperature: {temperature}", "  indicators.window_turns: 100000.0",
+                 f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 10.0",
+                 "  publish.joint_states_rate: 0.001", "  publish.encoders_rate: 0.001",
+                 "  publish.contact_forces_rate: 0.001", "  publish.health_rate: 0.001", *gear.settings, *others]
+        if motion.payload and not others:
+            lines += ["  output.gravity_torque: {uniform: [53.4, 73.4]}",
+                      "  output.load_inertia: {uniform: [3.3, 5.0]}"]
+        lines += [f"repeats: {repeats}", "duty:", f"  - name: {motion.tag}",
+                  f"    speed: {{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}", "    bandwidth: 8.0",
+                  f"    load: {{constant: {'0.0' if others else '{uniform: [-3.0, 3.0]}'}}}", "classes:", *classes,
+                  "record:", "  format: bag"]
         plan = self.work / f"{name}.yaml"
         plan.write_text("\n".join(lines) + "\n")
         out = self.work / name
@@ -121,56 +131,66 @@ class Bench:
         with open(out / "index.csv", newline="", encoding="utf-8") as index:
             return [(out / row["file"], row) for row in csv.DictReader(index) if row["status"] == "ok"]
 
-    def sound(self, purpose, condition, point, windows, repeats, seed):
-        return self.sweep(f"{purpose}_{condition.name}_{point.tag}", condition, point, windows, repeats, seed,
-                          ["  healthy: []"])
+    def sound(self, purpose, gear, motion, temperature, repeats, seed, scene="auto", others=()):
+        return self.sweep(f"{purpose}_{gear.name}_{motion.tag}", gear, motion, temperature, ["  healthy: []"], repeats,
+                          seed, scene, others)
 
-    def faulty(self, trial, condition, point):
+    def faulty(self, trial, gear, motion, temperature, others=()):
         """Every kind at every severity, from the start on."""
         bags = []
-        groups = {"fast": trial.severities}
-        if point in SHORT_POINTS and condition is not NOISY:
-            groups["slow"] = trial.slow_severities
-        for group, severities in groups.items():
+        for group, severities in (("alike", trial.severities), ("teeth", trial.severities),
+                                  ("bearing", trial.bearing_severities)):
+            if group == "teeth" and trial.tooth is None:
+                continue
+            if not severities or (group != "alike" and (gear != trial.gears[0] or motion != CHECK_UP)):
+                continue
             classes = []
             for kind in self.kinds:
-                if takes_long(kind) == (group == "slow"):
+                if group_of(kind) == group:
                     classes += [f"  {kind['kind']}:",
                                 f"    - {{kind: {kind['kind']}, severity: {{grid: {severities}}}, "
                                 f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
-            bags += self.sweep(f"{trial.name}_{group}_{condition.name}_{point.tag}", condition, point, WINDOWS, 1,
-                               trial.seed, classes)
+            scene = "auto" if gear.alike and group == "alike" else "full_ring"
+            own = SAME[0] if trial is FITTED and group == "bearing" else temperature
+            bags += self.sweep(f"{trial.name}_{group}_{gear.name}_{motion.tag}", gear, motion, own, classes, 1,
+                               trial.seed, scene, others)
         return bags
 
-    def setting_in(self, condition):
-        """Faults that set in on a sound drive, in the check-up: from then on every tooth is solved at every step."""
-        classes = [f"  {kind['kind']}:\n    - {{kind: {kind['kind']}, severity: 1.0, "
-                   f"place: {place_of(kind, JUDGED.tooth)}, onset: {START + SET_IN * window_time(CHECK_UP):.3f}}}"
-                   for kind in self.kinds if not takes_long(kind)]
-        return self.sweep("setting_in", condition, CHECK_UP, 4, 1, 5, classes)
+    def differences(self):
+        """(runs with faults, sound runs in the same scene) of FITTED: same noise, same temperatures."""
+        grid = f"{{grid: {SAME}}}"
+        same = ["  sensors.noise_seed: 7"]
+        runs = []
+        for motion in FITTED.motions:
+            sound = [(scene, self.sound(f"same_{scene}", EVEN, motion, grid, 1, 1, scene, same))
+                     for scene in ("auto", "full_ring")]
+            faulty = self.faulty(FITTED, EVEN, motion, grid, same)
+            runs.append((motion, sound, faulty))
+        return runs
 
-    def reference(self, condition):
-        """File of the healthy reference, from separate runs."""
-        bags = [bag for point in points_of(condition)
-                for bag, _ in self.sound("commissioning", condition, point,
-                                         max(round(COMMISSIONING[1] / window_time(point)), 2), COMMISSIONING[0], 1)]
-        path = self.work / f"reference_{condition.name}.yaml"
-        self._indicators(bags, ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])
+    def reference(self, gear, motion):
+        """File of the healthy reference, from runs of its own."""
+        bags = self.sound("commissioning", gear, motion, f"{{grid: {COMMISSIONING}}}", 4, 1)
+        path = self.work / f"reference_{gear.name.replace(' ', '_')}_{motion.tag}.yaml"
+        self.indicators([bag for bag, _ in bags],
+                        ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])
         return path
 
-    def judge(self, bags, condition, point, reference):
-        """Assessments of runs compared with a reference."""
-        report = self._indicators([bag for bag, _ in bags], ["--baseline", reference])
-        windows = collections.defaultdict(list)
+    def judge(self, bags, gear, motion):
+        """Assessments of runs compared with the reference; of those at an operating point that it has not None."""
+        report = self.indicators([bag for bag, _ in bags], ["--baseline", self.reference(gear, motion), "--set",
+                                                            "indicators.confirm_windows=1"])
+        windows = {}
         for window in report["windows"]:
-            verdict, own = window["assessment"], windows[window["recording"]]
-            own.append(Window(len(own) + 1, window["indicators"], window["scores"], window["features"],
-                              verdict["largest_score"], verdict["level"], verdict["cause"], verdict["confidence"]))
-        return [Run(point, condition, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0),
-                    windows[str(bag)])
+            verdict = window["assessment"]
+            if verdict["state"] == "assessed":
+                windows[window["recording"]] = Window(*(verdict[key] for key in (
+                    "largest_score", "cause", "confidence", "alternatives", "severity", "severity_deviation")))
+        return [Run(gear, motion, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0),
+                    windows.get(str(bag)))
                 for bag, row in bags]
 
-    def _indicators(self, bags, options):
+    def indicators(self, bags, options=()):
         done = subprocess.run([self.tool, "indicators", "--windows", "--json", *options, *bags], check=True,
                               capture_output=True, text=True)
         return json.loads(done.stdout)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace hjt
 {
@@ -16,6 +17,7 @@ const char* levelName(HealthLevel level) noexcept
 Assessor::Assessor(const Parameters& parameters)
   : confirm_windows_(parameters.indicators.confirm_windows)
   , error_factor_(parameters.indicators.error_factor)
+  , log_odds_threshold_(-std::log(parameters.indicators.false_alarm_rate))
   , baseline_(parameters)
 {
 }
@@ -47,17 +49,25 @@ const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
   assessment_.state = AssessmentState::ASSESSED;
   const FeatureScores plain = featureScores(deviations_.plain);
   const FeatureScores conditional = featureScores(deviations_.conditional);
-  assessment_.largest_score = 0.0;
+  const CausePosterior posterior = causePosterior(baseline_.residual());
+  assessment_.largest_score = std::max(posterior.log_odds / log_odds_threshold_, 0.0);
+  const HealthLevel odds = posterior.log_odds > log_odds_threshold_ ? HealthLevel::WARN : HealthLevel::OK;
   const HealthLevel level = levelOf(plain);
-  updateLevel(std::max(level, levelOf(conditional)));
-  // The signatures are of what a fault does to each indicator: where only their relation shows it, the cause is open.
-  if (level != HealthLevel::OK)
+  updateLevel(std::max({ level, levelOf(conditional), odds }));
+  if (assessment_.level == HealthLevel::OK)
   {
-    explain(indicators, plain, deviations_.plain, causeProbabilities(plain));
+    assessment_.cause = Cause::NONE;
+    assessment_.confidence = 0.0;
+    assessment_.severity = 0.0;
+    assessment_.severity_deviation = 0.0;
+    assessment_.alternative_count = 0;
+    assessment_.evidence_count = 0;
   }
-  else
+  else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
-    explain(indicators, conditional, deviations_.conditional, {});
+    explain(posterior);
+    level != HealthLevel::OK ? listEvidence(indicators, plain, deviations_.plain) :
+                               listEvidence(indicators, conditional, deviations_.conditional);
   }
   return assessment_;
 }
@@ -109,31 +119,41 @@ void Assessor::updateLevel(HealthLevel level) noexcept
   }
 }
 
-void Assessor::explain(const SignalIndicators& indicators, const FeatureScores& scores, const Deviations& deviations,
-                       const std::array<double, CAUSE_COUNT>& probabilities) noexcept
+/// That something is wrong is settled: only what, is asked.
+void Assessor::explain(const CausePosterior& posterior) noexcept
 {
-  if (assessment_.level == HealthLevel::OK)
+  std::array<std::size_t, CAUSE_COUNT> sorted{};
+  std::iota(sorted.begin(), sorted.end(), std::size_t{ 0 });
+  const std::array<double, CAUSE_COUNT>& probability = posterior.probability;
+  std::sort(sorted.begin(), sorted.end(),
+            [&probability](std::size_t a, std::size_t b) { return probability[a] > probability[b]; });
+  const std::size_t best = sorted.front();
+  assessment_.cause = static_cast<Cause>(best);
+  assessment_.confidence = probability[best];
+  assessment_.severity = posterior.severity[best];
+  assessment_.severity_deviation = posterior.severity_deviation[best];
+  assessment_.alternative_count = 0;
+  double sum = probability[best];
+  while (sum < Assessment::SET && assessment_.alternative_count < Assessment::MAX_ALTERNATIVES)
   {
-    assessment_.cause = Cause::NONE;
-    assessment_.confidence = 0.0;
-    assessment_.evidence_count = 0;
-    return;
+    const std::size_t next = sorted[assessment_.alternative_count + 1];
+    assessment_.alternatives[assessment_.alternative_count++] = { static_cast<Cause>(next), probability[next] };
+    sum += probability[next];
   }
-  if (assessment_.largest_score <= 1.0)
-  {
-    return;  // no evidence in this window: the causes stand until the level falls
-  }
-  // That something is wrong is settled: only what, is asked. All zero: NONE, the first.
-  const auto best = std::max_element(probabilities.begin(), probabilities.end());
-  assessment_.cause = static_cast<Cause>(best - probabilities.begin());
-  assessment_.confidence = *best;
+}
+
+/// Those beyond the threshold; if the odds alone are beyond theirs, the strongest.
+void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores,
+                            const Deviations& deviations) noexcept
+{
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;
   std::sort(sorted.begin(), sorted.end(),
             [](const FeatureScore& a, const FeatureScore& b) { return std::abs(a.score) > std::abs(b.score); });
+  const double least = std::abs(sorted.front().score) > baseline_.threshold() ? baseline_.threshold() : 0.0;
   assessment_.evidence_count = 0;
   for (const FeatureScore& feature : sorted)
   {
-    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
+    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= least)
     {
       break;
     }

@@ -174,7 +174,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, WindowDeviati
 {
   deviations = {};
   ReferenceBin* bin = find(binOf(indicators.point, load_step_));
-  if (bin == nullptr)
+  if (bin == nullptr || (given_ && bin->windows < MIN_COUNT))
   {
     return BaselineState::NO_REFERENCE;
   }
@@ -238,17 +238,16 @@ Deviation Baseline::deviation(double difference, double expected, double spread,
 }
 
 void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicators,
-                       WindowDeviations& deviations) const noexcept
+                       WindowDeviations& deviations) noexcept
 {
   // Woodbury's identity: C^-1 = D^-1 - D^-1 F (1 + F' D^-1 F)^-1 F' D^-1, F with a row for each indicator.
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
-  std::array<Causes, INDICATOR_COUNT> rows;
-  std::array<double, INDICATOR_COUNT> own{};  // diagonal of D, 0: not compared
-  std::array<double, INDICATOR_COUNT> difference{};
   Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES> inner;
   inner.setIdentity();
   Causes projected = Causes::Zero();
   double causes = 0.0;
+  int least = 0;
+  residual_ = {};
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
@@ -257,21 +256,25 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
       continue;
     }
     const double n = reference.count;
-    difference[i] = indicators.values[i] - reference.mean;
+    least = least == 0 ? reference.count : std::min(least, reference.count);
+    residual_.expected[i] = reference.mean;
+    residual_.difference[i] = indicators.values[i] - reference.mean;
     deviations.plain[i] =
-        deviation(difference[i], reference.mean, std::sqrt(variance(i, bin, indicators, 1.0)), n - 1.0);
+        deviation(residual_.difference[i], reference.mean, std::sqrt(variance(i, bin, indicators, 1.0)), n - 1.0);
     const Causes common = Eigen::Map<const Causes>(reference.common.data());
     const double found = static_cast<double>((common.array() != 0.0).count());
     const double left = std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0) / (n - 1.0 - found);
     causes = std::max(causes, found);
-    own[i] = variance(i, bin, indicators, left);
-    if (own[i] > 0.0)
+    residual_.own[i] = variance(i, bin, indicators, left);
+    if (residual_.own[i] > 0.0)
     {
-      rows[i] = std::sqrt(reference.variance() * (1.0 + 1.0 / n)) * common;
-      inner += rows[i] * rows[i].transpose() / own[i];
-      projected += rows[i] * (difference[i] / own[i]);
+      Eigen::Map<Causes> row(residual_.common[i].data());
+      row = std::sqrt(reference.variance() * (1.0 + 1.0 / n)) * common;
+      inner += row * row.transpose() / residual_.own[i];
+      projected += row * (residual_.difference[i] / residual_.own[i]);
     }
   }
+  residual_.freedom = std::max(least - 1.0 - causes, 1.0);
   if (causes == 0.0)
   {
     return;
@@ -280,10 +283,12 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
   const Causes explained = inner * projected;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    if (own[i] > 0.0)
+    const double own = residual_.own[i];
+    if (own > 0.0)
     {
-      const double weighted = (difference[i] - rows[i].dot(explained)) / own[i];        // of C^-1 (x - m)
-      const double precision = (1.0 - rows[i].dot(inner * rows[i]) / own[i]) / own[i];  // of C^-1
+      const Eigen::Map<const Causes> row(residual_.common[i].data());
+      const double weighted = (residual_.difference[i] - row.dot(explained)) / own;  // of C^-1 (x - m)
+      const double precision = (1.0 - row.dot(inner * row) / own) / own;             // of C^-1
       const double spread = 1.0 / std::sqrt(precision);
       const double unexpected = weighted / precision;
       deviations.conditional[i] =

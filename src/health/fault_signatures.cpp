@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 
 #include "health/fitted_signatures.hpp"
 #include "health/indicator_table.hpp"
@@ -12,43 +12,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double INVERSE_TEMPERATURE = 20.0;
-constexpr double NOISE =
-    2.0;  // a score within it says nothing: amplitudes are never below zero, and would point everywhere
-
-constexpr std::array FEATURE_NAMES{ "ratio",      "kinematic_error", "stiffness",       "lost_motion",
-                                    "loop",       "running_torque",  "coulomb",         "viscous",
-                                    "efficiency", "residual",        "impulses",        "order_1",
-                                    "order_2",    "order_4",         "circular_spline", "cage",
-                                    "ball",       "outer",           "inner",           "tooth_pass" };
-static_assert(FEATURE_NAMES.size() == FEATURE_COUNT, "a name for each Feature");
-
-/// However large a fault has grown, its direction is nearly the same.
-double compressed(double score) noexcept
-{
-  return std::copysign(std::asinh(std::max(std::abs(score) - NOISE, 0.0)), score);
-}
-
-/// Cosine of the angle between the scores and a signature, over the features compared; 0 if they say nothing.
-double cosineSimilarity(const FeatureScores& scores, const Signature& signature) noexcept
-{
-  double product = 0.0;
-  double score_square = 0.0;
-  double direction_square = 0.0;
-  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
-  {
-    if (scores[i].compared)
-    {
-      const double score = compressed(scores[i].score);
-      product += score * signature.direction[i];
-      score_square += score * score;
-      direction_square += signature.direction[i] * signature.direction[i];
-    }
-  }
-  const double square = score_square * direction_square;
-  return square > 0.0 ? product / std::sqrt(square) : 0.0;
-}
-
 /// Gathers the deviations of one feature.
 class Gatherer
 {
@@ -114,14 +77,24 @@ const char* causeName(Cause cause) noexcept
   return describe(static_cast<FaultKind>(kind)).name;
 }
 
-const char* featureName(Feature feature) noexcept
+SignatureTable faultSignatures() noexcept
 {
-  return FEATURE_NAMES[static_cast<std::size_t>(feature)];
+  return { FITTED_SIGNATURES, std::size(FITTED_SIGNATURES) };
 }
 
-const std::vector<Signature>& faultSignatures() noexcept
+std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double share)
 {
-  return FITTED_SIGNATURES;
+  std::vector<Cause> causes;
+  for (const Signature& signature : faultSignatures())
+  {
+    const double least = share * std::abs(SOUND_VALUES[indexOf(indicator)]);
+    if (signature.severity == 1.0 && sign * signature.change[indexOf(indicator)] >= least &&
+        std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
+    {
+      causes.push_back(signature.cause);
+    }
+  }
+  return causes;
 }
 
 FeatureScores featureScores(const Deviations& deviations) noexcept
@@ -144,21 +117,5 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
     }
   }
   return scores;
-}
-
-std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept
-{
-  std::array<double, CAUSE_COUNT> probabilities{};
-  for (const Signature& signature : FITTED_SIGNATURES)
-  {
-    double& probability = probabilities[static_cast<std::size_t>(signature.cause)];
-    probability = std::max(probability, std::exp(INVERSE_TEMPERATURE * cosineSimilarity(scores, signature)));
-  }
-  const double sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
-  for (double& probability : probabilities)
-  {
-    probability /= sum;
-  }
-  return probabilities;
 }
 }  // namespace hjt

@@ -65,6 +65,16 @@ py::list evidenceOf(const Assessment& assessment)
   return evidence;
 }
 
+py::dict alternativesOf(const Assessment& assessment)
+{
+  py::dict alternatives;
+  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  {
+    alternatives[causeName(assessment.alternatives[i].cause)] = assessment.alternatives[i].confidence;
+  }
+  return alternatives;
+}
+
 void bindReport(py::module& module)
 {
   auto health = py::class_<HealthReport>(
@@ -162,8 +172,12 @@ void bindIndicators(py::module& module)
           "level", [](const Assessment& self) { return levelName(self.level); }, "'OK', 'WARN' or 'ERROR'")
       .def_property_readonly(
           "cause", [](const Assessment& self) { return causeName(self.cause); },
-          "most likely cause; 'none' at level OK")
-      .def_readonly("confidence", &Assessment::confidence, "its probability among all causes, 0 at level OK [-]")
+          "most likely cause; 'none' at level OK, and at others if it is nothing of the table")
+      .def_readonly("confidence", &Assessment::confidence, "its probability, 0 at level OK [-]")
+      .def_readonly("severity", &Assessment::severity, "of the fault if this is the cause, mean; 0 with 'none' [-]")
+      .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of that [-]")
+      .def_property_readonly("alternatives", &alternativesOf,
+                             "further causes that show alike, until 90 % are reached: {cause: probability [-]}")
       .def_readonly("largest_score", &Assessment::largest_score,
                     "of the last window over the threshold; beyond 1 is out of the ordinary [-]")
       .def_property_readonly("evidence", &evidenceOf, "strongest first: list of Evidence");

@@ -100,14 +100,16 @@ private:
   void readFaultMessage(const rosbag::MessageInstance& instance)
   {
     const auto message = instantiate<harmonic_joint_twin::Fault>(instance);
-    Input input{ stampOf(instance, message->header), InputKind::FAULT };
-    if (readFault(*message, parameters_, input.fault).empty())
-    {
-      result_.inputs.push_back(input);
-    }
-    else
+    const Stamp stamp = stampOf(instance, message->header);
+    std::vector<Fault> steps;
+    if (!readFault(*message, parameters_, steps).empty())
     {
       ++result_.refused_faults;
+      return;
+    }
+    for (const Fault& fault : steps)
+    {
+      result_.inputs.push_back({ stamp, InputKind::FAULT, 0.0, fault });
     }
   }
 

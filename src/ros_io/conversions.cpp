@@ -9,9 +9,11 @@
 #include <limits>
 #include <optional>
 
+#include "base/number_text.hpp"
 #include "ros_io/printable.hpp"
 #include "ros_io/time.hpp"
 #include "statics/fatigue_law.hpp"
+#include "twin/growing_fault.hpp"
 
 namespace hjt
 {
@@ -280,10 +282,24 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
   return length;
 }
 
+std::size_t writeAlternatives(const Assessment& assessment, char* text, std::size_t size) noexcept
+{
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < assessment.alternative_count && length < size; ++i)
+  {
+    const Alternative& alternative = assessment.alternatives[i];
+    const int written = std::snprintf(text + length, size - length, "%s%s %.0f %%", i == 0 ? "" : "; ",
+                                      causeName(alternative.cause), 100.0 * alternative.confidence);
+    length = std::min(length + static_cast<std::size_t>(std::max(written, 0)), size - 1);
+  }
+  return length;
+}
+
 harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters)
 {
   auto message = makeMessage<harmonic_joint_twin::Assessment>(parameters);
   message.cause.assign(EVIDENCE_LENGTH, ' ');
+  message.alternatives.assign(EVIDENCE_LENGTH, ' ');
   message.evidence.assign(EVIDENCE_LENGTH, ' ');
   return message;
 }
@@ -297,9 +313,12 @@ void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_tw
   message.level = static_cast<std::uint8_t>(assessment.level);
   message.cause.assign(causeName(assessment.cause));
   message.confidence = assessment.confidence;
+  message.severity = assessment.severity;
+  message.severity_deviation = assessment.severity_deviation;
   message.largest_score = assessment.largest_score;
   std::array<char, EVIDENCE_LENGTH> text{};
   message.evidence.assign(text.data(), writeEvidence(assessment, text.data(), text.size()));
+  message.alternatives.assign(text.data(), writeAlternatives(assessment, text.data(), text.size()));
 }
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters)
@@ -369,15 +388,22 @@ harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, con
   return message;
 }
 
-std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault)
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters,
+                      std::vector<Fault>& steps)
 {
   const std::optional<FaultKind> kind = faultNamed(message.kind);
   if (!kind)
   {
     return "kind = '" + printable(message.kind) + "' is unknown, allowed: " + faultNames();
   }
-  fault = { *kind, message.severity, message.place, 0.0 };
-  return faultErrors(fault, parameters, "");
+  const GrowingFault growing{ { *kind, message.severity, message.place, 0.0 }, message.ramp };
+  if (!(growing.ramp >= 0.0 && growing.ramp <= GrowingFault::MAX_RAMP))
+  {
+    return "ramp = " + numberText(growing.ramp) + " [s] is out of range, allowed: 0 ... " +
+           numberText(GrowingFault::MAX_RAMP) + " [s]";
+  }
+  steps = growing.steps();
+  return faultErrors(growing.fault, parameters, "");
 }
 
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <sensor_msgs/JointState.h>
 
@@ -85,6 +86,9 @@ constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closi
 /// "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." into `text`; returns the length. Empty at level OK.
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
 
+/// "pitting 21 %; tooth_tip_crack 9 %", the same way.
+std::size_t writeAlternatives(const Assessment& assessment, char* text, std::size_t size) noexcept;
+
 harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters);
 void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_twin::Assessment& message) noexcept;
 inline bool fillAssessment(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Assessment& message) noexcept
@@ -96,8 +100,10 @@ inline bool fillAssessment(Twin& twin, const SinceMessage& /*since*/, harmonic_j
 /// Allocates.
 harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
 
-/// The fault in a message; its onset is the stamp. @returns what is wrong with it, or nothing.
-std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters, Fault& fault);
+/// The fault in a message, one that grows in steps; onsets count from the stamp. @returns what is wrong with it, or
+/// nothing.
+std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters,
+                      std::vector<Fault>& steps);
 
 /// What was found in a stamped torque message.
 enum class EffortStatus

@@ -33,7 +33,7 @@ std::string verdictText(const Assessment& assessment)
 {
   if (assessment.level != HealthLevel::OK && assessment.cause == Cause::NONE)
   {
-    return "The indicators depart from each other, cause not known";
+    return "The indicators depart from the reference as with no fault of the table";
   }
   if (assessment.level != HealthLevel::OK)
   {
@@ -49,10 +49,15 @@ std::string verdictText(const Assessment& assessment)
 
 void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status)
 {
+  std::array<char, EVIDENCE_LENGTH> alternatives{};
   std::array<char, EVIDENCE_LENGTH> evidence{};
+  writeAlternatives(assessment, alternatives.data(), alternatives.size());
   writeEvidence(assessment, evidence.data(), evidence.size());
   status.add("Cause", causeName(assessment.cause));
+  status.add("Alternatives", alternatives.data());
   status.add("Confidence [-]", assessment.confidence);
+  status.add("Severity [-]", assessment.severity);
+  status.add("Its standard deviation [-]", assessment.severity_deviation);
   status.add("Evidence", evidence.data());
   status.add("Largest score over threshold [-]", assessment.largest_score);
   status.add("Windows", assessment.windows);

@@ -64,15 +64,19 @@ void InputSubscribers::receiveLoad(const sensor_msgs::JointState& message)
 
 void InputSubscribers::receiveFault(const harmonic_joint_twin::Fault& message)
 {
-  Fault fault;
-  const std::string errors = readFault(message, parameters_, fault);
+  std::vector<Fault> steps;
+  const std::string errors = readFault(message, parameters_, steps);
   if (!errors.empty())
   {
     ++refused_fault_;
     ROS_WARN_STREAM("Refused a message on ~" << topics::INJECT_FAULT << ": " << errors);
     return;
   }
-  inbox_.push({ stampOr(message.header.stamp, ros::Time::now()), InputKind::FAULT, 0.0, fault });
+  const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());
+  for (const Fault& fault : steps)
+  {
+    inbox_.push({ stamp, InputKind::FAULT, 0.0, fault });
+  }
 }
 
 void InputSubscribers::receiveStamped(InputKind kind, const ros::Time& stamp, double torque)

@@ -76,8 +76,8 @@ class FaultsOfANode(unittest.TestCase):
             self.assertLess(self.now, end, what)
             self.run_clock(STEP)
 
-    def send(self, kind, severity, place=-1, stamp=0.0):
-        message = Fault(kind=kind, severity=severity, place=place)
+    def send(self, kind, severity, place=-1, stamp=0.0, ramp=0.0):
+        message = Fault(kind=kind, severity=severity, place=place, ramp=ramp)
         message.header.stamp = rospy.Time.from_sec(stamp)
         self.inject.publish(message)
         time.sleep(MESSAGE_TIME)
@@ -112,6 +112,19 @@ class FaultsOfANode(unittest.TestCase):
         self.assertEqual(self.active(), [])
         self.assertAlmostEqual(self.stiffness() / sound, 1.0, delta=0.02)  # friction leaves the joint where it stood
 
+    def test_a_fault_with_a_ramp_grows_evenly(self):
+        self.start()
+        stamp = self.now + STEP
+        ramp = 20.0 * STEP
+        self.send("lubricant_degradation", 0.8, -1, stamp, ramp)
+        for share in (0.25, 0.5, 1.0):
+            while self.now < stamp + share * ramp - 0.5 * STEP:
+                self.run_clock(STEP)
+            (_, severity, _), = self.active()
+            self.assertAlmostEqual(severity, 0.8 * (self.now - stamp) / ramp, delta=0.8 * 0.52 / 40.0 + 1e-9)
+        self.run_clock(STEP)
+        self.assertEqual(self.active(), [("lubricant_degradation", 0.8, -1)])
+
     def test_who_comes_late_still_hears_what_is_active(self):
         self.start()
         self.send("pitting", 0.3, 7)
@@ -131,14 +144,16 @@ class FaultsOfANode(unittest.TestCase):
                ("tooth_root_crack", 0.5, -1)]
         for fault in bad:
             self.send(*fault)
-        self.diagnostics.wait_for("Input", "Faults, refused", len(bad))
+        self.send("pitting", 0.5, 7, ramp=-1.0)
+        self.diagnostics.wait_for("Input", "Faults, refused", len(bad) + 1)
         self.assertEqual(self.diagnostics.level("Input"), WARN)
         self.run_clock(2.0 * STEP)
         self.assertEqual(self.active(), [("pitting", 0.3, 7)])
         self.assertEqual(self.health.messages()[-1].motor_torque, self.torque)
         for text in ("kind = 'rust' is unknown, allowed: interface_wear",
                      "severity = 1.5 [-] of pitting is out of range, allowed: 0 ... 1 [-]",
-                     "place = 200 [-] of pitting is out of range, allowed: tooth 0 ... 199"):
+                     "place = 200 [-] of pitting is out of range, allowed: tooth 0 ... 199",
+                     "ramp = -1.0 [s] is out of range, allowed: 0 ... "):
             self.assertTrue(text in self.node.output(), text)
         self.send("pitting", 0.6, 7)
         self.run_clock(STEP)

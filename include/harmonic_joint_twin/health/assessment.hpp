@@ -36,27 +36,42 @@ struct Evidence
   double score{};     ///< normal score of the deviation [-]
 };
 
+/// Another cause that would show alike.
+struct Alternative
+{
+  Cause cause{};
+  double confidence{};  ///< its probability [-]
+};
+
 /// What the indicators say of the drive.
 struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
+  static constexpr std::size_t MAX_ALTERNATIVES = 3;
+  static constexpr double SET = 0.9;  ///< of the probability, which cause and alternatives have together at least
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< windows seen
   AssessmentState state{};
   HealthLevel level{};
-  Cause cause{};           ///< NONE at level OK, and where only the relation of the indicators speaks for the level
-  double confidence{};     ///< probability of the cause among all of the table, 0 with NONE [-]
-  double largest_score{};  ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
+  Cause cause{};                ///< the most likely; NONE at level OK, and at others if it is nothing of the table
+  double confidence{};          ///< probability of the cause, 0 at level OK [-]
+  double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]
+  double severity_deviation{};  ///< standard deviation of that [-]
+  double largest_score{};       ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
+  std::size_t alternative_count{};
+  std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
   std::size_t evidence_count{};
   std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first
 };
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
-/// WARN: an indicator beyond the baseline's threshold, by itself or given all others. ERROR: beyond
-/// indicators.error_factor times it. The level changes after indicators.confirm_windows windows in a row that say the
-/// same or worse (up), or better (down). While the operating point has no reference, the last verdict stands.
+/// WARN: an indicator beyond the baseline's threshold, by itself or given all others; or odds of any fault of the
+/// table against none of 1 / indicators.false_alarm_rate, which sound windows of the reference's distribution exceed no
+/// more often than at this rate (Markov's inequality). ERROR: an indicator beyond indicators.error_factor times the
+/// threshold. The level changes after indicators.confirm_windows windows in a row that say the same or worse (up), or
+/// better (down). While the operating point has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -75,11 +90,13 @@ public:
 private:
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
   void updateLevel(HealthLevel level) noexcept;
-  void explain(const SignalIndicators& indicators, const FeatureScores& scores, const Deviations& deviations,
-               const std::array<double, CAUSE_COUNT>& probabilities) noexcept;
+  void explain(const CausePosterior& posterior) noexcept;
+  void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores,
+                    const Deviations& deviations) noexcept;
 
   const int confirm_windows_;
   const double error_factor_;
+  const double log_odds_threshold_;
   Baseline baseline_;
   WindowDeviations deviations_;
   Assessment assessment_;

@@ -82,6 +82,16 @@ struct WindowDeviations
   Deviations conditional;  ///< each given all others: what the common causes explain is none
 };
 
+/// What a window differs from its reference by, and what sound windows differ by: covariance D + F F'.
+struct WindowResidual
+{
+  std::array<double, INDICATOR_COUNT> expected{};                           ///< means, units of the indicators
+  std::array<double, INDICATOR_COUNT> difference{};                         ///< from them
+  std::array<double, INDICATOR_COUNT> own{};                                ///< diagonal of D; 0: not compared
+  std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
+  double freedom{};                                                         ///< v: of the reference's spreads [-]
+};
+
 enum class BaselineState : std::uint8_t
 {
   LEARNING,     ///< the window went into the reference of its operating point
@@ -116,7 +126,8 @@ public:
 
   BaselineState update(const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
 
-  double threshold() const noexcept { return threshold_; }  ///< of |score| [-]
+  double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
+  const WindowResidual& residual() const noexcept { return residual_; }  ///< of the last window
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   int windowsNeeded() const noexcept { return windows_; }
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
@@ -128,14 +139,14 @@ private:
   double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
                   double share) const noexcept;
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
-  void compare(const ReferenceBin& bin, const SignalIndicators& indicators,
-               WindowDeviations& deviations) const noexcept;
+  void compare(const ReferenceBin& bin, const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
 
   const int windows_;
   const double least_spread_;
   const double load_step_;  // [N.m]
   double threshold_;
   std::array<double, INDICATOR_COUNT> floor_{};  // q
+  WindowResidual residual_;
   bool given_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity
 };

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <vector>
 
 #include "harmonic_joint_twin/health/baseline.hpp"
@@ -32,7 +30,7 @@ constexpr Cause causeOf(FaultKind kind)
 
 const char* causeName(Cause cause) noexcept;  ///< "tooth_root_crack"
 
-/// Groups of indicators that say the same: the cause is sought among these.
+/// Groups of indicators that say the same: of each the strongest counts.
 enum class Feature : std::size_t
 {
   RATIO,
@@ -59,8 +57,6 @@ enum class Feature : std::size_t
 };
 constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);
 
-const char* featureName(Feature feature) noexcept;  ///< "lost_motion"
-
 /// The strongest of a group's deviations.
 struct FeatureScore
 {
@@ -73,28 +69,63 @@ using FeatureScores = std::array<FeatureScore, FEATURE_COUNT>;
 
 FeatureScores featureScores(const Deviations& deviations) noexcept;
 
-/// Where a cause drives the features: a direction in the space of their compressed scores.
+/// Numbers of a signature: the scalar indicators, then the amplitudes of each signal's lines. Of a line whose phase
+/// stays the amplitude is the length of its change: the phase depends on the fault's place.
+constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * LINE_COUNT;
+
+/// What a fault of one severity changes in the indicators of one motion.
 struct Signature
 {
-  /// A direction with more or fewer numbers than there are features does not compile.
+  /// More or fewer numbers than there are do not compile.
   template <std::size_t COUNT>
-  Signature(Cause whose, const double (&numbers)[COUNT]) : cause(whose)
+  constexpr Signature(Cause whose, double size, const double (&numbers)[COUNT]) : cause(whose), severity(size)
   {
-    static_assert(COUNT == FEATURE_COUNT, "a number for each Feature: run scripts/evaluate_health --fit");
-    std::copy(std::begin(numbers), std::end(numbers), direction.begin());
+    static_assert(COUNT == SIGNATURE_SIZE, "a number for each indicator: run scripts/evaluate_health --fit");
+    for (std::size_t i = 0; i < COUNT; ++i)
+    {
+      change[i] = numbers[i];
+    }
   }
 
   Cause cause;
-  std::array<double, FEATURE_COUNT> direction{};
+  double severity;                              ///< 0 ... 1 [-]
+  std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators
 };
 
-/// The table of docs/indicators.md, fitted to the model's own faults by `scripts/evaluate_health --fit`.
-const std::vector<Signature>& faultSignatures() noexcept;
+/// Of the twin's own runs, written by `scripts/evaluate_health --fit`.
+struct SignatureTable
+{
+  const Signature* begin() const noexcept { return first; }
+  const Signature* end() const noexcept { return first + count; }
 
-/// Probabilities of the causes given the scores; NONE is excluded, 0. Equal if no feature carries information.
+  const Signature* first;
+  std::size_t count;
+};
+SignatureTable faultSignatures() noexcept;
+
+/// Causes that move an indicator at severity 1 by `share` of its sound value or more; `sign`: +1 up, -1 down.
+std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double share);
+
+/// What a window says of the causes.
+struct CausePosterior
+{
+  double log_odds{};  ///< of any fault of the table against none, natural [-]
+  /// Given that something is wrong; of NONE: that it is nothing of the table [-]
+  std::array<double, CAUSE_COUNT> probability{};
+  std::array<double, CAUSE_COUNT> severity{};            ///< mean, given the cause [-]
+  std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of that [-]
+};
+
+/// Likelihood of the window's differences d from the reference under every signature.
 ///
-/// Law:   P(c | s) ~ exp(k max cos(y, d)),  over the signatures d of the cause, of different motions
-/// where  y   asinh of the noise-corrected scores, over the features present in both vectors
-///        k   sharpness, assumed: P ranks the causes, it is no frequency
-std::array<double, CAUSE_COUNT> causeProbabilities(const FeatureScores& scores) noexcept;
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h),   P(h) the same for every cause, within it for every row
+///        D_h,ii = D_ii (1 + (e S)^2) + (r mu_i)^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
+/// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
+///        D, F, v  WindowResidual
+///        r, e     error of a signature in proportion to each number, and to its length: other gears, motions, places
+///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
+///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
+/// No fault: mu = 0. Something else: mu = 0, S = 3, 10, 30, 100.
+/// Does not allocate.
+CausePosterior causePosterior(const WindowResidual& residual) noexcept;
 }  // namespace hjt

@@ -34,35 +34,20 @@ constexpr double MIN_LOADING = 0.035;
 /// No change of temperature makes the friction of grease and contacts larger or smaller by more.
 constexpr double MAX_ARM_FRICTION = 2.5;
 
-/// Part of a fault's signature, a unit vector, from which on a fault counts as moving a feature.
-constexpr double MIN_PART = 0.2;
-
-/// @param sign +1: up, -1: down.
-std::vector<Cause> causesOf(Feature feature, double sign)
-{
-  std::vector<Cause> causes;
-  for (const Signature& signature : faultSignatures())
-  {
-    const bool moves = sign * signature.direction[static_cast<std::size_t>(feature)] >= MIN_PART;
-    if (moves && std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
-    {
-      causes.push_back(signature.cause);
-    }
-  }
-  return causes;
-}
+/// Share of its sound value by which a fault of severity 1 must change an indicator to be named.
+constexpr double MIN_CHANGE = 0.02;
 
 /// One quantity as a multiple of the twin's.
 struct Ratio
 {
   const char* what;
   double value;
-  double to_own;        ///< the same of the joint's own when it was sound; NaN: not known
-  double of_arm;        ///< multiple that all joints of the arm have in common
-  double of_kind;       ///< share by which sound joints differ from the twin
-  Feature feature;      ///< that it moves
-  double when_larger;   ///< the feature moves up: +1, down: -1
-  const char* besides;  ///< what else moves it
+  double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
+  double of_arm;              ///< multiple that all joints of the arm have in common
+  double of_kind;             ///< share by which sound joints differ from the twin
+  ScalarIndicator indicator;  ///< that says the same
+  double when_larger;         ///< the indicator moves up: +1, down: -1
+  const char* besides;        ///< what else moves it
 };
 
 /// Against the joint's own when sound where that is known, else against the twin.
@@ -91,7 +76,7 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
                  " (" + sound + ").";
   if (finding.level != HealthLevel::OK)
   {
-    finding.causes = causesOf(ratio.feature, value > 1.0 ? ratio.when_larger : -ratio.when_larger);
+    finding.causes = causesThatMove(ratio.indicator, value > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
     finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
                                               " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
                     " Other causes: " + ratio.besides + ".";
@@ -219,7 +204,7 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
     return finding;
   }
   judgeRatio({ "Friction", comparison.friction().ratio(), frictionToOwn(comparison, context), context.arm_friction,
-               parameters.comparison.friction_tolerance, Feature::RUNNING_TORQUE, +1.0,
+               parameters.comparison.friction_tolerance, ScalarIndicator::RUNNING_TORQUE, +1.0,
                "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
   finding.text += " At " + rounded(comparison.temperature(), 0) + " degC (" + temperatureSource(comparison) + ")";
@@ -253,7 +238,7 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
                                parameters.sensors.motor_eccentricity / comparison.ratio() / std::sqrt(2.0)) /
                               twin;
   judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
-               parameters.comparison.compliance_tolerance + eccentricity, Feature::STIFFNESS, -1.0,
+               parameters.comparison.compliance_tolerance + eccentricity, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0,
                "a wrong load, eccentric encoders" },
              parameters, finding);
   constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns

@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/sweep/growing_fault.hpp"
 #include "apps/sweep/plan_node.hpp"
 
 #include "life/drive_ageing.hpp"
+#include "twin/growing_fault.hpp"
 
 namespace hjt
 {

@@ -29,31 +29,21 @@ std::string fileOf(const PlanNode& csv)
   return PlanValues().text(csv, "file");
 }
 
-/// One fault into the configuration: what grows as a staircase.
-void addFault(const GrowingFault& growing, const std::string& origin, ParameterMap& map, int& count)
-{
-  constexpr int STEPS = 40;
-  const int steps = growing.ramp > 0.0 ? STEPS : 1;
-  for (int step = 1; step <= steps; ++step)
-  {
-    const double share = static_cast<double>(step) / steps;
-    const double delay = growing.ramp > 0.0 ? growing.ramp * (share - 0.5 / steps) : 0.0;
-    const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
-    map[key + "kind"] = { std::string(describe(growing.fault.kind).name), origin };
-    map[key + "severity"] = { share * growing.fault.severity, origin };
-    map[key + "place"] = { static_cast<std::int64_t>(growing.fault.place), origin };
-    map[key + "onset"] = { growing.fault.onset + delay, origin };
-  }
-}
-
 /// These faults in place of any other.
 void setFaults(const std::vector<GrowingFault>& faults, const std::string& origin, ParameterMap& map)
 {
   eraseFaults(map);
   int count = 0;
-  for (const GrowingFault& fault : faults)
+  for (const GrowingFault& growing : faults)
   {
-    addFault(fault, origin, map, count);
+    for (const Fault& fault : growing.steps())
+    {
+      const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
+      map[key + "kind"] = { std::string(describe(fault.kind).name), origin };
+      map[key + "severity"] = { fault.severity, origin };
+      map[key + "place"] = { static_cast<std::int64_t>(fault.place), origin };
+      map[key + "onset"] = { fault.onset, origin };
+    }
   }
 }
 
@@ -78,7 +68,7 @@ std::vector<GrowingFault> faultsOf(const PlanNode& list, const PlanValues& value
     growing.fault.severity = values.number(node, "severity", "-", { 0.0, 1.0 });
     growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
     growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
-    growing.ramp = values.number(node, "ramp", "s", { 0.0, 1e9 }, 0.0);
+    growing.ramp = values.number(node, "ramp", "s", { 0.0, GrowingFault::MAX_RAMP }, 0.0);
     faults.push_back(growing);
   }
   return faults;

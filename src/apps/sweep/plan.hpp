@@ -10,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/sweep/growing_fault.hpp"
 #include "apps/sweep/lives.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
@@ -19,6 +18,7 @@
 #include "apps/sweep/variable.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "twin/growing_fault.hpp"
 
 namespace hjt
 {

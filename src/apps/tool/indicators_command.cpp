@@ -45,6 +45,7 @@ struct WindowResult
   std::string recording;
   SignalIndicators indicators;
   Deviations deviations;
+  WindowResidual residual;
   Assessment assessment;
 };
 
@@ -100,9 +101,20 @@ Json toJson(const Assessment& assessment)
   const std::vector<Evidence> evidence(
       assessment.evidence.begin(),
       assessment.evidence.begin() + static_cast<std::ptrdiff_t>(assessment.evidence_count));
-  return { { "state", stateName(assessment.state) },      { "level", levelName(assessment.level) },
-           { "cause", causeName(assessment.cause) },      { "confidence", assessment.confidence },
-           { "largest_score", assessment.largest_score }, { "evidence", Table(columns, evidence).rows() } };
+  Json alternatives{ std::initializer_list<Json::Member>{} };
+  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  {
+    alternatives[causeName(assessment.alternatives[i].cause)] = assessment.alternatives[i].confidence;
+  }
+  return { { "state", stateName(assessment.state) },
+           { "level", levelName(assessment.level) },
+           { "cause", causeName(assessment.cause) },
+           { "confidence", assessment.confidence },
+           { "severity", assessment.severity },
+           { "severity_deviation", assessment.severity_deviation },
+           { "alternatives", alternatives },
+           { "largest_score", assessment.largest_score },
+           { "evidence", Table(columns, evidence).rows() } };
 }
 
 /// Of a window, for documents and files alike.
@@ -127,15 +139,17 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-Json featuresJson(const WindowResult& window)
+/// Difference from the reference, own variance, what goes with each common cause; null: not compared.
+Json residualJson(const WindowResult& window)
 {
-  Json json;
-  const FeatureScores found = featureScores(window.deviations);
-  for (std::size_t i = 0; i < FEATURE_COUNT; ++i)
-  {
-    json[featureName(static_cast<Feature>(i))] = found[i].compared ? Json(found[i].score) : Json();
-  }
-  return json;
+  return byIndicator(
+      [&](std::size_t i)
+      {
+        const WindowResidual& residual = window.residual;
+        std::vector<double> numbers{ residual.difference[i], residual.own[i] };
+        numbers.insert(numbers.end(), residual.common[i].begin(), residual.common[i].end());
+        return residual.own[i] > 0.0 ? Json(numbers) : Json();
+      });
 }
 
 std::vector<Column<WindowResult>> documentColumns()
@@ -147,7 +161,8 @@ std::vector<Column<WindowResult>> documentColumns()
                       { return byIndicator([&](std::size_t i) { return window.indicators.values[i]; }); } });
   columns.push_back(
       { "scores", [](W window) { return byIndicator([&](std::size_t i) { return window.deviations[i].score; }); } });
-  columns.push_back({ "features", featuresJson });
+  columns.push_back({ "residual", residualJson });
+  columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
   columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
   return columns;
 }
@@ -162,6 +177,9 @@ std::vector<Column<WindowResult>> fileColumns()
   columns.push_back({ "level", [](const WindowResult& window) { return static_cast<int>(window.assessment.level); } });
   columns.push_back({ "cause", [](const WindowResult& window) { return static_cast<int>(window.assessment.cause); } });
   columns.push_back({ "confidence", [](const WindowResult& window) { return window.assessment.confidence; } });
+  columns.push_back({ "severity", [](const WindowResult& window) { return window.assessment.severity; } });
+  columns.push_back(
+      { "severity_deviation", [](const WindowResult& window) { return window.assessment.severity_deviation; } });
   columns.push_back({ "largest_score", [](const WindowResult& window) { return window.assessment.largest_score; } });
   return columns;
 }
@@ -201,6 +219,8 @@ void printSummary(const std::vector<WindowResult>& windows)
   {
     lines.push_back({ "", "most likely cause", causeName(assessment.cause) });
     lines.push_back({ "", "confidence", assessment.confidence });
+    lines.push_back({ "", "severity", assessment.severity });
+    lines.push_back({ "", "its standard deviation", assessment.severity_deviation });
   }
   printReport(false, lines);
 }
@@ -260,7 +280,7 @@ int run(const IndicatorsOptions& given)
     for (const SignalIndicators& indicators : measured)
     {
       const Assessment assessment = assessor.update(indicators);
-      windows.push_back({ recording, indicators, assessor.deviations(), assessment });
+      windows.push_back({ recording, indicators, assessor.deviations(), assessor.baseline().residual(), assessment });
     }
   }
   if (windows.empty())

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Dense>
+
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
+#include "health/fitted_signatures.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
+using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
+
+constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
+constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
+
+/// One compared number of a window.
+struct Term
+{
+  double difference;
+  double own;
+  Causes common;
+  std::size_t number;  // of the signature
+  bool has_phase;      // one of two parts of a line
+  double line_square;  // half the square of the sound line's amplitude, 0 of what has no phase
+};
+
+/// Half the square of the amplitude that a line with a phase has in the sound drive. Orders 2 and 1.98 are told apart
+/// so little in a motion to and fro that they count as one.
+double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_t line) noexcept
+{
+  constexpr std::array NEIGHBOURS{ index(Line::WAVE_GENERATOR_2), index(Line::CIRCULAR_SPLINE_2) };
+  const bool is_neighbour = line == NEIGHBOURS[0] || line == NEIGHBOURS[1];
+  double square = 0.0;
+  for (const std::size_t own : is_neighbour ? NEIGHBOURS : std::array{ line, line })
+  {
+    const double cosine = residual.expected[cosineIndex(signal, own)];
+    const double sine = residual.expected[sineIndex(signal, own)];
+    square += 0.5 * (cosine * cosine + sine * sine);
+  }
+  return is_neighbour ? square : 0.5 * square;
+}
+
+/// The numbers of a window that signatures speak of.
+class Terms
+{
+public:
+  explicit Terms(const WindowResidual& residual) : freedom_(residual.freedom)
+  {
+    for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+    {
+      add(residual, i, i);
+    }
+    for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
+    {
+      const auto signal = static_cast<LineSignal>(s);
+      for (std::size_t line = 0; line < LINE_COUNT; ++line)
+      {
+        const std::size_t number = SCALAR_COUNT + s * LINE_COUNT + line;
+        if (line < PHASE_LOCKED)
+        {
+          const double square = soundSquare(residual, signal, line);
+          add(residual, cosineIndex(signal, line), number, square);
+          add(residual, sineIndex(signal, line), number, square);
+        }
+        else
+        {
+          add(residual, amplitudeIndex(signal, line), number);
+        }
+      }
+    }
+  }
+
+  /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`.
+  double logLikelihood(const Signature* signature, double strength) const noexcept
+  {
+    double widening = 1.0 + strength * strength;
+    double of_lines = 0.0;
+    if (signature != nullptr)
+    {
+      double square = 0.0;
+      for (const Term& term : *this)
+      {
+        const double change = signature->change[term.number];
+        square += (term.has_phase ? 0.5 : 1.0) * change * change / term.own;
+      }
+      widening = 1.0 + SIGNATURE_LENGTH_ERROR * SIGNATURE_LENGTH_ERROR * square;
+      of_lines = LINE_ERROR * LINE_ERROR * signature->severity * signature->severity;
+    }
+    CausesSquare inner = CausesSquare::Identity();
+    Causes projected = Causes::Zero();
+    double square = 0.0;
+    double log_determinant = 0.0;
+    double product = 1.0;
+    for (const Term& term : *this)
+    {
+      const double change = signature != nullptr ? signature->change[term.number] : 0.0;
+      const double mean = term.has_phase ? 0.0 : change;
+      const double share = term.has_phase ? 0.5 : SIGNATURE_ERROR * SIGNATURE_ERROR;
+      const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
+      const double difference = term.difference - mean;
+      const Causes weighted = term.common / variance;
+      inner.noalias() += weighted * term.common.transpose();
+      projected += weighted * difference;
+      square += difference * difference / variance;
+      product *= variance / term.own;
+      if (product > LARGE)
+      {
+        log_determinant += std::log(product);
+        product = 1.0;
+      }
+    }
+    log_determinant += std::log(product * inner.determinant());
+    square -= projected.dot(inner.inverse() * projected);
+    return -0.5 *
+           (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
+  }
+
+  const Term* begin() const noexcept { return terms_.data(); }
+  const Term* end() const noexcept { return terms_.data() + count_; }
+
+private:
+  void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
+           std::optional<double> line_square = {}) noexcept
+  {
+    if (residual.own[indicator] > 0.0)
+    {
+      terms_[count_++] = { residual.difference[indicator],
+                           residual.own[indicator],
+                           Eigen::Map<const Causes>(residual.common[indicator].data()),
+                           number,
+                           line_square.has_value(),
+                           line_square.value_or(0.0) };
+    }
+  }
+
+  const double freedom_;
+  std::array<Term, INDICATOR_COUNT> terms_;
+  std::size_t count_{};
+};
+
+/// Likelihoods of one cause, over its rows.
+struct Sum
+{
+  void add(double likelihood, double severity) noexcept
+  {
+    ++rows;
+    total += likelihood;
+    first += likelihood * severity;
+    second += likelihood * severity * severity;
+  }
+  double rows{};
+  double total{};
+  double first{};   // of the severity
+  double second{};  // of its square
+};
+}  // namespace
+
+CausePosterior causePosterior(const WindowResidual& residual) noexcept
+{
+  const Terms terms(residual);
+  const double sound = terms.logLikelihood(nullptr, 0.0);
+  std::array<double, std::size(FITTED_SIGNATURES)> likelihoods{};
+  std::array<double, UNKNOWN_STRENGTHS.size()> unknown{};
+  double largest = sound;
+  for (std::size_t i = 0; i < likelihoods.size(); ++i)
+  {
+    likelihoods[i] = terms.logLikelihood(&FITTED_SIGNATURES[i], 0.0);
+    largest = std::max(largest, likelihoods[i]);
+  }
+  for (std::size_t i = 0; i < unknown.size(); ++i)
+  {
+    unknown[i] = terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[i]);
+    largest = std::max(largest, unknown[i]);
+  }
+
+  std::array<Sum, CAUSE_COUNT> sums;
+  for (std::size_t i = 0; i < likelihoods.size(); ++i)
+  {
+    const Signature& signature = FITTED_SIGNATURES[i];
+    sums[static_cast<std::size_t>(signature.cause)].add(std::exp(likelihoods[i] - largest), signature.severity);
+  }
+  for (const double likelihood : unknown)
+  {
+    sums[static_cast<std::size_t>(Cause::NONE)].add(std::exp(likelihood - largest), 0.0);
+  }
+  CausePosterior posterior;
+  double all = 0.0;
+  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  {
+    const Sum& sum = sums[cause];
+    if (sum.total > 0.0)
+    {
+      posterior.probability[cause] = sum.total / sum.rows;
+      all += posterior.probability[cause];
+      posterior.severity[cause] = sum.first / sum.total;
+      const double mean = posterior.severity[cause];
+      const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
+      posterior.severity_deviation[cause] = std::sqrt(square + SEVERITY_ERROR * SEVERITY_ERROR * mean * mean);
+    }
+  }
+  const double known = all - posterior.probability[static_cast<std::size_t>(Cause::NONE)];
+  posterior.log_odds = std::log(known / static_cast<double>(CAUSE_COUNT - 1)) + largest - sound;
+  for (double& probability : posterior.probability)
+  {
+    probability /= all;
+  }
+  return posterior;
+}
+}  // namespace hjt

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "harmonic_joint_twin/params/faults.hpp"
+
+namespace hjt
+{
+/// A fault that grows evenly from its onset on to its severity.
+struct GrowingFault
+{
+  static constexpr int STEPS = 40;         ///< of the staircase that the twin gets, at most half a step off
+  static constexpr double MAX_RAMP = 1e9;  ///< [s]
+
+  Fault fault;
+  double ramp{};  ///< time of growth; 0: at once [s]
+
+  double severityAt(double time) const  ///< `time` since the start [s]
+  {
+    const double gone = time - fault.onset;
+    return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;
+  }
+
+  /// The staircase: one fault for each step, by its onset.
+  std::vector<Fault> steps() const
+  {
+    if (ramp <= 0.0)
+    {
+      return { fault };
+    }
+    std::vector<Fault> steps(STEPS, fault);
+    for (int step = 0; step < STEPS; ++step)
+    {
+      steps[static_cast<std::size_t>(step)].severity *= (step + 1.0) / STEPS;
+      steps[static_cast<std::size_t>(step)].onset += ramp * (step + 0.5) / STEPS;
+    }
+    return steps;
+  }
+};
+}  // namespace hjt
