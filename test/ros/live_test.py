@@ -184,6 +184,7 @@ class Live(unittest.TestCase):
     def test_reset_starts_again(self):
         self.drive(0.5, 0.5)
         wait_until(lambda: abs(self.diagnostics.number("Drive", "Motor angle [rad]")) > 1.0, "the motor to turn")
+        time.sleep(0.5)  # no command is on its way any more
         self.assertTrue(self.reset().success)
         listener = Listener(f"{NODE}/encoders", Encoders)
         message = listener.wait_for(1)[0]
