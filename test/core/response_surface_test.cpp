@@ -894,6 +894,21 @@ TEST(SurfaceBalls, BitsDoNotDependOnTheNumberOfThreads)
   }
 }
 
+/// Of the twins of one process, those whose balls may drop by another depth have another table.
+TEST(SurfaceBalls, ArePooledByTheirDepth)
+{
+  Parameters parameters = surfaceParameters();
+  SurfaceSource source = cached();
+  source.pool = std::make_shared<SurfacePool>(2);
+  const SurfacePool::Surface first = sharedBallSurface(parameters, JointModel(parameters), "", source);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(sharedBallSurface(parameters, JointModel(parameters), "", source), first);
+  EXPECT_EQ(first->balls()->table()->deepest, parameters.fault_scale.cage_deflection);
+  parameters.fault_scale.cage_deflection *= 1.1;
+  source.progress = [](double) { throw std::runtime_error("a table is built"); };
+  EXPECT_THROW(sharedBallSurface(parameters, JointModel(parameters), "", source), std::runtime_error);
+}
+
 TEST(SurfaceBalls, AreNotThereForSeveralFaultsOrUnequalTeeth)
 {
   const Parameters parameters = surfaceParameters();
