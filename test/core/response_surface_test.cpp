@@ -1023,6 +1023,43 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
   }
 }
 
+/// Each table but the first costs a build: faults that set in together share one, and of many only the last have one.
+TEST(SceneAuto, ManyFaultsThatSetInLaterHaveFewTables)
+{
+  Parameters parameters = surfaceParameters();
+  std::string told;
+  SurfaceSource source = cached();
+  source.notice = [&](const std::string& what) { told = what; };
+  for (const char* fault : { "flange_crack:0.1:-1:0.002", "flange_crack:0.2:-1:0.002", "flange_crack:0.3:-1:0.002",
+                             "flange_crack:0.5:-1:0.002" })
+  {
+    parameters.faults.push_back(parseFault(fault, parameters));
+  }
+  const auto surfaces_after = [&](std::initializer_list<Stamp> instants)
+  {
+    Twin twin(parameters, source);
+    std::vector<bool> on_surface;
+    for (const Stamp instant : instants)
+    {
+      while (twin.stamp() < instant)
+      {
+        twin.step(instant);
+      }
+      on_surface.push_back(twin.onSurface());
+    }
+    return on_surface;
+  };
+  EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000 }), testing::ElementsAre(true, true));
+  EXPECT_EQ(told, "");
+  for (std::size_t i = 0; i < parameters.faults.size(); ++i)
+  {
+    parameters.faults[i].onset += 0.001 * static_cast<double>(i);
+  }
+  EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000, 4'900'000, 5'500'000 }),
+              testing::ElementsAre(true, false, false, true));
+  EXPECT_THAT(told, testing::HasSubstr("of the first and the last faults only"));
+}
+
 /// The full ring from the first instant, and the surface as soon as it is there, without a step in the torque.
 TEST(SceneAuto, RunsOnTheFullRingWhileTheSurfaceIsBuiltBeside)
 {
