@@ -32,7 +32,7 @@ namespace hjt
 /// where  P    time between two steps                                                [s]
 /// Until n + 1 angles have come in, the difference is taken over what there is; with one angle the velocity is zero.
 ///
-/// Steps are only kept; errors and resolution are those of the readings that are asked for.
+/// Steps are only kept; errors are added when one is read first, the resolution at every reading.
 class JointSensors
 {
 public:
@@ -55,7 +55,7 @@ public:
   void update(std::int64_t step, double motor_angle, double output_angle, double motor_torque) noexcept
   {
     newest_ = newest_ + 1 == instants_.size() ? 0 : newest_ + 1;
-    instants_[newest_] = { step, motor_angle, output_angle, motor_torque };
+    instants_[newest_] = { step, motor_angle, output_angle, motor_torque, false };
     count_ = std::min(count_ + 1, instants_.size());
   }
 
@@ -63,18 +63,19 @@ public:
   EncoderReadings encoders() const noexcept
   {
     const std::size_t intervals = std::min(window_, count_ - 1);
-    const Angles now = sensed(instant(delay_));
+    const Instant& now = sensed(delay_);
     EncoderReadings readings;
-    readings.motor_count = motor_encoder_.count(now.motor);
+    readings.motor_count = motor_encoder_.count(now.motor_angle);
     readings.motor_angle = motor_encoder_.angle(readings.motor_count);
-    readings.output_count = output_encoder_.count(now.output);
-    readings.output_angle = output_encoder_.unwrappedAngle(now.output);
+    readings.output_count = output_encoder_.count(now.output_angle);
+    readings.output_angle = output_encoder_.unwrappedAngle(now.output_angle);
     if (intervals > 0)
     {
-      const Angles before = sensed(instant(delay_ + intervals));
+      const Instant& before = sensed(delay_ + intervals);
       const double time = static_cast<double>(intervals) * period_;
-      readings.motor_velocity = (readings.motor_angle - motor_encoder_.angle(motor_encoder_.count(before.motor))) / time;
-      readings.output_velocity = (readings.output_angle - output_encoder_.unwrappedAngle(before.output)) / time;
+      readings.motor_velocity =
+          (readings.motor_angle - motor_encoder_.angle(motor_encoder_.count(before.motor_angle))) / time;
+      readings.output_velocity = (readings.output_angle - output_encoder_.unwrappedAngle(before.output_angle)) / time;
     }
     return readings;
   }
@@ -82,17 +83,9 @@ public:
   /// After an update [N.m].
   double motorTorque() const noexcept
   {
-    const Instant& now = instant(delay_);
-    double torque = now.motor_torque;
-    if (parameters_.torque_noise > 0.0)
-    {
-      torque += parameters_.torque_noise * noise_.normals(TORQUE, now.step)[0];
-    }
-    if (parameters_.torque_resolution > 0.0)
-    {
-      torque = parameters_.torque_resolution * std::round(torque / parameters_.torque_resolution);
-    }
-    return torque;
+    const double torque = sensed(delay_).motor_torque;
+    const double resolution = parameters_.torque_resolution;
+    return resolution > 0.0 ? resolution * std::round(torque / resolution) : torque;
   }
 
 private:
@@ -108,33 +101,31 @@ private:
     double motor_angle{};   // [rad]
     double output_angle{};  // [rad]
     double motor_torque{};  // [N.m]
-  };
-
-  /// That the encoders resolve into counts [rad].
-  struct Angles
-  {
-    double motor;
-    double output;
+    bool sensed{};          // with the sensors' errors
   };
 
   /// That of so many steps ago, or the first there was.
-  const Instant& instant(std::size_t back) const noexcept
+  const Instant& sensed(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);
-    return instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
-  }
-
-  Angles sensed(const Instant& at) const noexcept
-  {
-    Angles angles{ at.motor_angle + lines(at.motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines),
-                   at.output_angle + lines(at.output_angle, parameters_.output_eccentricity, parameters_.output_lines) };
-    if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
+    Instant& at = instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
+    if (!at.sensed)
     {
-      const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
-      angles.motor += parameters_.motor_noise * normals[0];
-      angles.output += parameters_.output_noise * normals[1];
+      at.sensed = true;
+      at.motor_angle += lines(at.motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines);
+      at.output_angle += lines(at.output_angle, parameters_.output_eccentricity, parameters_.output_lines);
+      if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
+      {
+        const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
+        at.motor_angle += parameters_.motor_noise * normals[0];
+        at.output_angle += parameters_.output_noise * normals[1];
+      }
+      if (parameters_.torque_noise > 0.0)
+      {
+        at.motor_torque += parameters_.torque_noise * noise_.normals(TORQUE, at.step)[0];
+      }
     }
-    return angles;
+    return at;
   }
 
   /// Error of an encoder that comes back every turn [rad].
@@ -159,9 +150,9 @@ private:
   CounterNoise noise_;
   IncrementalEncoder motor_encoder_;
   AbsoluteEncoder output_encoder_;
-  std::size_t delay_;              // of the readings [steps]
-  std::size_t window_;             // of the velocities [steps]
-  std::vector<Instant> instants_;  // ring of the last
+  std::size_t delay_;                      // of the readings [steps]
+  std::size_t window_;                     // of the velocities [steps]
+  mutable std::vector<Instant> instants_;  // ring of the last
   std::size_t newest_{};
   std::size_t count_{};  // instants held
 };
