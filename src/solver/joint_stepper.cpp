@@ -295,9 +295,8 @@ double JointStepper::phaseAdvance() const noexcept
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d squares = swingSquares();
   const double cross = ring.velocity_ratio * ring.output_stiffness - dynamics_.frictionStiffness()(0, 1);
-  const double fastest =
-      0.5 * squares.sum() + std::sqrt(0.25 * (squares[0] - squares[1]) * (squares[0] - squares[1]) +
-                                      cross * cross / dynamics_.model().inertia().prod());
+  const double fastest = 0.5 * squares.sum() + std::sqrt(0.25 * (squares[0] - squares[1]) * (squares[0] - squares[1]) +
+                                                         cross * cross / dynamics_.model().inertia().prod());
   return substep_ * std::sqrt(std::max(fastest, 0.0));
 }
 

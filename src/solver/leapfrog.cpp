@@ -14,8 +14,7 @@ Eigen::Vector2d rub(const JointDynamics& system, const DryFriction& friction, co
                     const Eigen::Vector2d& free, double dt) noexcept
 {
   Eigen::Vector2d after;
-  if (system.onSurface() &&
-      friction.slide(system.friction(), system.velocityRatio(), before, free, dt, after))
+  if (system.onSurface() && friction.slide(system.friction(), system.velocityRatio(), before, free, dt, after))
   {
     return after;
   }
