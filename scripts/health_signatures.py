@@ -66,20 +66,15 @@ def changes(bench):
     found = collections.defaultdict(list)
     layout, values = None, None
     for motion, sound, faulty in bench.differences():
-        by_scene = {}
-        for scene, bags in sound:
-            windows = windows_of(bench, bags)
-            by_scene[scene] = {row["set.input.temperature"]: windows[str(bag)] for bag, row in bags}
-        layout = layout or Layout(next(iter(by_scene["auto"].values())))
+        windows = windows_of(bench, [*sound, *faulty])
+        same = {row["set.input.temperature"]: windows[str(bag)] for bag, row in sound}
+        layout = layout or Layout(next(iter(same.values())))
         if values is None:
-            values = [numpy.mean([window[name] or 0.0 for window in by_scene["auto"].values()])
-                      for name in layout.names]
-        windows = windows_of(bench, faulty)
+            values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
         for bag, row in faulty:
-            same = by_scene["auto" if "alike" in str(bag) else "full_ring"]
             if str(bag) in windows:
-                found[row["class"], motion.tag, float(row["fault_severity"])].append(layout.numbers(
-                    windows[str(bag)], same[row.get("set.input.temperature") or f"{SAME[0]}"]))
+                found[row["class"], motion.tag, float(row["fault_severity"])].append(
+                    layout.numbers(windows[str(bag)], same[row["set.input.temperature"]]))
     return layout, values, {key: numpy.mean(own, axis=0) for key, own in found.items()}
 
 
