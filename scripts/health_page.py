@@ -14,7 +14,7 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CALIBRATED, CALIBRATED_UNEVEN, CHECK_UP, FITTED, GREASE, JUDGED, QUICK
+from health_runs import CHECK_UP, GREASE, JUDGED, QUICK
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -197,25 +197,12 @@ def draw_confusion(kinds, faulty, path):
     plt.close(figure)
 
 
-def split_table():
-    def row(name, trial):
-        return (f"| {name} | {', '.join(gear.name for gear in trial.gears)} | "
-                f"{', '.join(motion.name for motion in trial.motions)} | "
-                f"{', '.join(f'{severity:g}' for severity in trial.severities)} | "
-                f"{trial.tooth} | {trial.seed} |")
-
-    return ["| runs | gears | motions | severities | tooth | seed |", "|---|---|---|---|---|---|",
-            row("signatures fitted to", FITTED),
-            row("their errors fitted to", CALIBRATED), row("and", CALIBRATED_UNEVEN),
-            row("judged by", JUDGED)]
-
-
-def report(bench, sound, faulty, missing, page):
+def report(bench, trial, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
     return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged: fewer than eight windows of the reference lie at "
-            "their operating point.", "", *split_table(), "",
+            "their operating point.", "", *health_runs.split_table(("judged by", trial)), "",
             "### Sound drives", "", *sound_table(sound), "",
             "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
             "![Score of every window over the threshold](images/health/seen.png)", "",
@@ -245,7 +232,7 @@ def main():
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
     if options.quick:
-        print("\n".join(report(bench, *collect(bench, QUICK, 40), page)))
+        print("\n".join(report(bench, QUICK, *collect(bench, QUICK, 40), page)))
         return
     images = options.docs / "images" / "health"
     if options.figures:
@@ -254,7 +241,7 @@ def main():
     draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
-    page_section.write(page, "health", report(bench, sound, faulty, missing, page))
+    page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing, page))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)
 
 

@@ -29,7 +29,7 @@ STACKING = Motion("stacking", "stacking", 20.0, True, [(-25, 70), (20, 100), (-1
 PICK_AND_PLACE = Motion("pick-and-place", "pick_and_place", 20.0, True, [(-50, 90), (35, 90), (-20, 60), (50, 120)])
 SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 55)])
 
-# `alike`: all teeth are, so that a response surface of any fault takes little time. Else every tooth is solved in faulty
+# `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
 # runs.
 Gear = collections.namedtuple("Gear", "name alike settings")
 EVEN = Gear("shipped", True, [])
@@ -73,6 +73,16 @@ def place_of(kind, tooth):
 def pairs(trial):
     """Gears and motions that are run."""
     return [(gear, motion) for motion in trial.motions for gear in trial.gears if gear.alike or motion == CHECK_UP]
+
+
+def split_table(*rows):
+    """Of (name, trial)."""
+    lines = ["| runs | gears | motions | severities | tooth | seed |", "|---|---|---|---|---|---|"]
+    for name, trial in rows:
+        lines.append(f"| {name} | {', '.join(gear.name for gear in trial.gears)} | "
+                     f"{', '.join(motion.name for motion in trial.motions)} | "
+                     f"{', '.join(f'{severity:g}' for severity in trial.severities)} | {trial.tooth} | {trial.seed} |")
+    return lines
 
 
 def speed_rows(moves, end):
@@ -134,10 +144,10 @@ class Bench:
         print(f"evaluate_health: {name}", file=sys.stderr)
         done = subprocess.run([self.tool, "sweep", plan, "--out", out, "--jobs", str(self.jobs), "--json"], check=False,
                               stdout=subprocess.PIPE)
-        # 1: some run failed, as its row in the index says, or the folder was refused, which reports nothing.
+        # 1: some run failed, as its row in the index says; or all was refused, as runs of another version of the
+        # software are, and nothing reported.
         if done.returncode not in (0, 1) or not done.stdout:
-            sys.exit(f"evaluate_health: the sweep of {plan} ended with {done.returncode}; runs of another version of the "
-                     "software stay where they are until you delete their folder")
+            sys.exit(f"evaluate_health: the sweep of {plan} ended with {done.returncode}")
         with open(out / "index.csv", newline="", encoding="utf-8") as index:
             return [(out / row["file"], row) for row in csv.DictReader(index) if row["status"] == "ok"]
 

@@ -8,7 +8,7 @@ import math
 import numpy
 
 import page_section
-from health_runs import CALIBRATED, CALIBRATED_UNEVEN, FITTED, GREASE, SAME, pairs
+from health_runs import CALIBRATED, CALIBRATED_UNEVEN, FITTED, GREASE, pairs, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
 # Lines that stand alone by kinematics, whatever the motion, with their size at severity 1, assumed [rad]; a damaged
@@ -233,7 +233,9 @@ def write_table(layout, table, page):
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
              ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
              ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
-    lines = ["| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
+    lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", CALIBRATED),
+                        ("and", CALIBRATED_UNEVEN))
+    lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
     for cause, motion, severity, change in zip(*table):
         if motion == FITTED.motions[0].tag and severity == 0.4:
             by_name = dict(zip(layout.names, change))
