@@ -52,7 +52,7 @@ Trial = collections.namedtuple("Trial", "name gears motions severities tooth see
 FITTED = Trial("fitted", [EVEN], [CHECK_UP, STACKING, SLOW_TURN, FAST_TURN], [0.15, 0.4, 1.0], 90, 2)
 CALIBRATED = Trial("calibrated", [LOOSE], [CHECK_UP, STACKING, SLOW_TURN], [0.25, 0.6], 15, 3)
 CALIBRATED_UNEVEN = Trial("calibrated", [uneven(777)], [CHECK_UP], [0.5], 40, 5)
-JUDGED = Trial("judged", [uneven(2468), STIFF], [CHECK_UP, PICK_AND_PLACE, SEAM, TURN], [0.2, 0.5], 130, 6)
+JUDGED = Trial("judged", [STIFF], [CHECK_UP, PICK_AND_PLACE, SEAM, TURN], [0.2, 0.5], 130, 6)
 QUICK = Trial("quick", [TIGHT], [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)
 
 GREASE = (10.0, 50.0)     # [degC]
