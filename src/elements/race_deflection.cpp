@@ -90,6 +90,19 @@ bool RaceDeflection::dropsOneBall() const noexcept
   return size_ == 1 && (spalls_[0].where == Where::BALL || 2.0 * spalls_[0].half <= TWO_PI / balls_);
 }
 
+int RaceDeflection::ballThatMayDrop(double wave_generator_angle) const noexcept
+{
+  const Spall& spall = spalls_.front();
+  if (spall.where == Where::BALL || spall.where == Where::UNDER_BALL)
+  {
+    return spall.ball;
+  }
+  const double moved = spall.where == Where::INNER_RACE ? wave_generator_angle : 0.0;
+  const double nearest = (spall.place + moved - ballPlace(0, wave_generator_angle)) / TWO_PI;
+  const int ball = static_cast<int>(std::lround((nearest - std::floor(nearest)) * balls_));
+  return ball < balls_ ? ball : 0;
+}
+
 double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const noexcept
 {
   return TWO_PI * ball / balls_ + cage_rate_ * wave_generator_angle;

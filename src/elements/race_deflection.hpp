@@ -58,6 +58,8 @@ public:
   double deepest() const noexcept;
   /// Whether no two balls ever drop at once: one defect, shorter than from ball to ball.
   bool dropsOneBall() const noexcept;
+  /// If so or the bearing is sound: no ball but this one drops at the wave generator's angle [rad].
+  int ballThatMayDrop(double wave_generator_angle) const noexcept;
 
   int balls() const noexcept { return balls_; }
   /// Of a ball in the housing [rad], not within a turn.

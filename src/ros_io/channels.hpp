@@ -93,7 +93,7 @@ public:
           {
             if (channel.summarises)
             {
-              output.since = {};
+              output.since = { output.since.stamp };
             }
             return;
           }

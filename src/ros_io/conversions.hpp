@@ -33,8 +33,8 @@ struct JointNames
 std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
 
 // make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
-// As functions of a Channel they also get `since`, the instant of the topic's last message, and return false if there
-// is nothing to say.
+// As functions of a Channel they also get what passed since the topic's last message, and return false if there is
+// nothing to say.
 
 /// A message without arrays.
 template <class Message>

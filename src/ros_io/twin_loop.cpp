@@ -22,8 +22,7 @@ using std::chrono::steady_clock;
 
 /// Of the loop, by the wall clock.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
-/// The longest of the shortest sleeps while somebody awaits every instant: their messages go out together, and fewer
-/// threads are woken.
+/// Upper bound of the shortest sleep: messages of several instants go out together, and threads are woken less often.
 constexpr milliseconds SHORT_PAUSE{ 4 };
 /// The longest sleep, while nobody awaits an instant: how long a request may wait for its answer.
 constexpr milliseconds MAX_PAUSE{ 50 };

@@ -49,21 +49,14 @@ struct RoundPlace
 
 BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
 {
-  Change sum;
-  for (int ball = 0; ball < bearing_.balls(); ++ball)
-  {
-    const RaceDeflection::Drop drop = bearing_.drop(ball, motor_angle);
-    if (drop.value != 0.0)
-    {
-      add(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop, sum);
-    }
-  }
-  return sum;
+  const int ball = bearing_.ballThatMayDrop(motor_angle);
+  const RaceDeflection::Drop drop = bearing_.drop(ball, motor_angle);
+  return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
 }
 
 /// Of one ball at a place in the housing [rad].
-void BallDrops::add(double motor_angle, double v, double place, const RaceDeflection::Drop& drop,
-                    Change& sum) const noexcept
+BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
+                                    const RaceDeflection::Drop& drop) const noexcept
 {
   using Energies = Eigen::Array4d;
   const BallTable& table = *table_;
@@ -138,15 +131,17 @@ void BallDrops::add(double motor_angle, double v, double place, const RaceDeflec
   const double h_u = drop.rate * table.pitch;
   const double h_uu = drop.second * table.pitch * table.pitch;
 
-  sum.energy += times(e000, power);
-  sum.by_u += u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
-  sum.by_v += w_v * times(e010, power);
-  sum.by_uu += u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
-               chi_u * (chi_u * times(e002, power) + 2.0 * h_u * times(e001, by_power)) +
-               h_u * h_u * times(e000, by_power_twice) + h_uu * times(e000, by_power);
-  sum.by_uv += w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
-  sum.by_vv += w_v * w_v * times(e020, power) + w_vv * times(e010, power);
-  sum.contact_force += forces[0] * x + forces[1] * x * x;
-  sum.flanks += forces[2] * x + forces[3] * x * x;
+  Change change;
+  change.energy = times(e000, power);
+  change.by_u = u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
+  change.by_v = w_v * times(e010, power);
+  change.by_uu = u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
+                 chi_u * (chi_u * times(e002, power) + 2.0 * h_u * times(e001, by_power)) +
+                 h_u * h_u * times(e000, by_power_twice) + h_uu * times(e000, by_power);
+  change.by_uv = w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
+  change.by_vv = w_v * w_v * times(e020, power) + w_vv * times(e010, power);
+  change.contact_force = forces[0] * x + forces[1] * x * x;
+  change.flanks = forces[2] * x + forces[3] * x * x;
+  return change;
 }
 }  // namespace hjt

@@ -50,7 +50,7 @@ struct BallTable
 class BallDrops
 {
 public:
-  /// `bearing`: of a gear with the table; its balls drop no deeper than that says, and neighbours not at once.
+  /// `bearing`: of a gear with the table; its balls drop no deeper than that says, and one at a time.
   BallDrops(std::shared_ptr<const BallTable> table, const RaceDeflection& bearing)
     : table_(std::move(table)), bearing_(bearing)
   {
@@ -58,7 +58,7 @@ public:
 
   const std::shared_ptr<const BallTable>& table() const noexcept { return table_; }
 
-  /// By which the balls that have dropped change the gear. The wave generator takes the balls along: by u is at the
+  /// By which the ball that has dropped changes the gear. The wave generator takes the balls along: by u is at the
   /// same v. The friction of the outer race, a hundredth of the flanks', stays as it is.
   struct Change
   {
@@ -70,7 +70,7 @@ public:
   Change at(double motor_angle, double v) const noexcept;
 
 private:
-  void add(double motor_angle, double v, double place, const RaceDeflection::Drop& drop, Change& sum) const noexcept;
+  Change ofBall(double motor_angle, double v, double place, const RaceDeflection::Drop& drop) const noexcept;
 
   std::shared_ptr<const BallTable> table_;
   RaceDeflection bearing_;

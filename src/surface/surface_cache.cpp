@@ -348,10 +348,25 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   }
   return std::move(built.table);
 }
+
 /// Beside a twin that runs, one processor is left to it.
 unsigned threadsFor(const SurfaceSource& source)
 {
   return std::max(1u, processors() - (source.background ? 1u : 0u));
+}
+
+/// That a fault of the bearing can bring about at severity 1 [m].
+double deepestDrop(const Parameters& parameters)
+{
+  RaceDeflection spalled(parameters.bearing);
+  spalled.addOuterSpall(0.0, parameters.fault_scale.spall_depth, parameters.fault_scale.spall_length);
+  return std::max(spalled.deepest(), parameters.fault_scale.cage_deflection);
+}
+
+/// Of a table of balls, which the scales of their faults shape.
+std::string ballHeader(const Parameters& parameters, const std::string& faults)
+{
+  return header(parameters, faults + "a ball that drops by " + numberText(deepestDrop(parameters)));
 }
 
 /// From the cache, or built and put there.
@@ -359,16 +374,14 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                                          const std::string& faults, const SurfaceTable& surface,
                                          const SurfaceSource& source)
 {
-  RaceDeflection spalled(parameters.bearing);
-  spalled.addOuterSpall(0.0, parameters.fault_scale.spall_depth, parameters.fault_scale.spall_length);
-  const double deepest = std::max(spalled.deepest(), parameters.fault_scale.cage_deflection);
-  return obtain<BallTable>("balls", header(parameters, faults + "a ball that drops by " + numberText(deepest)), source,
+  return obtain<BallTable>("balls", ballHeader(parameters, faults), source,
                            [&]
                            {
-                             return buildBallTable(parameters, model, deepest, surface.lines.front(),
+                             return buildBallTable(parameters, model, deepestDrop(parameters), surface.lines.front(),
                                                    surface.lines.back(), source.progress, threadsFor(source));
                            });
 }
+
 /// See obtainSurface. `teeth_alike`: it is wanted without deviations only.
 std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
                                           const std::string& faults, const SurfaceSource& source, bool teeth_alike)
@@ -466,6 +479,6 @@ SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const Joint
                                                                  RaceDeflection(parameters.bearing))) :
                nullptr;
   };
-  return source.pool ? source.pool->obtain(header(parameters, faults) + "with balls that drop", make) : make();
+  return source.pool ? source.pool->obtain(ballHeader(parameters, faults), make) : make();
 }
 }  // namespace hjt

@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "model/lobe_loads.hpp"
 
@@ -78,12 +77,14 @@ void Twin::Impl::prepareStages(SurfaceSource source)
 {
   if (!source.pool)
   {
-    source.pool = std::make_shared<SurfacePool>(1);  // faults of the bearing that grow have the gear's table in common
+    // Faults of the bearing that grow have the tables of gear and balls in common.
+    source.pool = std::make_shared<SurfacePool>(2);
   }
   FaultSchedule later = waiting;
   FaultList faults = active;
   Stamp since = 0;
-  int tables = 1;
+  int tables = 0;
+  bool is_another = true;  // table of the gear
   for (bool more = true; more;)
   {
     Fault fault;
@@ -93,11 +94,13 @@ void Twin::Impl::prepareStages(SurfaceSource source)
     {
       stages.push_back({ faults, nullptr });
       since = stamp;
+      tables += is_another ? 1 : 0;
+      is_another = false;
     }
     if (more)
     {
       faults.set(fault, stamp);
-      tables += isOfTheBalls(fault) ? 0 : 1;
+      is_another = is_another || !isOfTheBalls(fault);
     }
   }
   const bool few = tables <= MAX_STAGE_TABLES;

@@ -516,6 +516,33 @@ TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
   EXPECT_NEAR(RaceDeflection(parameters.bearing).cageRate(), 0.4487, 5e-5);
 }
 
+TEST(RaceDeflection, NoBallDropsButTheOneThatMay)
+{
+  const Parameters parameters = shippedParameters();
+  std::vector<RaceDeflection> bearings(5, RaceDeflection(parameters.bearing));
+  bearings[0].addInnerSpall(2.3, 1e-5, 2e-3);
+  bearings[1].addInnerSpall(-1.1, 1e-5, 4e-3);  // nearly from ball to ball
+  bearings[2].addOuterSpall(6.2, 1e-5, 2e-3);
+  bearings[3].addBallSpall(4, 1e-5, 2e-3);
+  bearings[4].addIdleBall(22, 1e-5);
+  for (const RaceDeflection& bearing : bearings)
+  {
+    ASSERT_TRUE(bearing.dropsOneBall());
+    int drops = 0;
+    for (double angle = -700.0; angle < 700.0; angle += 0.0713)
+    {
+      const int dropping = bearing.ballThatMayDrop(angle);
+      ASSERT_TRUE(dropping >= 0 && dropping < bearing.balls());
+      drops += bearing.drop(dropping, angle).value > 0.0 ? 1 : 0;
+      for (int ball = 0; ball < bearing.balls(); ++ball)
+      {
+        ASSERT_TRUE(ball == dropping || bearing.drop(ball, angle).value == 0.0) << ball << " at " << angle;
+      }
+    }
+    EXPECT_GT(drops, 100);
+  }
+}
+
 TEST(RaceDeflection, OfAllBallsIsTheSameAllRound)
 {
   const Parameters parameters = shippedParameters();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <boost/numeric/odeint/integrate/integrate_n_steps.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
@@ -470,6 +471,30 @@ TEST(StepLength, ThatTheJointCannotBeMarchedWithIsRefused)
   EXPECT_NO_THROW(make({ "output.load_inertia=0.0" }));
   EXPECT_THROW(make({ "output.load_inertia=0.0", "solver.rate=5000" }), ParameterError);
   EXPECT_THROW(make({ "solver.stepper=runge_kutta4" }), ParameterError);
+}
+
+/// Both the current's lag and the fading towards the speed limit.
+TEST(StepLength, RungeKuttaRefusesADriveTooQuickForIt)
+{
+  const auto refusal = [](const char* assignment) -> std::string
+  {
+    const Parameters parameters = shippedParameters(
+        { "solver.stepper=runge_kutta4", "brake.holding_torque=0.0", "solver.stiction_velocity=0.5", assignment });
+    const JointModel model(parameters);
+    try
+    {
+      JointStepper(parameters, model);
+    }
+    catch (const ParameterError& error)
+    {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(refusal("motor.current_bandwidth=1500.0"), "");
+  EXPECT_THAT(refusal("motor.current_bandwidth=1600.0"), testing::HasSubstr("takes the drive explicitly"));
+  EXPECT_EQ(refusal("motor.speed_limit=300.0"), "");
+  EXPECT_THAT(refusal("motor.speed_limit=10.0"), testing::HasSubstr("takes the drive explicitly"));
 }
 }  // namespace
 }  // namespace hjt

@@ -894,6 +894,21 @@ TEST(SurfaceBalls, BitsDoNotDependOnTheNumberOfThreads)
   }
 }
 
+/// Of the twins of one process, those whose balls may drop by another depth have another table.
+TEST(SurfaceBalls, ArePooledByTheirDepth)
+{
+  Parameters parameters = surfaceParameters();
+  SurfaceSource source = cached();
+  source.pool = std::make_shared<SurfacePool>(2);
+  const SurfacePool::Surface first = sharedBallSurface(parameters, JointModel(parameters), "", source);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(sharedBallSurface(parameters, JointModel(parameters), "", source), first);
+  EXPECT_EQ(first->balls()->table()->deepest, parameters.fault_scale.cage_deflection);
+  parameters.fault_scale.cage_deflection *= 1.1;
+  source.progress = [](double) { throw std::runtime_error("a table is built"); };
+  EXPECT_THROW(sharedBallSurface(parameters, JointModel(parameters), "", source), std::runtime_error);
+}
+
 TEST(SurfaceBalls, AreNotThereForSeveralFaultsOrUnequalTeeth)
 {
   const Parameters parameters = surfaceParameters();
@@ -1006,6 +1021,43 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
       EXPECT_LT(std::sqrt(misses[1] / STEPS), 0.5 * ARC_SECOND);
     }
   }
+}
+
+/// Each table but the first costs a build: faults that set in together share one, and of many only the last have one.
+TEST(SceneAuto, ManyFaultsThatSetInLaterHaveFewTables)
+{
+  Parameters parameters = surfaceParameters();
+  std::string told;
+  SurfaceSource source = cached();
+  source.notice = [&](const std::string& what) { told = what; };
+  for (const char* fault : { "flange_crack:0.1:-1:0.002", "flange_crack:0.2:-1:0.002", "flange_crack:0.3:-1:0.002",
+                             "flange_crack:0.5:-1:0.002" })
+  {
+    parameters.faults.push_back(parseFault(fault, parameters));
+  }
+  const auto surfaces_after = [&](std::initializer_list<Stamp> instants)
+  {
+    Twin twin(parameters, source);
+    std::vector<bool> on_surface;
+    for (const Stamp instant : instants)
+    {
+      while (twin.stamp() < instant)
+      {
+        twin.step(instant);
+      }
+      on_surface.push_back(twin.onSurface());
+    }
+    return on_surface;
+  };
+  EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000 }), testing::ElementsAre(true, true));
+  EXPECT_EQ(told, "");
+  for (std::size_t i = 0; i < parameters.faults.size(); ++i)
+  {
+    parameters.faults[i].onset += 0.001 * static_cast<double>(i);
+  }
+  EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000, 4'900'000, 5'500'000 }),
+              testing::ElementsAre(true, false, false, true));
+  EXPECT_THAT(told, testing::HasSubstr("of the first and the last faults only"));
 }
 
 /// The full ring from the first instant, and the surface as soon as it is there, without a step in the torque.

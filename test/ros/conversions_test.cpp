@@ -268,8 +268,8 @@ TEST(Fault, OfUnknownKindIsNamedInOneShortLine)
 {
   harmonic_joint_twin::Fault message;
   message.kind = "tooth_wear\n[FATAL] [0.0]: forged " + std::string(1000, 'x');
-  Fault fault;
-  const std::string errors = readFault(message, shippedParameters(), fault);
+  std::vector<Fault> steps;
+  const std::string errors = readFault(message, shippedParameters(), steps);
   EXPECT_EQ(errors.find('\n'), std::string::npos);
   EXPECT_EQ(errors.rfind("kind = 'tooth_wear?[FATAL] [0.0]: forged xxx", 0), 0U) << errors;
   EXPECT_EQ(errors.find(std::string(61, 'x')), std::string::npos);
