@@ -26,14 +26,14 @@ COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:
            "turn at 40°/s": "tab:red"}
 
 
-def collect(bench, trial, sound_windows):
-    """(sound, faulty, not judged) runs of a trial, each compared with the reference of its gear and motion."""
+def collect(bench, trials, sound_windows):
+    """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion."""
     drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     sound, faulty = [], []
-    for gear, motion in health_runs.pairs(trial):
-        bags = bench.sound("sound", gear, motion, drawn, sound_windows, 4)
-        sound += bench.judge(bags, gear, motion)
-        faulty += bench.judge(bench.faulty(trial, gear, motion, drawn), gear, motion)
+    for trial, motion in ((trial, motion) for trial in trials for motion in trial.motions):
+        bags = bench.sound("sound", trial.gear, motion, drawn, sound_windows, 4)
+        sound += bench.judge(bags, trial.gear, motion)
+        faulty += bench.judge(bench.faulty(trial, motion, drawn), trial.gear, motion)
     missing = [run for run in [*sound, *faulty] if run.window is None]
     return [run for run in sound if run.window], [run for run in faulty if run.window], missing
 
@@ -197,12 +197,12 @@ def draw_confusion(kinds, faulty, path):
     plt.close(figure)
 
 
-def report(bench, trial, sound, faulty, missing, page):
+def report(bench, trials, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
     return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged: fewer than eight windows of the reference lie at "
-            "their operating point.", "", *health_runs.split_table(("judged by", trial)), "",
+            "their operating point.", "", *health_runs.split_table(("judged by", trials)), "",
             "### Sound drives", "", *sound_table(sound), "",
             "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
             "![Score of every window over the threshold](images/health/seen.png)", "",
