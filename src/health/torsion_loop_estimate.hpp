@@ -12,10 +12,10 @@ namespace hjt
 {
 /// Torsion under a swinging load, over one window.
 ///
-/// Law:   torsion = a - h p(T) + T / K1 + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0),  by least squares over the samples
+/// Law:   torsion = a - h p(T) + T / K1 + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0),  least squares over the samples
 /// where  T     joint torque [N.m];  T1  indicators.stiffness_torque
-///        p     which branch of the loop: play of T of the width indicators.lost_motion_torque, -1 while T falls, +1 while
-///              it rises, between them where it has just turned round (Prandtl and Ishlinskii's operator)
+///        p     which branch of the loop: play of T of the width indicators.lost_motion_torque, -1 while T falls, +1
+///              while it rises, between them where it has just turned round (Prandtl and Ishlinskii's operator)
 ///        2 h   lost motion [rad]
 /// Stiffnesses need T to span health.stiffness_torque_span, K2 beyond T1 on either side.
 /// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
