@@ -11,9 +11,9 @@ import page_section
 from health_runs import CALIBRATED, FITTED, GREASE, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
-# Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of
-# fault. Their sizes at severity 1 are assumed [rad], [N.m]; of the torque one per cent of what the motor is rated at, since load
-# and speed make it larger or smaller by more than tenfold.
+# Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
+# Sizes at severity 1 are assumed [rad], [N.m]; of the torque one per cent of what the motor is rated at, since load and
+# speed make it larger or smaller by more than tenfold.
 KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
               "bearing_outer_race": {"error_outer": 5e-6, "torque_outer": 1e-2},
               "bearing_ball": {"error_ball": 5e-6, "torque_ball": 1e-2},
