@@ -14,7 +14,7 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CALIBRATED, CALIBRATED_UNEVEN, CHECK_UP, FITTED, GREASE, JUDGED, QUICK
+from health_runs import CHECK_UP, GREASE, JUDGED, QUICK
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
@@ -22,17 +22,18 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 SURE = 0.3            # severity from which on the cause should be right
 SET = 0.9             # probability that the causes of a set have together
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
-COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:green"}
+COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:green",
+           "turn at 40°/s": "tab:red"}
 
 
-def collect(bench, trial, sound_windows):
-    """(sound, faulty, not judged) runs of a trial, each compared with the reference of its gear and motion."""
+def collect(bench, trials, sound_windows):
+    """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion."""
     drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     sound, faulty = [], []
-    for gear, motion in health_runs.pairs(trial):
-        bags = bench.sound("sound", gear, motion, drawn, sound_windows, 4)
-        sound += bench.judge(bags, gear, motion)
-        faulty += bench.judge(bench.faulty(trial, gear, motion, drawn), gear, motion)
+    for trial, motion in ((trial, motion) for trial in trials for motion in trial.motions):
+        bags = bench.sound("sound", trial.gear, motion, drawn, sound_windows, 4)
+        sound += bench.judge(bags, trial.gear, motion)
+        faulty += bench.judge(bench.faulty(trial, motion, drawn), trial.gear, motion)
     missing = [run for run in [*sound, *faulty] if run.window is None]
     return [run for run in sound if run.window], [run for run in faulty if run.window], missing
 
@@ -196,26 +197,12 @@ def draw_confusion(kinds, faulty, path):
     plt.close(figure)
 
 
-def split_table():
-    def row(name, trial):
-        return (f"| {name} | {', '.join(gear.name for gear in trial.gears)} | "
-                f"{', '.join(motion.name for motion in trial.motions)} | "
-                f"{', '.join(f'{severity:g}' for severity in trial.severities)} | "
-                f"{', '.join(f'{severity:g}' for severity in trial.bearing_severities)} | {trial.tooth or ''} | "
-                f"{trial.seed} |")
-
-    return ["| runs | gears | motions | severities | of bearings | tooth | seed |", "|---|---|---|---|---|---|---|",
-            row("signatures fitted to", FITTED),
-            row("their errors fitted to", CALIBRATED), row("and", CALIBRATED_UNEVEN),
-            row("judged by", JUDGED)]
-
-
-def report(bench, sound, faulty, missing, page):
+def report(bench, trials, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
     return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged: fewer than eight windows of the reference lie at "
-            "their operating point.", "", *split_table(), "",
+            "their operating point.", "", *health_runs.split_table(("judged by", trials)), "",
             "### Sound drives", "", *sound_table(sound), "",
             "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
             "![Score of every window over the threshold](images/health/seen.png)", "",
@@ -233,7 +220,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
     parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes again, and nothing else")
-    parser.add_argument("--quick", action="store_true", help="one gear, one severity, no bearings: tables on the "
+    parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
@@ -245,7 +232,7 @@ def main():
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
     if options.quick:
-        print("\n".join(report(bench, *collect(bench, QUICK, 40), page)))
+        print("\n".join(report(bench, QUICK, *collect(bench, QUICK, 40), page)))
         return
     images = options.docs / "images" / "health"
     if options.figures:
@@ -254,7 +241,7 @@ def main():
     draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
-    page_section.write(page, "health", report(bench, sound, faulty, missing, page))
+    page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing, page))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)
 
 

@@ -16,22 +16,29 @@ TOOTH = 40                # of the figures of the single faults
 ACCELERATION = 300.0      # of a motion at work [deg/s^2]
 
 # `payload`: with the weight and inertia of anything from none to one of some 2.5 kg at the end of a straight arm.
-Motion = collections.namedtuple("Motion", "name tag window payload moves")
-CHECK_UP = Motion("check-up", "check_up", 29.0, False, None)
+# `steady`: speed of a turn under a constant load, without weight [deg/s].
+Motion = collections.namedtuple("Motion", "name tag window payload moves steady", defaults=[None, None])
+CHECK_UP = Motion("check-up", "check_up", 29.0, False)
+SLOW_TURN = Motion("turn at 25°/s", "slow_turn", 20.0, False, steady=25.0)
+FAST_TURN = Motion("turn at 90°/s", "fast_turn", 20.0, False, steady=90.0)
+TURN = Motion("turn at 40°/s", "turn", 20.0, False, steady=40.0)
+LOAD = 28.0               # of the steady turns [N.m]
 
 # Moves at work: to an angle about the upright arm [deg] at a speed [deg/s], in a loop.
 STACKING = Motion("stacking", "stacking", 20.0, True, [(-25, 70), (20, 100), (-10, 50), (30, 80), (-5, 40)])
 PICK_AND_PLACE = Motion("pick-and-place", "pick_and_place", 20.0, True, [(-50, 90), (35, 90), (-20, 60), (50, 120)])
 SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 55)])
 
-# `alike`: all teeth are, so that a response surface of any fault of the whole gear takes no time. Else every tooth is
-# solved in faulty runs, which takes less time than a surface for a run or two.
+# `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
+# runs.
 Gear = collections.namedtuple("Gear", "name alike settings")
 EVEN = Gear("shipped", True, [])
 LOOSE = Gear("loose", True, ["  cup.torsion_stiffness: [31.0e+3, 52.5e+3, 61.0e+3]", "  mesh.flank_clearance: -0.7e-6",
                              "  bearing.race_preload: 450.0", "  bearing.viscosity: 300.0e-6"])
 TIGHT = Gear("tight", True, ["  cup.torsion_stiffness: [35.0e+3, 59.0e+3, 68.5e+3]", "  mesh.flank_clearance: -1.4e-6",
                              "  bearing.race_preload: 590.0", "  bearing.viscosity: 380.0e-6"])
+STIFF = Gear("stiff", True, ["  cup.torsion_stiffness: [35.5e+3, 60.0e+3, 69.5e+3]", "  mesh.flank_clearance: -0.8e-6",
+                             "  bearing.race_preload: 480.0", "  bearing.viscosity: 370.0e-6"])
 
 
 def uneven(seed):
@@ -40,14 +47,14 @@ def uneven(seed):
                                                 f"  manufacture.circular_spline_pitch_seed: {seed}"])
 
 
-# The split. `bearing_severities`: each ball is solved, which takes twice as long. Bearings and single teeth, if any,
-# are run on the first gear, in the check-up only, and so are all kinds on a gear whose teeth differ.
-Trial = collections.namedtuple("Trial", "name gears motions severities bearing_severities tooth seed")
-FITTED = Trial("fitted", [EVEN], [CHECK_UP, STACKING], [0.15, 0.4, 1.0], [0.4, 1.0], 90, 2)
-CALIBRATED = Trial("calibrated", [LOOSE], [CHECK_UP, STACKING], [0.25, 0.6], [], 15, 3)
-CALIBRATED_UNEVEN = Trial("calibrated", [uneven(777)], [CHECK_UP], [0.2, 0.5], [0.5], 40, 5)
-JUDGED = Trial("judged", [uneven(4321), TIGHT], [CHECK_UP, PICK_AND_PLACE, SEAM], [0.2, 0.5], [], None, 5)
-QUICK = Trial("quick", [TIGHT], [CHECK_UP, PICK_AND_PLACE], [0.5], [], None, 5)
+# The split. Every tooth of a gear whose teeth differ is solved, which takes longest: it runs the check-up only.
+Trial = collections.namedtuple("Trial", "name gear motions severities tooth seed")
+FITTED = Trial("fitted", EVEN, [CHECK_UP, STACKING, SLOW_TURN, FAST_TURN], [0.15, 0.4, 1.0], 90, 2)
+CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, SLOW_TURN], [0.25, 0.6], 15, 3),
+              Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5)]
+JUDGED = [Trial("judged", STIFF, [CHECK_UP, PICK_AND_PLACE, SEAM, TURN], [0.2, 0.5], 130, 6),
+          Trial("judged", uneven(2468), [CHECK_UP], [0.2], 130, 6)]
+QUICK = [Trial("quick", TIGHT, [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)]
 
 GREASE = (10.0, 50.0)     # [degC]
 # Of the reference, away from the edges of its classes [degC].
@@ -61,17 +68,18 @@ Run = collections.namedtuple("Run", "gear motion kind severity window")
 def place_of(kind, tooth):
     """The whole member where that may be, else a place in the middle; pitting at one tooth, though it may be at all."""
     whole = kind["first_place"] < 0 and kind["kind"] != "pitting"
-    return -1 if whole else min(tooth or 0, kind["last_place"])
+    return -1 if whole else min(tooth, kind["last_place"])
 
 
-def pairs(trial):
-    """Gears and motions that are run."""
-    return [(gear, motion) for motion in trial.motions for gear in trial.gears if gear.alike or motion == CHECK_UP]
-
-
-def group_of(kind):
-    """Of runs that take as long."""
-    return "bearing" if kind["kind"].startswith("bearing_") else "alike" if place_of(kind, 0) < 0 else "teeth"
+def split_table(*rows):
+    """Of (name, trials)."""
+    lines = ["| runs | gear | motions | severities | tooth | seed |", "|---|---|---|---|---|---|"]
+    for name, trials in rows:
+        for trial in trials:
+            lines.append(f"| {name} | {trial.gear.name} | {', '.join(motion.name for motion in trial.motions)} | "
+                         f"{', '.join(f'{severity:g}' for severity in trial.severities)} | {trial.tooth} | "
+                         f"{trial.seed} |")
+    return lines
 
 
 def speed_rows(moves, end):
@@ -117,60 +125,56 @@ class Bench:
         if motion.payload and not others:
             lines += ["  output.gravity_torque: {uniform: [53.4, 73.4]}",
                       "  output.load_inertia: {uniform: [3.3, 5.0]}"]
+        speed = f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"
+        mean = 0.0
+        if motion.steady:
+            lines.append("  output.gravity_torque: 0.0")
+            speed = f"{{constant: {math.radians(motion.steady):.6f}}}"
+            mean = LOAD
+        load = mean if others else f"{{uniform: [{mean - 3.0}, {mean + 3.0}]}}"
         lines += [f"repeats: {repeats}", "duty:", f"  - name: {motion.tag}",
-                  f"    speed: {{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}", "    bandwidth: 8.0",
-                  f"    load: {{constant: {'0.0' if others else '{uniform: [-3.0, 3.0]}'}}}", "classes:", *classes,
+                  f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {{constant: {load}}}", "classes:", *classes,
                   "record:", "  format: bag"]
         plan = self.work / f"{name}.yaml"
         plan.write_text("\n".join(lines) + "\n")
         out = self.work / name
         print(f"evaluate_health: {name}", file=sys.stderr)
-        done = subprocess.run([self.tool, "sweep", plan, "--out", out, "--jobs", str(self.jobs)], check=False)
-        if done.returncode not in (0, 1):  # 1: some run failed, as its row in the index says
+        done = subprocess.run([self.tool, "sweep", plan, "--out", out, "--jobs", str(self.jobs), "--json"], check=False,
+                              stdout=subprocess.PIPE)
+        # 1: some run failed, as its row in the index says; or all was refused, and nothing reported.
+        if done.returncode == 1 and not done.stdout:
+            sys.exit(f"evaluate_health: the sweep of {plan} was refused, as said above; runs of another version of the "
+                     f"software or of another plan stay in {out} until you delete it")
+        if done.returncode not in (0, 1):
             sys.exit(f"evaluate_health: the sweep of {plan} ended with {done.returncode}")
         with open(out / "index.csv", newline="", encoding="utf-8") as index:
             return [(out / row["file"], row) for row in csv.DictReader(index) if row["status"] == "ok"]
 
-    def sound(self, purpose, gear, motion, temperature, repeats, seed, scene="auto", others=()):
+    def sound(self, purpose, gear, motion, temperature, repeats, seed, others=()):
         return self.sweep(f"{purpose}_{gear.name}_{motion.tag}", gear, motion, temperature, ["  healthy: []"], repeats,
-                          seed, scene, others)
+                          seed, others=others)
 
-    def faulty(self, trial, gear, motion, temperature, others=()):
+    def faulty(self, trial, motion, temperature, others=()):
         """Every kind at every severity, from the start on."""
-        bags = []
-        for group, severities in (("alike", trial.severities), ("teeth", trial.severities),
-                                  ("bearing", trial.bearing_severities)):
-            if group == "teeth" and trial.tooth is None:
-                continue
-            if not severities or (group != "alike" and (gear != trial.gears[0] or motion != CHECK_UP)):
-                continue
-            classes = []
-            for kind in self.kinds:
-                if group_of(kind) == group:
-                    classes += [f"  {kind['kind']}:",
-                                f"    - {{kind: {kind['kind']}, severity: {{grid: {severities}}}, "
-                                f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
-            scene = "auto" if gear.alike and group == "alike" else "full_ring"
-            own = SAME[0] if trial is FITTED and group == "bearing" else temperature
-            bags += self.sweep(f"{trial.name}_{group}_{gear.name}_{motion.tag}", gear, motion, own, classes, 1,
-                               trial.seed, scene, others)
-        return bags
+        gear = trial.gear
+        classes = []
+        for kind in self.kinds:
+            classes += [f"  {kind['kind']}:",
+                        f"    - {{kind: {kind['kind']}, severity: {{grid: {trial.severities}}}, "
+                        f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
+        return self.sweep(f"{trial.name}_{gear.name}_{motion.tag}", gear, motion, temperature, classes, 1, trial.seed,
+                          "auto" if gear.alike else "full_ring", others)
 
     def differences(self):
-        """(runs with faults, sound runs in the same scene) of FITTED: same noise, same temperatures."""
+        """(motion, sound runs, runs with faults) of FITTED: same noise, same temperatures."""
         grid = f"{{grid: {SAME}}}"
         same = ["  sensors.noise_seed: 7"]
-        runs = []
-        for motion in FITTED.motions:
-            sound = [(scene, self.sound(f"same_{scene}", EVEN, motion, grid, 1, 1, scene, same))
-                     for scene in ("auto", "full_ring")]
-            faulty = self.faulty(FITTED, EVEN, motion, grid, same)
-            runs.append((motion, sound, faulty))
-        return runs
+        return [(motion, self.sound("same", FITTED.gear, motion, grid, 1, 1, same),
+                 self.faulty(FITTED, motion, grid, same)) for motion in FITTED.motions]
 
     def reference(self, gear, motion):
         """File of the healthy reference, from runs of its own."""
-        bags = self.sound("commissioning", gear, motion, f"{{grid: {COMMISSIONING}}}", 4, 1)
+        bags = self.sound("commissioning", gear, motion, f"{{grid: {COMMISSIONING}}}", 8, 1)
         path = self.work / f"reference_{gear.name.replace(' ', '_')}_{motion.tag}.yaml"
         self.indicators([bag for bag, _ in bags],
                         ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])

@@ -8,17 +8,20 @@ import math
 import numpy
 
 import page_section
-from health_runs import CALIBRATED, CALIBRATED_UNEVEN, FITTED, GREASE, SAME, pairs
+from health_runs import CALIBRATED, FITTED, GREASE, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
-# Lines that stand alone by kinematics, whatever the motion, with their size at severity 1, assumed [rad]; a damaged
-# tooth of the circular spline is no kind of fault.
-KINEMATICS = {"bearing_inner_race": ("error_inner", 5e-6), "bearing_outer_race": ("error_outer", 5e-6),
-              "bearing_ball": ("error_ball", 5e-6), "bearing_cage": ("error_cage_lobes", 1e-5),
-              "circular_spline_tooth": ("error_circular_spline_2", 5e-5)}
-ERRORS = [0.2, 0.3, 0.45]                   # tried, of each number of a signature,
-LENGTH_ERRORS = [0.03, 0.06, 0.1]                 # of its length,
-LINE_ERRORS = [0.0, 0.1, 0.2, 0.4]                # and of the lines of a sound drive
+# Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
+# Sizes at severity 1 are assumed [rad], [N.m]; of the torque one per cent of what the motor is rated at, since load and
+# speed make it larger or smaller by more than tenfold.
+KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
+              "bearing_outer_race": {"error_outer": 5e-6, "torque_outer": 1e-2},
+              "bearing_ball": {"error_ball": 5e-6, "torque_ball": 1e-2},
+              "bearing_cage": {"error_cage_lobes": 1e-5, "torque_cage_lobes": 1e-2},
+              "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
+ERRORS = [0.3, 0.45, 0.6]                   # tried, of each number of a signature,
+LENGTH_ERRORS = [0.02, 0.03, 0.06]          # of its length,
+LINE_ERRORS = [0.1, 0.2, 0.4]               # and of the lines of a sound drive
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
 
@@ -66,20 +69,15 @@ def changes(bench):
     found = collections.defaultdict(list)
     layout, values = None, None
     for motion, sound, faulty in bench.differences():
-        by_scene = {}
-        for scene, bags in sound:
-            windows = windows_of(bench, bags)
-            by_scene[scene] = {row["set.input.temperature"]: windows[str(bag)] for bag, row in bags}
-        layout = layout or Layout(next(iter(by_scene["auto"].values())))
+        windows = windows_of(bench, [*sound, *faulty])
+        same = {row["set.input.temperature"]: windows[str(bag)] for bag, row in sound}
+        layout = layout or Layout(next(iter(same.values())))
         if values is None:
-            values = [numpy.mean([window[name] or 0.0 for window in by_scene["auto"].values()])
-                      for name in layout.names]
-        windows = windows_of(bench, faulty)
+            values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
         for bag, row in faulty:
-            same = by_scene["auto" if "alike" in str(bag) else "full_ring"]
             if str(bag) in windows:
-                found[row["class"], motion.tag, float(row["fault_severity"])].append(layout.numbers(
-                    windows[str(bag)], same[row.get("set.input.temperature") or f"{SAME[0]}"]))
+                found[row["class"], motion.tag, float(row["fault_severity"])].append(
+                    layout.numbers(windows[str(bag)], same[row["set.input.temperature"]]))
     return layout, values, {key: numpy.mean(own, axis=0) for key, own in found.items()}
 
 
@@ -96,8 +94,8 @@ def table_of(layout, kinds, found):
             for severity in SEVERITIES:
                 rows.append((kind["kind"], motion.tag, severity,
                              [numpy.interp(severity, known, column) for column in numbers.T]))
-    for cause, (line, size) in KINEMATICS.items():
-        for severity in SEVERITIES:
+    for cause, lines in KINEMATICS.items():
+        for (line, size), severity in itertools.product(lines.items(), SEVERITIES):
             rows.append((cause, "kinematics", severity,
                          [severity * size if name == line else 0.0 for name in layout.names]))
     return Table([row[0] for row in rows], [row[1] for row in rows], numpy.array([row[2] for row in rows]),
@@ -144,11 +142,11 @@ def calibration_windows(bench):
     """(kind, severity, window as the tool reports it) of faulty and sound runs of other gears."""
     drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     found = []
-    for trial in (CALIBRATED, CALIBRATED_UNEVEN):
-        for gear, motion in pairs(trial):
-            bags = bench.faulty(trial, gear, motion, drawn)
-            bags += bench.sound("sound_calibrated", gear, motion, drawn, 20, 4)
-            report = bench.indicators([bag for bag, _ in bags], ["--baseline", bench.reference(gear, motion)])
+    for trial in CALIBRATED:
+        for motion in trial.motions:
+            bags = bench.faulty(trial, motion, drawn)
+            bags += bench.sound("sound_calibrated", trial.gear, motion, drawn, 20, 4)
+            report = bench.indicators([bag for bag, _ in bags], ["--baseline", bench.reference(trial.gear, motion)])
             rows = {str(bag): row for bag, row in bags}
             found += [(rows[window["recording"]]["class"], float(rows[window["recording"]]["fault_severity"] or 0.0),
                        window) for window in report["windows"] if window["assessment"]["state"] == "assessed"]
@@ -232,13 +230,15 @@ def write(bench, source, page):
 
 def write_table(layout, table, page):
     """Severity 0.4, in the check-up: the numbers in which the kinds differ most."""
-    shown = [("torsional_stiffness", 1e-3, "stiffness [kN·m/rad]"), ("lost_motion", 206265.0, "lost motion [″]"),
+    shown = [("torsional_stiffness", 1e-3, "K1 [kN·m/rad]"), ("second_stiffness", 1e-3, "K2 [kN·m/rad]"),
+             ("lost_motion", 206265.0, "lost motion [″]"),
              ("hysteresis_area", 1e3, "loop [mJ]"), ("running_torque", 1e3, "running torque [mN·m]"),
              ("viscous_friction", 1e6, "viscous [µN·m·s/rad]"), ("kinematic_error", 206265.0, "kinematic error [″]"),
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
              ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
              ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
-    lines = ["| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
+    lines = split_table(("signatures fitted to", [FITTED]), ("their errors fitted to", CALIBRATED))
+    lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
     for cause, motion, severity, change in zip(*table):
         if motion == FITTED.motions[0].tag and severity == 0.4:
             by_name = dict(zip(layout.names, change))

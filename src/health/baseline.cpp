@@ -18,10 +18,12 @@ namespace
 constexpr double LOAD_STEP = 0.375;        // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;  // [K]
 constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr int MIN_COMMON = 16;             // windows before correlations mean anything
-constexpr double LEAST_LEFT = 1e-4;        // of a variance by the common causes: they are known no better
-constexpr int ITERATIONS = 30;  // for a principal component: its line is narrow enough long before it is exact
-constexpr int MIN_COUNT = 8;    // windows before a spread means anything; as least of indicators.baseline_windows
+constexpr int MIN_FITTED = 16;             // windows before slopes and correlations mean anything
+// Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
+constexpr double PLACE_ERROR = 0.005;
+constexpr double LEAST_LEFT = 1e-4;  // of a variance by the common causes: they are known no better
+constexpr int ITERATIONS = 30;       // for a principal component: its line is narrow enough long before it is exact
+constexpr int MIN_COUNT = 8;         // windows before a spread means anything; as least of indicators.baseline_windows
 
 int stepOf(double value, double step) noexcept
 {
@@ -70,12 +72,12 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
   return bin;
 }
 
-void Reference::add(double value) noexcept
+Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
-  ++count;
-  const double before = value - mean;
-  mean += before / count;
-  squares += before * (value - mean);
+  const auto place = [](double value, int step, double size)
+  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -1.0, 1.0) : 0.0; };
+  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP);
+  return { temperature, temperature * temperature, place(point.load, bin.load, load_step) };
 }
 
 Baseline::Baseline(const Parameters& parameters)
@@ -126,35 +128,53 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   return &bins_.back();
 }
 
-void findCommonCauses(ReferenceBin& bin) noexcept
+void fitReference(ReferenceBin& bin) noexcept
 {
   using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
+  using Square = Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT, Eigen::RowMajor>;
+  using Places = Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>;
+  using Mixed = Eigen::Matrix<double, PLACES, INDICATOR_COUNT, Eigen::RowMajor>;
+  const double freedom = bin.windows - 1.0 - PLACES;
+  if (bin.windows < MIN_FITTED)
+  {
+    return;
+  }
+  const Eigen::Map<const Mixed> mixed(bin.sums.mixed.front().data());
+  Eigen::Map<Places> leverage(bin.leverage.front().data());
+  leverage = Eigen::Map<const Places>(bin.sums.places.front().data());
+  leverage.diagonal().array() += bin.windows * PLACE_ERROR * PLACE_ERROR;
+  leverage = leverage.inverse().eval();
+  const Mixed slopes = leverage * mixed;
+  Square left = Eigen::Map<const Square>(bin.sums.indicators.front().data());
+  left.noalias() -= mixed.transpose() * slopes;
   Vector scale = Vector::Zero();  // 0: left out
   int used = 0;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
+    const auto column = static_cast<Eigen::Index>(i);
     Reference& reference = bin.references[i];
     reference.common = {};
-    if (bin.windows >= MIN_COMMON && reference.count == bin.windows && reference.squares > 0.0)
+    reference.fitted = reference.count == bin.windows && left(column, column) > 0.0;
+    if (reference.fitted)
     {
-      scale[static_cast<Eigen::Index>(i)] = 1.0 / std::sqrt(reference.squares);
+      Eigen::Map<Eigen::Matrix<double, PLACES, 1>>(reference.slopes.data()) = slopes.col(column);
+      reference.variance = left(column, column) / freedom;
+      scale[column] = 1.0 / std::sqrt(left(column, column));
       ++used;
     }
   }
-  Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT> correlation =
-      Eigen::Map<const Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT>>(bin.products.front().data());
-  correlation = scale.asDiagonal() * correlation * scale.asDiagonal();
-  const double edge = std::pow(1.0 + std::sqrt(used / std::max(bin.windows - 1.0, 1.0)), 2);
+  left = scale.asDiagonal() * left * scale.asDiagonal();
+  const double edge = std::pow(1.0 + std::sqrt(used / freedom), 2);
   for (std::size_t cause = 0; cause < COMMON_CAUSES && used > 0; ++cause)
   {
     Eigen::Index widest = 0;
-    correlation.diagonal().maxCoeff(&widest);
-    Vector direction = correlation.col(widest);
+    left.diagonal().maxCoeff(&widest);
+    Vector direction = left.col(widest);
     double size = 0.0;
     for (int i = 0; i < ITERATIONS && direction.squaredNorm() > 0.0; ++i)
     {
       direction.normalize();
-      direction = correlation * direction;
+      direction = left * direction;
       size = direction.norm();
     }
     if (!(size > edge))
@@ -162,7 +182,7 @@ void findCommonCauses(ReferenceBin& bin) noexcept
       return;
     }
     direction.normalize();
-    correlation -= size * direction * direction.transpose();
+    left -= size * direction * direction.transpose();
     for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
     {
       bin.references[i].common[cause] = std::sqrt(size) * direction[static_cast<Eigen::Index>(i)];
@@ -190,37 +210,59 @@ BaselineState Baseline::update(const SignalIndicators& indicators, WindowDeviati
 void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept
 {
   ++bin.windows;
+  const double weight = (bin.windows - 1.0) / bin.windows;
+  Place place = placeIn(bin.bin, indicators.point, load_step_);  // from here on less the mean so far
+  for (std::size_t i = 0; i < PLACES; ++i)
+  {
+    place[i] -= bin.mean_place[i];
+    bin.mean_place[i] += place[i] / bin.windows;
+  }
   std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    if (std::isfinite(indicators.values[i]))
+    Reference& reference = bin.references[i];
+    if (!std::isfinite(indicators.values[i]))
     {
-      before[i] = indicators.values[i] - bin.references[i].mean;
-      bin.references[i].add(indicators.values[i]);
+      continue;
+    }
+    ++reference.count;
+    before[i] = indicators.values[i] - reference.mean;
+    reference.mean += before[i] / reference.count;
+    if (reference.count > 1)
+    {
+      reference.variance += before[i] * before[i] / reference.count - reference.variance / (reference.count - 1.0);
     }
   }
-  const double weight = (bin.windows - 1.0) / bin.windows;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     for (std::size_t j = 0; j < INDICATOR_COUNT; ++j)
     {
-      bin.products[i][j] += weight * before[i] * before[j];
+      bin.sums.indicators[i][j] += weight * before[i] * before[j];
+    }
+  }
+  for (std::size_t i = 0; i < PLACES; ++i)
+  {
+    for (std::size_t j = 0; j < INDICATOR_COUNT; ++j)
+    {
+      bin.sums.mixed[i][j] += weight * place[i] * before[j];
+    }
+    for (std::size_t j = 0; j < PLACES; ++j)
+    {
+      bin.sums.places[i][j] += weight * place[i] * place[j];
     }
   }
   if (bin.windows == windows_)
   {
-    findCommonCauses(bin);
+    fitReference(bin);
   }
 }
 
 double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
-                          double share) const noexcept
+                          double left, double widening) const noexcept
 {
-  const Reference& reference = bin.references[indicator];
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
   const double error = indicators.uncertainty[indicator];
-  return std::max(share * reference.variance(), error * error) * (1.0 + 1.0 / reference.count) + least * least +
-         floor_[indicator] * floor_[indicator];
+  return std::max(left, error * error) * widening + least * least + floor_[indicator] * floor_[indicator];
 }
 
 Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
@@ -246,8 +288,14 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
   inner.setIdentity();
   Causes projected = Causes::Zero();
   double causes = 0.0;
-  int least = 0;
+  double least = 0.0;  // degrees of freedom
   residual_ = {};
+  using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
+  const Place here = placeIn(bin.bin, indicators.point, load_step_);
+  const PlaceVector place =
+      Eigen::Map<const PlaceVector>(here.data()) - Eigen::Map<const PlaceVector>(bin.mean_place.data());
+  const double leverage = place.dot(
+      Eigen::Map<const Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>>(bin.leverage.front().data()) * place);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
@@ -256,25 +304,28 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
       continue;
     }
     const double n = reference.count;
-    least = least == 0 ? reference.count : std::min(least, reference.count);
-    residual_.expected[i] = reference.mean;
-    residual_.difference[i] = indicators.values[i] - reference.mean;
-    deviations.plain[i] =
-        deviation(residual_.difference[i], reference.mean, std::sqrt(variance(i, bin, indicators, 1.0)), n - 1.0);
+    const double freedom = reference.fitted ? n - 1.0 - PLACES : n - 1.0;
+    const double widening = 1.0 + 1.0 / n + (reference.fitted ? leverage : 0.0);
+    const double expected = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
+    least = least == 0.0 ? freedom : std::min(least, freedom);
+    residual_.expected[i] = expected;
+    residual_.difference[i] = indicators.values[i] - expected;
+    deviations.plain[i] = deviation(residual_.difference[i], expected,
+                                    std::sqrt(variance(i, bin, indicators, reference.variance, widening)), freedom);
     const Causes common = Eigen::Map<const Causes>(reference.common.data());
     const double found = static_cast<double>((common.array() != 0.0).count());
-    const double left = std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0) / (n - 1.0 - found);
+    const double left = std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * freedom / (freedom - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, indicators, left);
+    residual_.own[i] = variance(i, bin, indicators, left * reference.variance, widening);
     if (residual_.own[i] > 0.0)
     {
       Eigen::Map<Causes> row(residual_.common[i].data());
-      row = std::sqrt(reference.variance() * (1.0 + 1.0 / n)) * common;
+      row = std::sqrt(reference.variance * widening) * common;
       inner += row * row.transpose() / residual_.own[i];
       projected += row * (residual_.difference[i] / residual_.own[i]);
     }
   }
-  residual_.freedom = std::max(least - 1.0 - causes, 1.0);
+  residual_.freedom = std::max(least - causes, 1.0);
   if (causes == 0.0)
   {
     return;
@@ -291,8 +342,7 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
       const double precision = (1.0 - row.dot(inner * row) / own) / own;             // of C^-1
       const double spread = 1.0 / std::sqrt(precision);
       const double unexpected = weighted / precision;
-      deviations.conditional[i] =
-          deviation(unexpected, indicators.values[i] - unexpected, spread, bin.references[i].count - 1.0 - causes);
+      deviations.conditional[i] = deviation(unexpected, indicators.values[i] - unexpected, spread, residual_.freedom);
     }
   }
 }

@@ -33,20 +33,34 @@ ReferenceBin readBin(const YAML::Node& node)
   bin.bin = { node["speed"].as<int>(), node["direction"].as<int>(), node["load"].as<int>(),
               node["temperature"].as<int>() };
   bin.windows = node["windows"].as<int>();
+  if (node["place"])
+  {
+    bin.mean_place = node["place"].as<Place>();
+    bin.leverage = node["leverage"].as<std::array<Place, PLACES>>();
+  }
   for (const auto& entry : node["indicators"])
   {
     const auto numbers = entry.second.as<std::vector<double>>();
     const auto name = entry.first.as<std::string>();
-    const bool has_common = numbers.size() == 3 + COMMON_CAUSES;
-    if ((numbers.size() != 3 && !has_common) || numbers[0] < 1.0 || !std::isfinite(numbers[1]) || !(numbers[2] >= 0.0))
+    const bool fitted = numbers.size() == 3 + PLACES + COMMON_CAUSES && node["place"];
+    const bool finite =
+        std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+    if ((numbers.size() != 3 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0)
     {
-      throw InputError(name + " must be [windows >= 1, mean, spread >= 0], and shares of common causes or none");
+      throw InputError(name +
+                       " must be [windows >= 1, mean, spread >= 0], and slopes over the bin's 'place' and shares "
+                       "of common causes or none");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
     reference.mean = numbers[1];
-    reference.squares = numbers[2] * numbers[2] * (numbers[0] - 1.0);
-    std::copy(numbers.begin() + 3, numbers.end(), reference.common.begin());
+    reference.variance = numbers[2] * numbers[2];
+    reference.fitted = fitted;
+    if (fitted)
+    {
+      std::copy_n(numbers.begin() + 3, PLACES, reference.slopes.begin());
+      std::copy_n(numbers.begin() + 3 + PLACES, COMMON_CAUSES, reference.common.begin());
+    }
   }
   return bin;
 }
@@ -89,27 +103,43 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
 void writeBaseline(const std::string& path, const Baseline& baseline)
 {
   std::ostringstream text;
+  const auto list = [](const auto& numbers)
+  {
+    std::string text;
+    for (const double number : numbers)
+    {
+      text += (text.empty() ? "" : ", ") + numberText(number);
+    }
+    return text;
+  };
   text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
           "K.\n"
-          "# Each indicator: [windows, mean, spread, share of it that goes with each common cause], units as in "
-          "docs/indicators.md.\n"
+          "# Place in it: temperature, its square, load, -1 ... 1 from edge to edge.\n"
+          "# Each indicator: [windows, mean, spread, slopes over the place, share of the spread that goes with each "
+          "common cause],\n# units as in docs/indicators.md.\n"
           "load_step: "
        << numberText(baseline.loadStep()) << "\nbaseline:\n";
   for (ReferenceBin bin : baseline.bins())
   {
-    findCommonCauses(bin);
+    fitReference(bin);
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
-         << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    indicators:\n";
+         << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    place: ["
+         << list(bin.mean_place) << "]\n    leverage:\n";
+    for (const Place& row : bin.leverage)
+    {
+      text << "      - [" << list(row) << "]\n";
+    }
+    text << "    indicators:\n";
     for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
     {
       const Reference& reference = bin.references[i];
       if (reference.count > 0)
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
-             << numberText(std::sqrt(reference.variance()));
-        for (const double share : reference.common)
+             << numberText(std::sqrt(reference.variance));
+        if (reference.fitted)
         {
-          text << ", " << numberText(share);
+          text << ", " << list(reference.slopes) << ", " << list(reference.common);
         }
         text << "]\n";
       }

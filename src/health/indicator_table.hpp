@@ -37,6 +37,7 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::KINEMATIC_ERROR, "kinematic_error", "rad", Feature::KINEMATIC_ERROR, COUNT_SHARE,
       FloorUnit::ENCODER_COUNT },
     { ScalarIndicator::TORSIONAL_STIFFNESS, "torsional_stiffness", "N.m/rad", Feature::STIFFNESS },
+    { ScalarIndicator::SECOND_STIFFNESS, "second_stiffness", "N.m/rad", Feature::STIFFNESS },
     { ScalarIndicator::LOST_MOTION, "lost_motion", "rad", Feature::LOST_MOTION, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
     { ScalarIndicator::HYSTERESIS_AREA, "hysteresis_area", "J", Feature::LOOP_AREA },
     { ScalarIndicator::RUNNING_TORQUE, "running_torque", "N.m", Feature::RUNNING_TORQUE },

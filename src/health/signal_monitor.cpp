@@ -13,6 +13,7 @@ namespace
 {
 constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;  // over which the mean speed forgets [rad]
 constexpr double MEAN_TIME = 0.5;             // and the time, for a joint that stands [s]
+constexpr double ACCELERATION_TIME = 0.02;    // over which the acceleration is smoothed, twice [s]
 constexpr double RESIDUAL_TRAVEL = TWO_PI;    // over which the residual's own mean forgets [rad]
 constexpr int MIN_RESIDUALS = 100;            // for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;     // memory of the friction estimate
@@ -41,6 +42,8 @@ void SignalMonitor::reset() noexcept
   refused_ = 0;
   started_ = false;
   mean_velocity_ = 0.0;
+  smooth_velocity_ = 0.0;
+  acceleration_ = 0.0;
   turn_travel_ = 0.0;
   tracked_ = false;
   residual_mean_ = 0.0;
@@ -59,6 +62,7 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
   last_ = sample;
   last_angle_ = motor_angle;
   mean_velocity_ = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : 0.0;
+  smooth_velocity_ = mean_velocity_;
   torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
 }
 
@@ -88,6 +92,9 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   const double velocity = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : travel / seconds;
   const double kept = std::exp(-std::abs(travel) / MEAN_TRAVEL - seconds / MEAN_TIME);
   mean_velocity_ = kept * mean_velocity_ + (1.0 - kept) * velocity;
+  const double held = std::exp(-seconds / ACCELERATION_TIME);
+  smooth_velocity_ = held * smooth_velocity_ + (1.0 - held) * velocity;
+  acceleration_ = held * acceleration_ + (1.0 - held) * (velocity - smooth_velocity_) / ACCELERATION_TIME;
   window_.elapsed += elapsed;
 
   const bool both = motor_known && std::isfinite(sample.output_angle);
@@ -103,7 +110,8 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
     addTurn(motor_angle, travel, torsion);
     if (even)
     {
-      loop_.add(torsion, joint_torque, moving ? std::copysign(1.0, mean_velocity_) : 0.0);
+      const double inertia_torque = output_.load_inertia * acceleration_ / ratio_;
+      loop_.add(torsion, joint_torque, std::abs(inertia_torque) < parameters_.lost_motion_torque);
     }
   }
   if (load_known)
@@ -199,6 +207,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   set(ScalarIndicator::EFFICIENCY, efficiency_.efficiency());
   loop_.fit();
   set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
+  set(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
   set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
   set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
   friction_.fit();

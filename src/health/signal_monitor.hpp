@@ -91,12 +91,14 @@ private:
 
   bool started_{};
   SignalSample last_;
-  double last_angle_{};     // of the motor [rad]
-  double torsion_zero_{};   // of the first sample, so that what is summed is small [rad]
-  double mean_velocity_{};  // over about half a turn [rad/s]
-  double turn_travel_{};    // since the turn window was read [rad]
-  bool tracked_{};          // lines have been fitted: the residual means something
-  double residual_mean_{};  // slow [rad]
+  double last_angle_{};       // of the motor [rad]
+  double torsion_zero_{};     // of the first sample, so that what is summed is small [rad]
+  double mean_velocity_{};    // over about half a turn [rad/s]
+  double smooth_velocity_{};  // of the motor [rad/s]
+  double acceleration_{};     // of the motor [rad/s^2]
+  double turn_travel_{};      // since the turn window was read [rad]
+  bool tracked_{};            // lines have been fitted: the residual means something
+  double residual_mean_{};    // slow [rad]
   Window window_;
 };
 }  // namespace hjt

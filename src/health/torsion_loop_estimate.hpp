@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "harmonic_joint_twin/health/indicator.hpp"
@@ -13,18 +12,20 @@ namespace hjt
 {
 /// Torsion under a swinging load, over one window.
 ///
-/// Stiffness    1 / slope of  torsion = a + h sign(speed) + T / K1  by least squares over samples with
-///              |T| < indicators.stiffness_torque; needs T to span health.stiffness_torque_span there
-/// Lost motion  mean of torsion - T / K1 while T falls less that while it rises, |T| < indicators.lost_motion_torque
+/// Law:   torsion = a - h p(T) + T / K1 + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0),  least squares over the samples
+/// where  T     joint torque [N.m];  T1  indicators.stiffness_torque
+///        p     which branch of the loop: play of T of the width indicators.lost_motion_torque, -1 while T falls, +1
+///              while it rises, between them where it has just turned round (Prandtl and Ishlinskii's operator)
+///        2 h   lost motion [rad]
+/// Stiffnesses need T to span health.stiffness_torque_span, K2 beyond T1 on either side.
 /// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
-/// where        T  joint torque [N.m]; it turns round where it has come back by indicators.lost_motion_torque
 class TorsionLoopEstimate
 {
 public:
   TorsionLoopEstimate(const HealthParameters& health, const IndicatorParameters& parameters)
-    : torque_range_(parameters.stiffness_torque)
+    : first_torque_(parameters.stiffness_torque)
     , torque_span_(health.stiffness_torque_span)
-    , lost_motion_torque_(parameters.lost_motion_torque)
+    , play_(parameters.lost_motion_torque)
     , regression_(COLUMNS, 1)
   {
     reset();
@@ -36,28 +37,32 @@ public:
     lowest_ = 0.0;
     highest_ = 0.0;
     stiffness_ = {};
+    second_stiffness_ = {};
     lost_motion_ = {};
-    branches_ = {};
     started_ = false;
     area_ = 0.0;
     loops_ = 0;
   }
 
-  void add(double torsion, double joint_torque, double direction) noexcept
+  /// Every sample in its turn; `steady`: the torsion is that of the joint torque, not of inertia.
+  void add(double torsion, double joint_torque, bool steady) noexcept
   {
     followTorque(torsion, joint_torque);
-    if (std::abs(joint_torque) < torque_range_)
+    if (steady)
     {
       const bool first = regression_.weight() == 0.0;
       lowest_ = first ? joint_torque : std::min(lowest_, joint_torque);
       highest_ = first ? joint_torque : std::max(highest_, joint_torque);
-      regression_.add(Eigen::Vector3d(1.0, direction, joint_torque), Eigen::Matrix<double, 1, 1>(torsion));
+      const double branch = (joint_torque - centre_) / (0.5 * play_);
+      const double beyond = std::copysign(std::max(std::abs(joint_torque) - first_torque_, 0.0), joint_torque);
+      regression_.add(Eigen::Vector4d(1.0, joint_torque, branch, beyond), Eigen::Matrix<double, 1, 1>(torsion));
     }
   }
 
   void fit() noexcept
   {
     stiffness_ = {};
+    second_stiffness_ = {};
     lost_motion_ = {};
     if (highest_ - lowest_ < torque_span_ || !regression_.fit(COLUMNS))
     {
@@ -69,35 +74,31 @@ public:
       return;
     }
     stiffness_ = { true, 1.0 / slope };
-    const Branch& rising = branches_[RISING];
-    const Branch& falling = branches_[FALLING];
-    if (rising.count > 0.0 && falling.count > 0.0)
+    const double second = slope + regression_.coefficient(BEYOND, 0);
+    if (std::max(highest_, -lowest_) - first_torque_ > torque_span_ && second > 0.0)
     {
-      const auto offset = [slope](const Branch& branch)
-      { return (branch.torsion - slope * branch.torque) / branch.count; };
-      lost_motion_ = { true, offset(falling) - offset(rising) };
+      second_stiffness_ = { true, 1.0 / second };
+    }
+    if (regression_.inflation(BRANCH) < MAX_INFLATION)
+    {
+      lost_motion_ = { true, -2.0 * regression_.coefficient(BRANCH, 0) };
     }
   }
 
-  Indicator stiffness() const noexcept { return stiffness_; }     ///< K1 [N.m/rad]
-  Indicator lostMotion() const noexcept { return lost_motion_; }  ///< [rad]
+  Indicator stiffness() const noexcept { return stiffness_; }               ///< K1 [N.m/rad]
+  Indicator secondStiffness() const noexcept { return second_stiffness_; }  ///< K2 [N.m/rad]
+  Indicator lostMotion() const noexcept { return lost_motion_; }            ///< [rad]
 
   /// [J]
   Indicator loopArea() const noexcept { return loops_ > 0 ? Indicator{ true, area_ / loops_ } : Indicator{}; }
 
 private:
-  static constexpr int COLUMNS = 3;
-  static constexpr int SLOPE = 2;           // column of the torque
-  static constexpr double MAX_ERROR = 0.1;  // of the slope, standard, as a share of it [-]
-  static constexpr std::size_t RISING = 0;
-  static constexpr std::size_t FALLING = 1;
-
-  struct Branch
-  {
-    double count{};
-    double torsion{};  // sum [rad]
-    double torque{};   // sum [N.m]
-  };
+  static constexpr int COLUMNS = 4;
+  static constexpr int SLOPE = 1;                // column of the torque
+  static constexpr int BRANCH = 2;               // of the play
+  static constexpr int BEYOND = 3;               // of the torque beyond T1
+  static constexpr double MAX_ERROR = 0.1;       // of the slope, standard, as a share of it [-]
+  static constexpr double MAX_INFLATION = 10.0;  // of the branch's variance: both branches at like torques [-]
 
   void followTorque(double torsion, double joint_torque) noexcept
   {
@@ -115,8 +116,9 @@ private:
     }
     torsion_ = torsion;
     torque_ = joint_torque;
+    centre_ = std::clamp(centre_, joint_torque - 0.5 * play_, joint_torque + 0.5 * play_);
     extreme_ = rising_ ? std::max(extreme_, joint_torque) : std::min(extreme_, joint_torque);
-    if (std::abs(joint_torque - extreme_) > lost_motion_torque_)
+    if (std::abs(joint_torque - extreme_) > play_)
     {
       // Seen as late after each maximum, so that what a loop is short of at its start it has more at its end.
       if (rising_)
@@ -129,25 +131,19 @@ private:
       rising_ = !rising_;
       extreme_ = joint_torque;
     }
-    if (past_first_ && std::abs(joint_torque) < lost_motion_torque_)
-    {
-      Branch& branch = branches_[rising_ ? RISING : FALLING];
-      branch.count += 1.0;
-      branch.torsion += torsion;
-      branch.torque += joint_torque;
-    }
   }
 
-  double torque_range_;
+  double first_torque_;  // T1 [N.m]
   double torque_span_;
-  double lost_motion_torque_;
+  double play_;  // width of the play [N.m]
   RunningRegression regression_;
   double lowest_{};   // joint torque in the regression [N.m]
   double highest_{};  // [N.m]
   Indicator stiffness_;
+  Indicator second_stiffness_;
   Indicator lost_motion_;
-  std::array<Branch, 2> branches_;  // rising, falling
 
+  double centre_{};  // of the play [N.m]
   bool started_{};
   bool rising_{};
   double extreme_{};   // of the torque since it turned round last [N.m]

@@ -32,35 +32,51 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 /// That of this gear [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// What moves healthy indicators together from one window to another, as temperature, its curve and load do.
+/// What healthy indicators follow within a class: temperature, its square and load, as the place in the class.
+constexpr std::size_t PLACES = 3;
+using Place = std::array<double, PLACES>;
+
+/// -1 ... 1 from one edge of the class to the other; 0 of what is not measured [-].
+Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
+
+/// What else moves healthy indicators together from one window to another.
 constexpr std::size_t COMMON_CAUSES = 3;
 
-/// Mean and spread of one healthy indicator (Welford's sums).
+/// One healthy indicator, over the windows that determined it.
 struct Reference
 {
-  void add(double value) noexcept;
-  double variance() const noexcept { return count > 1 ? squares / (count - 1) : 0.0; }
-
-  int count{};       // windows that determined it
-  double mean{};     // unit of the indicator
-  double squares{};  // sum of squares about the mean
-  /// Shares of the spread that go with each common cause, of unit variance; from findCommonCauses [-]
+  int count{};
+  double mean{};      // unit of the indicator
+  double variance{};  // about the mean, from fitReference on about what the place makes of it
+  bool fitted{};      // has slopes and common causes
+  Place slopes{};     // over the place, unit of the indicator
+  /// Shares of the spread that go with each common cause, of unit variance [-]
   std::array<double, COMMON_CAUSES> common{};
+};
+
+/// Sums over the windows learned, of products of differences from the means.
+struct ReferenceSums
+{
+  std::array<std::array<double, INDICATOR_COUNT>, INDICATOR_COUNT> indicators{};
+  std::array<std::array<double, INDICATOR_COUNT>, PLACES> mixed{};  // place and indicator
+  std::array<Place, PLACES> places{};
 };
 
 struct ReferenceBin
 {
   OperatingBin bin;
   int windows{};
+  Place mean_place{};
+  std::array<Place, PLACES> leverage{};  // inverse of the places' sums, from fitReference
   std::array<Reference, INDICATOR_COUNT> references;
-  /// Sums of products of two indicators about their means, of the windows that were learned.
-  std::array<std::array<double, INDICATOR_COUNT>, INDICATOR_COUNT> products{};
+  ReferenceSums sums;
 };
 
-/// Fills Reference::common from `products`: the first principal components of the windows' correlations, as many as
-/// stand out of noise, COMMON_CAUSES at most: eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators
-/// in n windows (Marchenko and Pastur 1967). None from fewer than 16 windows. Does not allocate.
-void findCommonCauses(ReferenceBin& bin) noexcept;
+/// Makes of the sums what windows are compared with: the straight line over the place by least squares, and of what it
+/// leaves the first principal components of the correlations, as many as stand out of noise, COMMON_CAUSES at most:
+/// eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967).
+/// Of indicators that every window determined; neither from fewer than 16 windows. Does not allocate.
+void fitReference(ReferenceBin& bin) noexcept;
 
 /// One indicator against its reference.
 struct Deviation
@@ -101,13 +117,16 @@ enum class BaselineState : std::uint8_t
 
 /// Indicators of a healthy joint by operating point: learned from the first windows there, or given.
 ///
-/// Law:   t = (x - m) / sqrt(max(s^2, u^2) (1 + 1/n) + (f m)^2 + q^2),
-///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1
+/// Law:   t = (x - m - b (z - z_0)) / sqrt(max(s^2, u^2) (1 + h) + (f m)^2 + q^2),  h = 1/n + (z - z_0)' L (z - z_0)
+///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1 - PLACES
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
+///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
+///                 leave, by least squares;  L  inverse of the places' sums of squares, so that h grows beyond what was
+///                 learned
 ///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
 ///          0.3 for kurtosis, 0.5 for crest
 /// Given the others, with what moves all of them together:
-///        z_i = (C^-1 (x - m))_i / sqrt((C^-1)_ii),  C = D + F F',  of n - 1 - r degrees of freedom
+///        t_i = (C^-1 d)_i / sqrt((C^-1)_ii),  C = D + F F',  of v - r degrees of freedom;  d  numerators as above
 /// where  F    s times Reference::common, r columns;  D  diagonal: variance as above, of what F leaves of s
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
 /// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators in both
@@ -135,9 +154,9 @@ public:
 private:
   ReferenceBin* find(const OperatingBin& bin) noexcept;
   void learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
-  /// Of what the mean leaves of an indicator; `share`: of the spread's square that counts [-].
-  double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
-                  double share) const noexcept;
+  /// Of a window's difference; `left`: of the reference [unit of the indicator squared], `widening`: 1 + h [-].
+  double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators, double left,
+                  double widening) const noexcept;
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
   void compare(const ReferenceBin& bin, const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
 
