@@ -49,6 +49,7 @@ const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
   assessment_.state = AssessmentState::ASSESSED;
   const FeatureScores plain = featureScores(deviations_.plain);
   const FeatureScores conditional = featureScores(deviations_.conditional);
+  assessment_.shows_play = plain[static_cast<std::size_t>(Feature::LOST_MOTION)].compared;
   const CausePosterior posterior = causePosterior(baseline_.residual());
   assessment_.largest_score = std::max(posterior.log_odds / log_odds_threshold_, 0.0);
   const HealthLevel odds = posterior.log_odds > log_odds_threshold_ ? HealthLevel::WARN : HealthLevel::OK;

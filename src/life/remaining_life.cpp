@@ -207,7 +207,7 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
                                                       fault_scale_.interface_wear_depth);
   if (assessment.level == HealthLevel::OK)
   {
-    return (1.0 - flank.found) * (1.0 - interface.found);
+    return !assessment.shows_play ? 1.0 : (1.0 - flank.found) * (1.0 - interface.found);
   }
   const double spall = std::min(spallSize(variation, so_far.bearing_turns), 1.0) -
                        std::min(spallSize(variation, at_reference.bearing_turns), 1.0);

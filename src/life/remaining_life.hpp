@@ -82,6 +82,15 @@ struct RemainingHours
   std::array<double, CAUSES.size()> by_cause{};  ///< that it ends so, in the order of CAUSES [-]
 };
 
+/// Whether an assessment counts in place of the one `before`: of a window that was compared, and not nothing found in
+/// one that shows little after nothing found in one that shows more.
+inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
+{
+  const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&
+                         before.level == HealthLevel::OK && before.shows_play;
+  return assessment.state == AssessmentState::ASSESSED && !says_less;
+}
+
 /// The remaining life as a distribution over what cannot be seen of one drive, its variation.
 ///
 /// A particle is a drive with factors of wear, a life of its bearing and a fatigue strength of its own, drawn from what
@@ -90,7 +99,7 @@ struct RemainingHours
 /// Use ages every particle by the same laws. An assessment weighs it by how likely its wear, as severities of faults,
 /// makes what was said:
 ///
-///   no fault found   prod_k (1 - D_k(s_k))
+///   no fault found   prod_k (1 - D_k(s_k)); 1 of a window whose load did not go both ways, which shows little wear
 ///   fault found      sum_k p_k D_k(s_k) f(e_k; s_k) / u + r max(1 - sum_k p_k, q)
 ///
 /// k: tooth_wear, interface_wear, a spall at a race or ball; s_k the particle's severity since the reference was
@@ -103,8 +112,8 @@ class RemainingLife
 public:
   explicit RemainingLife(const Parameters& parameters);
 
-  /// Of a drive that is in use still after `so_far`, with this use ahead; `assessment`: the last one of a window that
-  /// was compared, null: none; `at_reference`: the use when the sound reference of that window was learned, 0: new.
+  /// Of a drive that is in use still after `so_far`, with this use ahead; `assessment`: the last one that
+  /// counts, null: none; `at_reference`: the use when the sound reference of that window was learned, 0: new.
   /// Allocates nothing.
   RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
                            const Usage& at_reference) noexcept;

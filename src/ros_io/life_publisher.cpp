@@ -108,9 +108,8 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   counted_.until = instant;
   if (assessment.windows != counted_.windows)
   {
-    const bool compared = assessment.state == AssessmentState::ASSESSED;
-    const bool restarted = assessment.windows < counted_.windows;
-    counted_.assessment = compared ? assessment : restarted ? Assessment() : counted_.assessment;
+    const Assessment before = assessment.windows < counted_.windows ? Assessment() : counted_.assessment;
+    counted_.assessment = supersedes(assessment, before) ? assessment : before;
     counted_.windows = assessment.windows;
   }
   if (instant >= counted_from_ && instant - counted_from_ < STRETCH)

@@ -32,7 +32,7 @@ public:
 
   /// One thread, the loop's: counts the time since the last call. No allocation, no lock.
   /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC]; the assessment counts if
-  /// it compared its window.
+  /// it `supersedes` those before.
   void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
              const Assessment& assessment) noexcept;
 
@@ -41,7 +41,7 @@ private:
   {
     Stamp until;
     UsageHistory use;
-    Assessment assessment;  // the last one that compared a window; of none its state is WAITING
+    Assessment assessment;  // the last one that counts; of none its state is WAITING
     std::uint64_t windows;  // of the assessment: fewer than before after a reset
   };
   void readRecord();

@@ -52,6 +52,7 @@ public:
     const double noise = std::exp(ESTIMATE_NOISE * normal_(random_));
     Assessment assessment;
     assessment.state = AssessmentState::ASSESSED;
+    assessment.shows_play = true;
     if (severity[strongest] < found_from_[strongest])
     {
       return assessment;

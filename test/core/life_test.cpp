@@ -501,9 +501,19 @@ TEST(RemainingLife, TakesSilenceForLittleWear)
   const FlankUse use;
   Assessment silent;
   silent.state = AssessmentState::ASSESSED;
+  silent.shows_play = true;
   const RemainingHours prior = use.after(500.0, nullptr);
   const RemainingHours remaining = use.after(500.0, &silent);
   EXPECT_GT(remaining.quantile[1], prior.quantile[1]);
+  Assessment blind = silent;
+  blind.shows_play = false;
+  EXPECT_EQ(use.after(500.0, &blind).quantile, prior.quantile);
+  const Assessment found = foundWear(0.3, 0.1);
+  EXPECT_FALSE(supersedes(blind, silent));
+  EXPECT_FALSE(supersedes({}, silent));
+  EXPECT_TRUE(supersedes(silent, blind));
+  EXPECT_TRUE(supersedes(blind, found));
+  EXPECT_TRUE(supersedes(found, silent));
 }
 
 TEST(RemainingLife, KnowsThatAReferenceOfAWornDriveHidesItsWear)
@@ -511,6 +521,7 @@ TEST(RemainingLife, KnowsThatAReferenceOfAWornDriveHidesItsWear)
   const FlankUse use;
   Assessment silent;
   silent.state = AssessmentState::ASSESSED;
+  silent.shows_play = true;
   RemainingLife drives(use.parameters);
   const Usage so_far = use.until(500.0);
   const auto median = [&](double reference_hours)

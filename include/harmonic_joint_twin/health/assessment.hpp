@@ -57,6 +57,7 @@ struct Assessment
   AssessmentState state{};
   HealthLevel level{};
   Cause cause{};                ///< the most likely; NONE at level OK, and at others if it is nothing of the table
+  bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
   double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]

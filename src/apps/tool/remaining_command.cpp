@@ -107,7 +107,7 @@ int run(const RemainingOptions& options)
   {
     assessor.setReference(readBaseline(options.baseline, parameters));
   }
-  std::optional<Assessment> assessment;  // the last one that compared a window
+  Assessment assessment;  // the last one that counts
   for (const std::string& recording : options.recordings)
   {
     SignalMonitor monitor(parameters);
@@ -116,13 +116,14 @@ int run(const RemainingOptions& options)
            [&](const SignalSample& sample)
            {
              if (!options.baseline.empty() && monitor.update(sample) &&
-                 assessor.update(monitor.indicators()).state == AssessmentState::ASSESSED)
+                 supersedes(assessor.update(monitor.indicators()), assessment))
              {
                assessment = assessor.assessment();
              }
            });
   }
-  if (!options.baseline.empty() && !assessment)
+  const bool assessed = assessment.state == AssessmentState::ASSESSED;
+  if (!options.baseline.empty() && !assessed)
   {
     throw InputError(options.recordings.front() + ": no window lies at an operating point that " + options.baseline +
                      " knows");
@@ -139,7 +140,7 @@ int run(const RemainingOptions& options)
   {
     writeTextFile(options.use_record, use.text());
   }
-  const LifeEstimate estimate = LifeEstimator(parameters).estimate(use, assessment ? &*assessment : nullptr, 0.0);
+  const LifeEstimate estimate = LifeEstimator(parameters).estimate(use, assessed ? &assessment : nullptr, 0.0);
   const RemainingHours& remaining = estimate.remaining;
   std::vector<ReportLine> lines{
     { "hours", "hours of use so far", estimate.hours, "h" },
@@ -150,10 +151,10 @@ int run(const RemainingOptions& options)
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
     { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
   };
-  if (assessment)
+  if (assessed)
   {
-    lines.push_back({ "level", "assessed", levelName(assessment->level) });
-    lines.push_back({ "cause", "cause", causeName(assessment->cause) });
+    lines.push_back({ "level", "assessed", levelName(assessment.level) });
+    lines.push_back({ "cause", "cause", causeName(assessment.cause) });
   }
   if (options.json)
   {
