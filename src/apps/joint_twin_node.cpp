@@ -80,7 +80,7 @@ void runArm(ros::NodeHandle& node, const std::string& name)
                                      << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
                                      << " degC");
   }
-  run<hjt::TrackerNode>(node, arm, parameters);
+  run<hjt::TrackerNode>(node, arm, parameters, !identified.empty());
 }
 }  // namespace
 

@@ -23,10 +23,22 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// Warn when a larger share of the last rows is outside the band, until it is less than half of that [-].
-constexpr double OUTSIDE_WARNING = 0.1;
+/// The verdict is of the rows of up to this long; then it begins anew [s].
+constexpr double JUDGED_SPAN = 1800.0;
+/// A worse verdict is reported once it has stood for this long: the first rows of a motion are few [s].
+constexpr double CONFIRMED_AFTER = 10.0;
 /// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
+
+/// Texts of diagnostics end without a full stop.
+std::string withoutStop(std::string sentences)
+{
+  if (!sentences.empty() && sentences.back() == '.')
+  {
+    sentences.pop_back();
+  }
+  return sentences;
+}
 
 const char* levelName(std::uint8_t level)
 {
@@ -34,13 +46,14 @@ const char* levelName(std::uint8_t level)
 }
 }  // namespace
 
-JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, TelemetryStream& stream,
-                           std::mutex& mutex)
+JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, bool is_identified,
+                           TelemetryStream& stream, std::mutex& mutex)
   : stream_(stream)
   , mutex_(mutex)
   , name_(node.getNamespace().substr(1))
   , names_(parameters.joint.name)
   , parameters_(parameters)
+  , is_identified_(is_identified)
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
@@ -83,7 +96,7 @@ void JointTracker::start(bool reset)
 {
   if (reset)
   {
-    tracker_.reset();
+    forgetAll();
   }
   for (const LoadAt& load : early_loads_)
   {
@@ -95,6 +108,13 @@ void JointTracker::start(bool reset)
     passTemperature(*early_temperature_);
     early_temperature_.reset();
   }
+}
+
+/// The verdict too, at once.
+void JointTracker::forgetAll()
+{
+  tracker_.reset();
+  judgeEvidence(1.0);
 }
 
 void JointTracker::push(const MotionRow& row)
@@ -210,7 +230,7 @@ void JointTracker::publish()
 bool JointTracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
-  tracker_.reset();
+  forgetAll();
   response.success = true;
   response.message = "the twin restarts with the next row";
   return true;
@@ -227,7 +247,6 @@ void JointTracker::look(const ros::WallTime& now)
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
   recent_failures_.update(counters.solver_failures, now);
-  departs_ = tracker_.outsideShare() > (departs_ ? 0.5 : 1.0) * OUTSIDE_WARNING;
   tasks_.look();
   logState();
 }
@@ -263,11 +282,32 @@ bool JointTracker::loadIsUnknown() const
          !comparison_.load_provided;
 }
 
-bool JointTracker::departsAsTheArm() const
+JointContext JointTracker::context(double arm_friction) const
 {
-  const std::optional<double> ratio = tracker_.friction().ratio;
-  return arm_friction_ != 1.0 && ratio &&
-         std::abs(*ratio / arm_friction_ - 1.0) <= parameters_.comparison.repeat_tolerance;
+  return { OwnReference(), is_identified_, 0.0, arm_friction, sentence(misfit_) };
+}
+
+MeasuredFriction JointTracker::measuredFriction() const
+{
+  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0));
+}
+
+void JointTracker::judgeEvidence(double arm_friction)
+{
+  const MotionReach& reach = tracker_.evidence().reach();
+  const bool is_new = confirmed_ > reach.end;  // the telemetry began anew
+  Verdict verdict = judge(tracker_.evidence(), parameters_, context(arm_friction));
+  // After JUDGED_SPAN the last verdict stands until there is another.
+  const bool is_open = !verdict.judged && verdict_.judged && whyNotJudged().empty() && !is_new;
+  if (!is_open && (is_new || verdict.level <= verdict_.level || reach.end - confirmed_ >= CONFIRMED_AFTER))
+  {
+    verdict_ = std::move(verdict);
+    confirmed_ = reach.end;
+  }
+  if (reach.end - reach.begin > JUDGED_SPAN)
+  {
+    tracker_.forgetEvidence();
+  }
 }
 
 /// Empty: it is judged.
@@ -281,7 +321,8 @@ std::string JointTracker::whyNotJudged() const
   {
     return "the load is unknown";
   }
-  return tracker_.isTouched() ? contactText(tracker_.contact()) : std::string();
+  const JointEvidence& evidence = tracker_.evidence();
+  return evidence.isTouched() ? contactText(evidence.contact().last()) : std::string();
 }
 
 DiagnosticVerdict JointTracker::judgeTelemetry() const
@@ -313,11 +354,9 @@ DiagnosticVerdict JointTracker::judgeComparison() const
       { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
         { hasStopped(), { D::STALE, "Nothing to compare with" } },
         { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
-        { departs_ && !fit_settled_, { D::OK, "Not judged yet: whether angles and efforts fit is not known" } },
-        { departs_ && departsAsTheArm(),
-          { D::OK, "The current departs from a healthy joint's, as that of the whole arm does: temperature or gain" } },
-        { departs_, { D::WARN, "The current departs from a healthy joint's" } } },
-      { D::OK, "Within the band of a healthy joint" });
+        { verdict_.level != HealthLevel::OK && !fit_settled_,
+          { D::OK, "Not judged yet: whether angles and efforts fit is not known" } } },
+      { static_cast<std::uint8_t>(verdict_.level), withoutStop(verdict_.reason) });
 }
 
 DiagnosticVerdict JointTracker::judgeHealth() const
@@ -371,6 +410,13 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
 {
   const TrackerCounters counters = tracker_.counters();
   const std::optional<double> lag = tracker_.lag();
+  const MotionReach& reach = tracker_.evidence().reach();
+  status.add("Verdict", verdictName(verdict_));
+  for (const Finding& finding : verdict_.findings)
+  {
+    status.add(finding.title, (finding.judged ? levelName(finding.level) : NOT_JUDGED) + (". " + finding.text));
+  }
+  status.add("Verdict is of the last [s]", reach.end - reach.begin);
   status.add("Residual of the current [A]", comparison_.current.residual());
   status.add("Its band [A]", comparison_.current.band);
   status.add("Residual of the position [rad]", comparison_.position.residual());

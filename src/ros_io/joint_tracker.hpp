@@ -27,6 +27,7 @@
 #include "ros_io/telemetry_stream.hpp"
 #include "ros_io/tracker_outputs.hpp"
 #include "tracking/tracker.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -59,8 +60,10 @@ private:
 class JointTracker
 {
 public:
-  /// `node`: its topics lie below. @throws ParameterError.
-  JointTracker(ros::NodeHandle& node, const Parameters& parameters, TelemetryStream& stream, std::mutex& mutex);
+  /// `node`: its topics lie below. `is_identified`: the friction of the parameters is that of this joint.
+  /// @throws ParameterError.
+  JointTracker(ros::NodeHandle& node, const Parameters& parameters, bool is_identified, TelemetryStream& stream,
+               std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
   /// Its load comes with `pushLoad` from the motion of the whole arm.
@@ -80,9 +83,15 @@ public:
 
   Tracker& tracker() { return tracker_; }
 
-  /// What the friction of the arm's joints has in common, as a multiple of the expected of this one [-]; 1: nothing, or
-  /// the twin predicts with it.
+  /// What the friction of the arm's joints has in common now, as a multiple of the expected of this one [-]; 1:
+  /// nothing, or the twin predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
+
+  /// As `joint_twin compare` measures it, of the rows that the verdict is of.
+  MeasuredFriction measuredFriction() const;
+
+  /// Makes the verdict anew; `arm_friction`: what all joints have in common of `measuredFriction` [-].
+  void judgeEvidence(double arm_friction);
 
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
@@ -122,11 +131,12 @@ private:
   void takeLoad(const LoadAt& load);
   void passLoad(const LoadAt& load);
   void passTemperature(const TemperatureAt& temperature);
+  void forgetAll();
   void publish();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
+  JointContext context(double arm_friction) const;
   bool loadIsUnknown() const;
-  bool departsAsTheArm() const;
   std::string whyNotJudged() const;
   bool hasStopped() const;
   DiagnosticVerdict judgeTelemetry() const;
@@ -142,6 +152,7 @@ private:
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
   const Parameters parameters_;
+  const bool is_identified_;
   const double current_per_effort_;  // [A], [A/(N.m)]
   std::string misfit_;
   bool fit_settled_{ true };
@@ -159,7 +170,8 @@ private:
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
-  bool departs_{};  // the current, from a healthy joint's
+  Verdict verdict_;
+  double confirmed_{};  // time up to which no worse verdict was found [s]
   std::optional<std::uint8_t> logged_level_;
   DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;

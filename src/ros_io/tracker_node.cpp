@@ -24,29 +24,33 @@ namespace
 constexpr double WARNING_PERIOD = 5.0;
 /// Between two looks at what does not fit [s].
 constexpr double FIT_PERIOD = 1.0;
+/// Between two verdicts [s].
+constexpr double VERDICT_PERIOD = 1.0;
 /// Of the names in a message without a joint that are shown [bytes].
 constexpr std::size_t MAX_NAMES = 500;
 }  // namespace
 
 TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
+  : repeat_tolerance_(parameters.comparison.repeat_tolerance)
 {
-  addJoint(node, parameters);
+  addJoint(node, parameters, false);
   subscribe(node);
 }
 
-TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters)
-  : arm_load_(arm), fit_(parameters)
+TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
+                         bool is_identified)
+  : arm_load_(arm), fit_(parameters), repeat_tolerance_(parameters.front().comparison.repeat_tolerance)
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i]);
+    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i], is_identified);
   }
   std::vector<Tracker*> trackers;
   for (const auto& joint : joints_)
   {
     trackers.push_back(&joint->tracker());
   }
-  friction_.emplace(std::move(trackers), parameters.front().comparison.repeat_tolerance);
+  friction_.emplace(std::move(trackers), repeat_tolerance_);
   subscribe(node);
 }
 
@@ -57,9 +61,9 @@ std::string TrackerNode::jointName(const ArmJoint& joint)
   return ros::names::append(ros::names::parentNamespace(name), joint.short_name + "/" + node);
 }
 
-void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters)
+void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, bool is_identified)
 {
-  joints_.push_back(std::make_unique<JointTracker>(node, parameters, stream_, mutex_));
+  joints_.push_back(std::make_unique<JointTracker>(node, parameters, is_identified, stream_, mutex_));
   rows_.emplace_back();
 }
 
@@ -241,10 +245,31 @@ void TrackerNode::receiveTemperature(const ros::MessageEvent<const sensor_msgs::
   stream_.other_temperatures += is_of_joint ? 0 : 1;
 }
 
+/// Each joint after what the friction of all has in common, as `joint_twin compare` judges a recording.
+void TrackerNode::judge(const ros::WallTime& now)
+{
+  if (now < next_verdict_)
+  {
+    return;
+  }
+  next_verdict_ = now + ros::WallDuration(VERDICT_PERIOD);
+  std::vector<MeasuredFriction> frictions;
+  for (const auto& joint : joints_)
+  {
+    frictions.push_back(joint->measuredFriction());
+  }
+  const ArmFriction arm = commonFriction(frictions, repeat_tolerance_);
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    joints_[i]->judgeEvidence(arm.factors[i]);
+  }
+}
+
 void TrackerNode::look()
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
+  judge(now);
   for (const auto& joint : joints_)
   {
     joint->look(now);

@@ -31,14 +31,15 @@ public:
   /// Name of a joint of an arm in the graph: NAMESPACE/SHORT_NAME/NODE. Its topics lie below.
   static std::string jointName(const ArmJoint& joint);
 
-  /// Of an arm: parameters of each of its joints.
+  /// Of an arm: parameters of each of its joints. `is_identified`: their friction is that of this very arm.
   /// @throws ParameterError.
-  TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters);
+  TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
+              bool is_identified);
 
 private:
   using JointStateEvent = ros::MessageEvent<const sensor_msgs::JointState>;
 
-  void addJoint(ros::NodeHandle node, const Parameters& parameters);
+  void addJoint(ros::NodeHandle node, const Parameters& parameters, bool is_identified);
   void subscribe(ros::NodeHandle& node);
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
@@ -47,6 +48,7 @@ private:
   void resetFit();
   void lookAtFriction(double time);
   void updateFit(const ArmSample& sample);
+  void judge(const ros::WallTime& now);
   void look();
 
   std::mutex mutex_;  // of everything below: callbacks run in several threads
@@ -55,6 +57,8 @@ private:
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
   std::optional<ArmFrictionWatch> friction_;
+  const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
+  ros::WallTime next_verdict_;
   double next_fit_{};            // when its findings are looked at [s]
   std::vector<MotionRow> rows_;  // of the joints, in the message at hand
   double last_time_{};           // [s]

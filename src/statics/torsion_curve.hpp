@@ -125,6 +125,9 @@ public:
   {
   }
 
+  /// At rest without load.
+  void reset() noexcept { state_ = CupFriction::State(); }
+
   /// @returns the torsion [rad] under the next load, reached from the last one without a reversal [N.m].
   double to(double torque)
   {

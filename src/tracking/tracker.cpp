@@ -27,6 +27,13 @@ bool holdsAll(LoadSource source)
   return source == LoadSource::TARGET_MOMENT || source == LoadSource::ARM;
 }
 
+LoadOrigin originOf(LoadSource source)
+{
+  return source == LoadSource::MODEL ? LoadOrigin::CONFIGURED :
+         source == LoadSource::ARM   ? LoadOrigin::ARM :
+                                       LoadOrigin::RECORDED;
+}
+
 class TorqueFollower : public Tracker::Follower
 {
 public:
@@ -49,7 +56,9 @@ private:
 class MotionFollower : public Tracker::Follower
 {
 public:
-  explicit MotionFollower(const Parameters& parameters) : twin_(parameters), telemetry_(parameters.telemetry) {}
+  MotionFollower(const Parameters& parameters, const MotionDriven& twin) : twin_(twin), telemetry_(parameters.telemetry)
+  {
+  }
 
   void follow(const MotionSample& sample, double /*external*/, Comparison& now) noexcept override
   {
@@ -101,12 +110,13 @@ private:
   double ratio_;
 };
 
-std::unique_ptr<Tracker::Follower> makeFollower(const Parameters& parameters, InputMode mode,
+/// `twin`: for this motion.
+std::unique_ptr<Tracker::Follower> makeFollower(const Parameters& parameters, InputMode mode, const MotionDriven& twin,
                                                 const SurfaceSource& source)
 {
   if (mode == InputMode::MOTION)
   {
-    return std::make_unique<MotionFollower>(parameters);
+    return std::make_unique<MotionFollower>(parameters, twin);
   }
   if (holdsAll(parameters.telemetry.load) && parameters.output.gravity_torque != 0.0)
   {
@@ -132,9 +142,8 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   , ratio_(nominalRatio(parameters.gear))
   , grease_(parameters)
   , temperature_(parameters.input.temperature)
-  , follower_(makeFollower(parameters, mode, surface_source))
-  , contact_(parameters.output.load_torque_limit)
-  , watch_(parameters)
+  , evidence_(parameters, originOf(parameters.telemetry.load))
+  , follower_(makeFollower(parameters, mode, evidence_.twin(), surface_source))
 {
 }
 
@@ -148,20 +157,19 @@ void Tracker::reset() noexcept
   restarted_ = true;
   loads_.clear();
   temperatures_.clear();
-  contact_.reset();
   friction_.reset();
   temperature_received_ = false;
   outside_share_ = 0.0;
   timing_.reset();
   lag_.reset();
-  watch_.reset();
+  evidence_.reset();
 }
 
 void Tracker::setFits(bool fits) noexcept
 {
   if (fits_ && !fits)
   {
-    watch_.reset();
+    evidence_.resetSignals();
     friction_.reset();
   }
   fits_ = fits;
@@ -284,23 +292,15 @@ void Tracker::addFriction(double step, const MotionSample& sample, const Compari
   friction_.add(step, expected, now.friction_torque + now.residual_torque, sample.velocity, sample.load);
 }
 
-/// Contact, friction, health, and the share of rows outside.
+/// Evidence, friction, and the share of rows outside.
 void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
 {
-  if (load_source_ != LoadSource::MODEL && load_is_known)
+  if (load_is_known)
   {
-    const bool was_touched = isTouched();
-    contact_.update(sample, now.residual_torque, now.friction_torque, now.sticking);
-    if (isTouched() && !was_touched)
-    {
-      watch_.reset();
-    }
+    evidence_.update(sample, fits_);
   }
-  if (load_is_known && fits_ && !isTouched())
-  {
-    watch_.update(sample);
-  }
-  const double step = now.after_gap || isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
+  const double step =
+      now.after_gap || evidence_.isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
   if (load_is_known && fits_ && !now.sticking)
   {
     addFriction(step, sample, now);

@@ -10,13 +10,12 @@
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
 #include "tracking/common_friction.hpp"
-#include "tracking/contact_watch.hpp"
 #include "tracking/delay_estimate.hpp"
 #include "tracking/friction_scale.hpp"
 #include "tracking/grease_temperature.hpp"
 #include "tracking/held_values.hpp"
+#include "tracking/joint_evidence.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/signal_watch.hpp"
 #include "tracking/stream_timing.hpp"
 
 namespace hjt
@@ -113,10 +112,12 @@ public:
   /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// Something touches the arm, or did less than ContactWatch::HOLD ago; health is not judged and starts again
-  /// afterwards, and the rows do not count as outside. Where the load is the configured one alone, never.
-  bool isTouched() const noexcept { return contact_.isRecent(); }
-  const Contact& contact() const noexcept { return contact_.last(); }  ///< the last one
+  /// Of the measured joint, in every mode alike. While something touches the arm its health is not judged, starts again
+  /// afterwards, and the rows do not count as outside.
+  const JointEvidence& evidence() const noexcept { return evidence_; }
+
+  /// The verdict is of what follows.
+  void forgetEvidence() noexcept { evidence_.forget(); }
 
   /// Of the last minutes of motion, over the twin's without an estimated temperature. Mode MOTION only.
   MeasuredFriction friction() const;
@@ -126,8 +127,8 @@ public:
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Health of the measured joint, from its own signals.
-  const SignalIndicators& signalIndicators() const noexcept { return watch_.indicators(); }
-  const Assessment& assessment() const noexcept { return watch_.assessor().assessment(); }
+  const SignalIndicators& signalIndicators() const noexcept { return evidence_.indicators(); }
+  const Assessment& assessment() const noexcept { return evidence_.assessor().assessment(); }
 
   /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the
   /// weight and inertia that are configured; the whole is in the sample [N.m]
@@ -157,6 +158,7 @@ private:
   GreaseTemperature grease_;
   double temperature_;                           // of it, at the last row [degC]
   std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
+  JointEvidence evidence_;
   std::unique_ptr<Follower> follower_;
   MotionDifferentiator smoother_;
   bool restarted_{};
@@ -164,14 +166,12 @@ private:
   double last_time_{};
   HeldValues loads_;
   TemperatureRecord temperatures_;
-  ContactWatch contact_;
   FrictionScale friction_;
   bool temperature_received_{};  // ever
   double outside_share_{};
   double last_compared_{};  // [s]
   StreamTiming timing_;
   DelayEstimate lag_;
-  SignalWatch watch_;
   TrackerCounters counters_;
   TrackerCounters earlier_;  // refused before the smoother, and by it before the last restart
 };

@@ -389,7 +389,7 @@ TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
     const double time = PERIOD * static_cast<double>(i);
     const bool is_pushed = time > 20.0 && time < 20.5;  // midway in a swing
     robot.push(tracker, i, is_pushed ? 3.0 : 0.0);
-    if (tracker.isTouched())
+    if (tracker.evidence().isTouched())
     {
       touched.push_back(time);
     }
@@ -397,7 +397,7 @@ TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
   ASSERT_THAT(touched, SizeIs(Gt(10)));
   EXPECT_NEAR(touched.front(), 20.3, 0.2);
   EXPECT_NEAR(touched.back(), 20.5 + ContactWatch::HOLD, 0.5);
-  EXPECT_NEAR(tracker.contact().largest, 3.0 * parameters.telemetry.torque_per_current, 5.0);
+  EXPECT_NEAR(tracker.evidence().contact().last().largest, 3.0 * parameters.telemetry.torque_per_current, 5.0);
   EXPECT_LT(tracker.outsideShare(), 0.02);
 }
 
@@ -411,7 +411,7 @@ TEST(Tracker, WhatStaysIsNoContact)
   {
     robot.push(tracker, i, i > robot.rows() / 5 ? 3.0 : 0.0);
   }
-  EXPECT_FALSE(tracker.isTouched());
+  EXPECT_FALSE(tracker.evidence().isTouched());
   EXPECT_GT(tracker.outsideShare(), 0.5);
 }
 

@@ -42,9 +42,9 @@ def angles(time_s):
     return [0.6 * swing, -1.0 - 0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
 
 
-def run_robot(directory):
+def run_robot(directory, angles=angles, seconds=SECONDS):
     """Angles and currents of the joints, a row each PERIOD."""
-    rows = [[row * PERIOD, *angles(row * PERIOD)] for row in range(round(SECONDS / PERIOD))]
+    rows = [[row * PERIOD, *angles(row * PERIOD)] for row in range(round(seconds / PERIOD))]
     still = os.path.join(directory, "still.csv")
     with open(still, "w") as file:
         names = [f"actual_{quantity}_{joint}" for quantity in ("q", "current") for joint in range(len(JOINTS))]

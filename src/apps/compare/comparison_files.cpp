@@ -44,7 +44,7 @@ void writeFriction(const std::string& directory, const RecordingComparison& comp
                                                     { "deviation", &FrictionPoint::deviation },
                                                     { "twin", &FrictionPoint::twin },
                                                     { "rows", &FrictionPoint::rows } };
-  const std::vector<FrictionPoint> points = comparison.friction().points();
+  const std::vector<FrictionPoint> points = comparison.evidence().friction().points();
   writeTable(directory + "/" + FRICTION_FILE, columns, points);
   double fastest = 1.0;
   for (const FrictionPoint& point : points)
@@ -56,8 +56,9 @@ void writeFriction(const std::string& directory, const RecordingComparison& comp
   for (int i = 1; i <= STEPS; ++i)
   {
     const double speed = 1.1 * fastest * i / STEPS;
-    const auto at = [&](double load) { return comparison.twin().frictionAt(speed, load, comparison.temperature()); };
-    curve.writeRow({ speed, at(comparison.typicalLoad()), at(comparison.largestLoad()) });
+    const auto at = [&](double load)
+    { return comparison.evidence().twin().frictionAt(speed, load, comparison.evidence().temperature()); };
+    curve.writeRow({ speed, at(comparison.evidence().typicalLoad()), at(comparison.evidence().largestLoad()) });
   }
   curve.close();
 }
@@ -72,14 +73,14 @@ void writeSpectrum(const std::string& path, const RecordingComparison& compariso
 
 void writeTorsion(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
 {
-  if (comparison.torsion().rows() == 0)
+  if (comparison.evidence().torsion().rows() == 0)
   {
     return;
   }
   const std::vector<Column<TorsionMean>> columns{ { "torque", &TorsionMean::torque },
                                                   { "forward", &TorsionMean::forward },
                                                   { "backward", &TorsionMean::backward } };
-  const std::vector<TorsionMean> means = comparison.torsion().means();
+  const std::vector<TorsionMean> means = comparison.evidence().torsion().means();
   writeTable(directory + "/torsion.csv", columns, means);
   double largest = 0.0;
   for (const TorsionMean& mean : means)
@@ -98,7 +99,7 @@ void writeTorsion(const std::string& directory, const RecordingComparison& compa
 void writeTeeth(const std::string& path, const RecordingComparison& comparison, const Parameters& parameters)
 {
   const std::vector<StiffnessRow> rows =
-      analyseStiffness(parameters, 0.0, { comparison.typicalLoad(), comparison.largestLoad() });
+      analyseStiffness(parameters, 0.0, { comparison.evidence().typicalLoad(), comparison.evidence().largestLoad() });
   CsvWriter csv(path, { "x", "y", "wave_generator_typical", "mesh_typical", "wave_generator_largest", "mesh_largest" });
   const ToothTable& typical = rows[0].teeth;
   const ToothTable& largest = rows[1].teeth;
@@ -134,15 +135,15 @@ struct HealthRow
 Json healthJson(const RecordingComparison& comparison)
 {
   std::vector<HealthRow> rows;
-  for (std::size_t i = 0; comparison.worst() && i < INDICATOR_COUNT; ++i)
+  for (std::size_t i = 0; comparison.evidence().worst() && i < INDICATOR_COUNT; ++i)
   {
-    const JudgedWindow& window = *comparison.worst();
+    const JudgedWindow& window = *comparison.evidence().worst();
     if (std::isfinite(window.indicators.values[i]) && std::isfinite(window.deviations[i].score))
     {
       rows.push_back({ i, window.indicators.values[i], window.deviations[i] });
     }
   }
-  const double threshold = comparison.assessor().baseline().threshold();
+  const double threshold = comparison.evidence().assessor().baseline().threshold();
   const std::vector<Column<HealthRow>> columns{
     { "indicator", [](const HealthRow& row) { return indicatorName(row.indicator); } },
     { "unit", [](const HealthRow& row) { return indicatorUnit(row.indicator); } },
@@ -218,12 +219,12 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
   writeTorsion(directory, comparison, parameters);
   writeTeeth(directory + "/teeth.csv", comparison, parameters);
   writeTwinStates(directory + "/twin_states.csv", record.twin_states);
-  if (!comparison.assessor().baseline().bins().empty())
+  if (!comparison.evidence().assessor().baseline().bins().empty())
   {
-    writeBaseline(directory + "/" + BASELINE_FILE, comparison.assessor().baseline());
+    writeBaseline(directory + "/" + BASELINE_FILE, comparison.evidence().assessor().baseline());
   }
 
-  const MotionReach& reach = comparison.reach();
+  const MotionReach& reach = comparison.evidence().reach();
   Json orders;
   const LineOrders tracked = trackedOrders(parameters.gear, parameters.bearing);
   for (std::size_t i = 0; i < LINE_COUNT; ++i)
@@ -250,17 +251,18 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                       { "most_angle", reach.most_angle },
                       { "least_load", reach.least_load },
                       { "most_load", reach.most_load },
-                      { "typical_load", comparison.typicalLoad() },
-                      { "largest_load", comparison.largestLoad() } } },
+                      { "typical_load", comparison.evidence().typicalLoad() },
+                      { "largest_load", comparison.evidence().largestLoad() } } },
                   { "current",
-                    { { "measured_rms", comparison.currentRms() }, { "residual_rms", comparison.residualRms() } } },
-                  { "temperature", comparison.temperature() },
-                  { "temperature_source", temperatureSource(comparison) },
-                  { "friction_ratio", comparison.friction().ratio() },
-                  { "compliance_ratio", comparison.torsion().compliance() },
+                    { { "measured_rms", comparison.evidence().currentRms() },
+                      { "residual_rms", comparison.evidence().residualRms() } } },
+                  { "temperature", comparison.evidence().temperature() },
+                  { "temperature_source", temperatureSource(comparison.evidence()) },
+                  { "friction_ratio", comparison.evidence().friction().ratio() },
+                  { "compliance_ratio", comparison.evidence().torsion().compliance() },
                   { "line_orders", orders },
                   { "highest_order", record.verdict.highest_order },
-                  { "windows_assessed", comparison.assessedWindows() },
+                  { "windows_assessed", comparison.evidence().assessedWindows() },
                   { "health", healthJson(comparison) } };
   writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
 }

@@ -6,7 +6,8 @@
 
 #include "apps/compare/recording_comparison.hpp"
 #include "apps/compare/recording_contents.hpp"
-#include "apps/compare/verdict.hpp"
+
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

@@ -25,7 +25,6 @@
 #include "apps/common/text_table.hpp"
 #include "apps/compare/comparison_files.hpp"
 #include "apps/compare/recording_comparison.hpp"
-#include "apps/compare/verdict.hpp"
 
 #include "base/joined.hpp"
 #include "base/whole_file.hpp"
@@ -35,6 +34,7 @@
 #include "ros_io/conversions.hpp"
 #include "ros_io/topics.hpp"
 #include "tracking/common_friction.hpp"
+#include "tracking/verdict.hpp"
 
 extern char** environ;
 
@@ -115,7 +115,7 @@ void makePage(const std::string& directory)
   }
 }
 
-void print(const ComparisonRecord& record, const RecordingComparison& comparison)
+void print(const ComparisonRecord& record, const JointEvidence& evidence)
 {
   const Verdict& verdict = record.verdict;
   for (const ContentLine& line : record.contents.lines)
@@ -129,10 +129,10 @@ void print(const ComparisonRecord& record, const RecordingComparison& comparison
         finding.title + ": " + (finding.judged ? levelName(finding.level) : "not judged") + ". " + finding.text, 0);
   }
   std::cout << '\n';
-  printReport(false, { { "", "rows", comparison.reach().rows },
+  printReport(false, { { "", "rows", evidence.reach().rows },
                        { "", "duration", record.found.duration, "s" },
-                       { "", "current, rms", comparison.currentRms(), "A" },
-                       { "", "measured less predicted current, rms", comparison.residualRms(), "A" } });
+                       { "", "current, rms", evidence.currentRms(), "A" },
+                       { "", "measured less predicted current, rms", evidence.residualRms(), "A" } });
 }
 
 /// A joint that is compared, its source, and the directory of its report.
@@ -140,7 +140,7 @@ class ComparedJoint
 {
 public:
   /// `reference`: directory of an earlier report; empty: none. `is_identified`: the parameters are of this very joint.
-  ComparedJoint(const Parameters& parameters, MotionSource source, const std::string& directory,
+  ComparedJoint(const Parameters& parameters, MotionSource source, LoadOrigin load, const std::string& directory,
                 const std::string& reference, bool is_identified)
     : parameters_(parameters)
     , source_(std::move(source))
@@ -148,7 +148,7 @@ public:
     , sound_(reference.empty() ? SoundJoint() : readSoundJoint(reference, parameters))
     , is_identified_(is_identified)
     , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
-    , comparison_(parameters, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
+    , comparison_(parameters, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
   {
     source_.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
   }
@@ -156,16 +156,15 @@ public:
   void update(const MotionSample& sample) { comparison_.update(sample); }
 
   const MotionSource& source() const { return source_; }
-  const RecordingComparison& comparison() const { return comparison_; }
+  const JointEvidence& evidence() const { return comparison_.evidence(); }
 
-  /// Friction as a multiple of the reference's; none: the recording does not show it.
-  std::optional<double> frictionRatio(LoadOrigin load, const std::string& misfit) const
+  MeasuredFriction friction(const std::string& misfit) const
   {
-    return hjt::frictionRatio(comparison_, parameters_, { sound_.own, is_identified_, load, 0.0, 1.0, misfit });
+    return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparisonRecord write(const MotionFindings& found, LoadOrigin load, double arm_friction, const std::string& misfit,
+  ComparisonRecord write(const MotionFindings& found, double arm_friction, const std::string& misfit,
                          const std::string& twin_topic)
   {
     windows_.close();
@@ -174,11 +173,12 @@ public:
     record.joint = source_.joint;
     record.made_with = MADE_WITH;
     record.found = found;
-    record.contents = readContents(source_, twin_topic, found, comparison_.reach().motor_rows,
-                                   comparison_.reach().temperature_rows, found.has_load);
+    const MotionReach& reach = evidence().reach();
+    record.contents =
+        readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
     record.verdict =
-        judge(comparison_, parameters_, { sound_.own, is_identified_, load, found.duration, arm_friction, misfit });
+        judge(evidence(), parameters_, { sound_.own, is_identified_, found.duration, arm_friction, misfit });
     writeComparison(directory_, comparison_, parameters_, record);
     return record;
   }
@@ -197,15 +197,16 @@ int compareJoint(const CompareOptions& options)
 {
   const Parameters parameters = loadParameters(options);
   prepareDirectory(options, options.report, COMPARISON_FILE);
-  ComparedJoint joint(parameters, motionSource(options), options.report, options.reference, false);
+  const MotionSource source = motionSource(options);
+  ComparedJoint joint(parameters, source, recordsLoad(source) ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
+                      options.report, options.reference, false);
   const MotionFindings found =
-      visitMotion(joint.source(), joint.comparison().twin(), [&](const MotionSample& sample) { joint.update(sample); });
+      visitMotion(joint.source(), joint.evidence().twin(), [&](const MotionSample& sample) { joint.update(sample); });
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const ComparisonRecord record = joint.write(found, found.has_load ? LoadOrigin::RECORDED : LoadOrigin::CONFIGURED,
-                                              1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
+  const ComparisonRecord record = joint.write(found, 1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
@@ -214,7 +215,7 @@ int compareJoint(const CompareOptions& options)
   }
   else
   {
-    print(record, joint.comparison());
+    print(record, joint.evidence());
     std::cout << "written: " << (fs::path(options.report) / PAGE).string() << '\n';
   }
   return EXIT_DONE;
@@ -286,6 +287,7 @@ int compareArm(const CompareOptions& options)
 {
   const ArmRecording recording(options);
   prepareDirectory(options, options.report, ARM_FILE);
+  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
   std::vector<std::unique_ptr<ComparedJoint>> joints;
   std::vector<MotionDifferentiator> differentiators(recording.joints().size());
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
@@ -294,7 +296,7 @@ int compareArm(const CompareOptions& options)
     const std::string directory = (fs::path(options.report) / name).string();
     prepareDirectory(options, directory, COMPARISON_FILE);
     joints.push_back(std::make_unique<ComparedJoint>(
-        recording.parameters(i), recording.source(i), directory,
+        recording.parameters(i), recording.source(i), load, directory,
         options.reference.empty() ? std::string() : (fs::path(options.reference) / name).string(),
         !options.identified.empty()));
   }
@@ -321,16 +323,12 @@ int compareArm(const CompareOptions& options)
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   warnOfStamps(found);
-  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED : LoadOrigin::ARM;
   const std::vector<std::string> misfits = fit.whyNotJudged();
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
-    const RecordingComparison& comparison = joints[i]->comparison();
-    frictions.push_back({ joints[i]->frictionRatio(load, sentence(misfits[i])), comparison.temperature(),
-                          comparison.reach().temperature_rows > 0,
-                          [&comparison](double temperature) { return comparison.twinFrictionAt(temperature); } });
+    frictions.push_back(joints[i]->friction(sentence(misfits[i])));
   }
   const Parameters& parameters = recording.parameters(0);
   const ArmFriction arm = commonFriction(frictions, parameters.comparison.repeat_tolerance);
@@ -341,17 +339,16 @@ int compareArm(const CompareOptions& options)
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     const std::string& name = recording.joints()[i].short_name;
-    const RecordingComparison& comparison = joints[i]->comparison();
-    ComparisonRecord record = joints[i]->write(found, load, arm.factors[i], sentence(misfits[i]),
+    const JointEvidence& evidence = joints[i]->evidence();
+    ComparisonRecord record = joints[i]->write(found, arm.factors[i], sentence(misfits[i]),
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
     level = std::max(level, record.verdict.level);
     judged = judged || record.verdict.judged;
-    temperatures += comparison.temperature();
-    const std::string contact = contactText(comparison.contact().largest());
+    temperatures += evidence.temperature();
     const std::string why_not =
-        misfits[i].empty() && record.verdict.findings.front().text == sentence(contact) ? contact : misfits[i];
-    lines.push_back({ name, std::move(record.verdict), why_not, frictions[i].ratio, comparison.temperature(),
-                      temperatureSource(comparison), comparison.currentRms(), comparison.residualRms() });
+        misfits[i].empty() && evidence.isTouched() ? contactText(evidence.contact().last()) : misfits[i];
+    lines.push_back({ name, std::move(record.verdict), why_not, frictions[i].ratio, evidence.temperature(),
+                      temperatureSource(evidence), evidence.currentRms(), evidence.residualRms() });
   }
   const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
   const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==

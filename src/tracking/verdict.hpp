@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/compare/recording_comparison.hpp"
+#include "tracking/common_friction.hpp"
+#include "tracking/joint_evidence.hpp"
 
 namespace hjt
 {
@@ -18,24 +19,15 @@ struct OwnReference
   double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< judged at; NaN: not known [degC]
 };
 
-/// Where the load of the samples comes from.
-enum class LoadOrigin
-{
-  CONFIGURED,  ///< weight and inertia of the joint's parameters
-  RECORDED,
-  ARM  ///< links and payload, by rigid-body dynamics
-};
-
 /// What is known of a joint besides its samples.
 struct JointContext
 {
   OwnReference own;
   bool is_identified{};  ///< the twin's friction is that of this joint
-  LoadOrigin load{};
-  double duration{};  ///< of the recording [s]
+  double duration{};     ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  std::string misfit;  ///< why the recording says nothing of this joint; empty: it fits
+  std::string misfit;  ///< why the rows say nothing of this joint; empty: it fits
 };
 
 /// One thing that was judged, in words.
@@ -53,7 +45,7 @@ std::string sentence(std::string clause);
 
 constexpr const char* NOT_JUDGED = "NOT JUDGED";
 
-/// Findings of a recording.
+/// Findings of a measured joint.
 struct Verdict
 {
   HealthLevel level{};
@@ -70,15 +62,17 @@ inline const char* verdictName(const Verdict& verdict)
   return verdict.judged ? levelName(verdict.level) : NOT_JUDGED;
 }
 
-Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context);
+/// Live and offline alike.
+Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
 
 /// Where the temperature that a joint was judged at is from, for people and documents.
-inline const char* temperatureSource(const RecordingComparison& comparison)
+inline const char* temperatureSource(const JointEvidence& evidence)
 {
-  return comparison.isTemperatureReceived() ? "received" : "configured";
+  return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// Friction as a multiple of the joint's own when sound, else of the twin's; none: the recording does not show it.
-std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
-                                    const JointContext& context);
+/// What the rows show of the friction, as a multiple of the joint's own when sound, else of the twin's. The evidence
+/// must outlive it.
+MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
+                                  const JointContext& context);
 }  // namespace hjt

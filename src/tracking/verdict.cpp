@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/compare/verdict.hpp"
+#include "tracking/verdict.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -104,8 +104,7 @@ const char* wrongLoad(LoadOrigin load)
 }
 
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
-std::string whyItDoesNotFit(const RecordingComparison& comparison, const Parameters& parameters,
-                            const JointContext& context)
+std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
 {
   if (!context.misfit.empty())
   {
@@ -116,28 +115,29 @@ std::string whyItDoesNotFit(const RecordingComparison& comparison, const Paramet
   constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
-  const double measured = comparison.currentRms();
-  const double predicted = comparison.predictedRms();
+  const double measured = evidence.currentRms();
+  const double predicted = evidence.predictedRms();
   if (predicted > noticeable && measured < MIN_RATIO * predicted)
   {
     return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
            rounded(predicted, 2) + " A: it is not the motor's current.";
   }
-  if (measured > noticeable && measured > MAX_RATIO * predicted && comparison.residualSpread() > SPREAD * predicted)
+  if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted)
   {
     return "The recorded effort is " + rounded(measured / predicted, 1) +
            " times the current that this motion takes: it is expected in A, not in N.m; or "
            "telemetry.torque_per_current is wrong.";
   }
-  const double unexplained = comparison.unexplainedRms();
+  const double unexplained = evidence.unexplainedRms();
   if (unexplained > noticeable && unexplained > MAX_UNEXPLAINED * measured)
   {
     return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
-           " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(context.load);
+           " A are neither predicted nor explained by another friction or a constant: " +
+           wrongLoad(evidence.loadOrigin());
   }
-  if (context.load != LoadOrigin::CONFIGURED && comparison.contact().hasSeen())
+  if (evidence.isTouched())
   {
-    return sentence(contactText(comparison.contact().largest()));
+    return sentence(contactText(evidence.contact().last()));
   }
   return {};
 }
@@ -180,18 +180,18 @@ std::string whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin l
 }
 
 /// Friction as a multiple of the joint's own when sound; NaN: that is not known.
-double frictionToOwn(const RecordingComparison& comparison, const JointContext& context)
+double frictionToOwn(const JointEvidence& evidence, const JointContext& context)
 {
-  const FrictionPoints& friction = comparison.friction();
+  const FrictionPoints& friction = evidence.friction();
   return context.own.friction.empty() && context.is_identified ? friction.ratio() :
                                                                  friction.ratioTo(context.own.friction);
 }
 
-Finding judgeFriction(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
 {
   Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
-  const std::vector<FrictionPoint> points = comparison.friction().points();
-  finding.text = whyNoFriction(points, context.load);
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  finding.text = whyNoFriction(points, evidence.loadOrigin());
   if (!finding.text.empty())
   {
     return finding;
@@ -203,11 +203,11 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
                    "configured ones.";
     return finding;
   }
-  judgeRatio({ "Friction", comparison.friction().ratio(), frictionToOwn(comparison, context), context.arm_friction,
+  judgeRatio({ "Friction", evidence.friction().ratio(), frictionToOwn(evidence, context), context.arm_friction,
                parameters.comparison.friction_tolerance, ScalarIndicator::RUNNING_TORQUE, +1.0,
                "grease at another temperature, another preload, a wrong gain" },
              parameters, finding);
-  finding.text += " At " + rounded(comparison.temperature(), 0) + " degC (" + temperatureSource(comparison) + ")";
+  finding.text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   finding.text += std::isfinite(context.own.temperature) ?
                       ", the reference at " + rounded(context.own.temperature, 0) +
                           " degC; the twin's law of friction makes up for the difference." :
@@ -217,25 +217,25 @@ Finding judgeFriction(const RecordingComparison& comparison, const Parameters& p
   return finding;
 }
 
-Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& parameters, const OwnReference& own)
+Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own)
 {
   Finding finding{ HealthLevel::OK, false, "Torsion", "", {} };
-  if (comparison.torsion().rows() == 0)
+  if (evidence.torsion().rows() == 0)
   {
     finding.text = "One angle a joint: torsion needs encoders at the motor and at the output.";
     return finding;
   }
-  const double compliance = comparison.torsion().compliance();
+  const double compliance = evidence.torsion().compliance();
   if (!std::isfinite(compliance))
   {
     finding.text = "The load hardly varies, so the stiffness of the drive cannot be measured.";
     return finding;
   }
   // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
-  const double twin = comparison.torsion().twinAmplitude();
-  const double turn = comparison.torsion().turnAmplitude();
+  const double twin = evidence.torsion().twinAmplitude();
+  const double turn = evidence.torsion().turnAmplitude();
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
-                               parameters.sensors.motor_eccentricity / comparison.ratio() / std::sqrt(2.0)) /
+                               parameters.sensors.motor_eccentricity / evidence.ratio() / std::sqrt(2.0)) /
                               twin;
   judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
                parameters.comparison.compliance_tolerance + eccentricity, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0,
@@ -258,23 +258,23 @@ Finding judgeTorsion(const RecordingComparison& comparison, const Parameters& pa
   return finding;
 }
 
-Finding judgeSignals(const RecordingComparison& comparison, const JointContext& context)
+Finding judgeSignals(const JointEvidence& evidence, const JointContext& context)
 {
   Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
-  const std::string reference = comparison.baselineGiven() ? "the reference given" :
-                                                             "the reference learned from the first windows of this "
-                                                             "recording";
-  if (!comparison.worst())
+  const std::string reference = evidence.baselineGiven() ? "the reference given" :
+                                                           "the reference learned from the first windows of this "
+                                                           "recording";
+  if (!evidence.worst())
   {
-    finding.text = comparison.baselineGiven() ?
+    finding.text = evidence.baselineGiven() ?
                        "No window of the recording is at an operating point that the reference knows." :
                        "No reference was given, and the recording is too short to learn one (" +
-                           std::to_string(comparison.assessor().baseline().windowsNeeded()) +
+                           std::to_string(evidence.assessor().baseline().windowsNeeded()) +
                            " windows at one operating point).";
     return finding;
   }
-  const Assessment& assessment = comparison.worst()->assessment;
-  if (assessment.level != HealthLevel::OK && comparison.baselineGiven() && context.arm_friction != 1.0)
+  const Assessment& assessment = evidence.worst()->assessment;
+  if (assessment.level != HealthLevel::OK && evidence.baselineGiven() && context.arm_friction != 1.0)
   {
     finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
                    " times that of the reference: its signals are of another temperature or gain.";
@@ -282,19 +282,19 @@ Finding judgeSignals(const RecordingComparison& comparison, const JointContext& 
   }
   finding.judged = true;
   finding.level = assessment.level;
-  const std::string windows = std::to_string(comparison.assessedWindows()) + " windows compared with " + reference;
+  const std::string windows = std::to_string(evidence.assessedWindows()) + " windows compared with " + reference;
   if (assessment.level == HealthLevel::OK)
   {
     finding.text = windows + ": nothing out of the ordinary.";
     return finding;
   }
-  const bool known = comparison.cause() != Cause::NONE;
+  const bool known = evidence.cause() != Cause::NONE;
   if (known)
   {
-    finding.causes = { comparison.cause() };
+    finding.causes = { evidence.cause() };
   }
-  finding.text = "From " + rounded(comparison.alarmTime(), 1) + " s on the signals depart from " + reference +
-                 (known ? std::string(". Most likely cause: ") + causeName(comparison.cause()) : ", cause not known") +
+  finding.text = "From " + rounded(evidence.alarmTime(), 1) + " s on the signals depart from " + reference +
+                 (known ? std::string(". Most likely cause: ") + causeName(evidence.cause()) : ", cause not known") +
                  ". Strongest: ";
   for (std::size_t i = 0; i < assessment.evidence_count; ++i)
   {
@@ -310,22 +310,22 @@ Finding judgeSignals(const RecordingComparison& comparison, const JointContext& 
 }
 
 /// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
-double highestOrder(const RecordingComparison& comparison, double duration)
+double highestOrder(const JointEvidence& evidence, double duration)
 {
   constexpr double RESOLVED = 0.4;  // of the rows' rate; half of it is the limit
   double fastest = 0.0;
-  for (const FrictionPoint& point : comparison.friction().points())
+  for (const FrictionPoint& point : evidence.friction().points())
   {
     fastest = std::max(fastest, std::abs(point.speed));
   }
-  const double turns = fastest * comparison.ratio() * duration / TWO_PI;
-  return turns > 0.0 ? RESOLVED * static_cast<double>(comparison.reach().rows) / turns : 0.0;
+  const double turns = fastest * evidence.ratio() * duration / TWO_PI;
+  return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
-std::vector<std::string> cannotShow(const RecordingComparison& comparison, const Parameters& parameters,
+std::vector<std::string> cannotShow(const JointEvidence& evidence, const Parameters& parameters,
                                     const JointContext& context)
 {
-  const MotionReach& reach = comparison.reach();
+  const MotionReach& reach = evidence.reach();
   std::vector<std::string> missing;
   if (reach.motor_rows == 0)
   {
@@ -333,31 +333,37 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
         "Torsion, stiffness, lost motion, kinematic error, ratcheting: the recording has one angle a "
         "joint; the motor's is needed too.");
   }
-  if (context.load == LoadOrigin::ARM)
+  if (evidence.loadOrigin() == LoadOrigin::ARM)
   {
     missing.emplace_back(
         "Whether the payload is as configured, and what presses on the arm all the time: no torque was recorded; both "
         "look like current.");
   }
-  if (context.load == LoadOrigin::CONFIGURED)
+  if (evidence.loadOrigin() == LoadOrigin::CONFIGURED)
   {
     missing.emplace_back(
         "Whether the load is as configured: no load was recorded, so weight and inertia of the "
         "configuration are taken; a payload left out looks like current.");
   }
-  if (!comparison.isTemperatureReceived())
+  if (!evidence.isTemperatureReceived())
   {
     missing.emplace_back(
         "Temperature: none is recorded; grease at another one changes the friction by some per cent a "
         "kelvin.");
   }
-  if (!comparison.baselineGiven())
+  if (!evidence.baselineGiven())
   {
     missing.emplace_back(
         "A fault that was there from the first window, unless it is larger than what joints of one kind "
         "differ by: no reference of this joint was given.");
   }
-  const std::vector<FrictionPoint> points = comparison.friction().points();
+  if (reach.touched_rows > 0)
+  {
+    missing.emplace_back("What the joint did while something touched the arm, and shortly after: " +
+                         std::to_string(reach.touched_rows) + " of " + std::to_string(reach.rows) +
+                         " rows are left out. The strongest: " + contactText(evidence.contact().largest()) + ".");
+  }
+  const std::vector<FrictionPoint> points = evidence.friction().points();
   if (!points.empty() && !movesBothWays(points))
   {
     missing.emplace_back("Friction apart from a load that is wrong: the joint moves one way only.");
@@ -371,7 +377,7 @@ std::vector<std::string> cannotShow(const RecordingComparison& comparison, const
     missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
                          rounded(reach.most_load - reach.least_load, 1) + " N.m.");
   }
-  const double order = highestOrder(comparison, context.duration);
+  const double order = highestOrder(evidence, context.duration);
   if (order > 0.0)
   {
     missing.emplace_back(
@@ -412,9 +418,9 @@ std::string reasonOf(const Verdict& verdict)
   {
     return "Not as in a sound joint: " + joined(departing, "; ") + ".";
   }
-  return sound.empty() ? "This recording does not show whether the joint is sound. " + verdict.findings.front().text :
+  return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.findings.front().text :
                          "As in a sound joint: " + joined(sound) + "." +
-                             (open.empty() ? "" : " This recording does not show: " + joined(open) + ".");
+                             (open.empty() ? "" : " The motion does not show: " + joined(open) + ".");
 }
 }  // namespace
 
@@ -428,24 +434,36 @@ std::string sentence(std::string clause)
   return clause;
 }
 
-std::optional<double> frictionRatio(const RecordingComparison& comparison, const Parameters& parameters,
+namespace
+{
+/// Friction as a multiple of the joint's own when sound, else of the twin's; none: the rows do not show it.
+std::optional<double> frictionRatio(const JointEvidence& evidence, const Parameters& parameters,
                                     const JointContext& context)
 {
-  if (!whyItDoesNotFit(comparison, parameters, context).empty() ||
-      !whyNoFriction(comparison.friction().points(), context.load).empty())
+  if (!whyItDoesNotFit(evidence, parameters, context).empty() ||
+      !whyNoFriction(evidence.friction().points(), evidence.loadOrigin()).empty())
   {
     return std::nullopt;
   }
-  const double to_own = frictionToOwn(comparison, context);
-  return std::isfinite(to_own) ? to_own : comparison.friction().ratio();
+  const double to_own = frictionToOwn(evidence, context);
+  return std::isfinite(to_own) ? to_own : evidence.friction().ratio();
 }
 
-Verdict judge(const RecordingComparison& comparison, const Parameters& parameters, const JointContext& context)
+}  // namespace
+
+MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
+                                  const JointContext& context)
+{
+  return { frictionRatio(evidence, parameters, context), evidence.temperature(), evidence.reach().temperature_rows > 0,
+           [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); } };
+}
+
+Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
 {
   Verdict verdict;
-  verdict.findings = { judgeFriction(comparison, parameters, context),
-                       judgeTorsion(comparison, parameters, context.own), judgeSignals(comparison, context) };
-  const std::string why_not = whyItDoesNotFit(comparison, parameters, context);
+  verdict.findings = { judgeFriction(evidence, parameters, context), judgeTorsion(evidence, parameters, context.own),
+                       judgeSignals(evidence, context) };
+  const std::string why_not = whyItDoesNotFit(evidence, parameters, context);
   for (Finding& finding : verdict.findings)
   {
     if (!why_not.empty())
@@ -456,8 +474,8 @@ Verdict judge(const RecordingComparison& comparison, const Parameters& parameter
     verdict.judged = verdict.judged || finding.judged;
   }
   verdict.reason = reasonOf(verdict);
-  verdict.highest_order = highestOrder(comparison, context.duration);
-  verdict.cannot_show = cannotShow(comparison, parameters, context);
+  verdict.highest_order = highestOrder(evidence, context.duration);
+  verdict.cannot_show = cannotShow(evidence, parameters, context);
   return verdict;
 }
 }  // namespace hjt

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/running_regression.hpp"
-#include "statics/torsion_curve.hpp"
 
 namespace hjt
 {
@@ -22,25 +22,34 @@ struct TorsionMean
   double backward{};  ///< [rad]
 };
 
-/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads. Memory is limited by
-/// the range of torques.
+/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads, for torques up to
+/// output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
 class TorsionPoints
 {
 public:
-  /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit TorsionPoints(const Parameters& parameters)
-    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), course_(parameters), regression_(3, 1)
+    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), regression_(3, 1)
   {
+    bins_.fill(std::vector<Bin>(2 * static_cast<std::size_t>(STEPS) + 1));
   }
 
-  /// The load of the next row, judged or not: the cup's friction remembers it [N.m].
-  void follow(double torque) { twin_ = course_.to(torque); }
-
-  /// Of the row that was followed last. `torque` at the output [N.m], `torsion` motor angle over ratio less joint
-  /// angle, from any zero [rad], `position` of the joint [rad], `speed` [rad/s].
-  void add(double torque, double torsion, double position, double speed)
+  void reset() noexcept
   {
-    const double twin = twin_;
+    regression_.reset();
+    for (std::vector<Bin>& way : bins_)
+    {
+      std::fill(way.begin(), way.end(), Bin());
+    }
+    rows_ = 0;
+    twin_sum_ = twin_squares_ = 0.0;
+    turn_sum_.setZero();
+    turn_squares_.setZero();
+  }
+
+  /// `torque` at the output [N.m], `twin` the torsion of the twin under it [rad], `torsion` motor angle over ratio less
+  /// joint angle, from any zero [rad], `position` of the joint [rad], `speed` [rad/s].
+  void add(double torque, double twin, double torsion, double position, double speed) noexcept
+  {
     const double way = speed < 0.0 ? -1.0 : 1.0;
     regression_.add(Eigen::Vector3d(1.0, way, twin), Eigen::Matrix<double, 1, 1>(torsion));
     ++rows_;
@@ -49,7 +58,7 @@ public:
     const Eigen::Vector2d turn(std::cos(position), std::sin(position));
     turn_sum_ += turn;
     turn_squares_ += turn * turn.transpose();
-    Bin& bin = bins_[speed < 0.0 ? 1 : 0][static_cast<int>(std::lround(torque / step_))];
+    Bin& bin = bins_[speed < 0.0 ? 1 : 0][static_cast<std::size_t>(std::lround(torque / step_ + STEPS))];
     bin.sum += torsion;
     bin.rows += 1.0;
   }
@@ -65,19 +74,14 @@ public:
       return means;
     }
     const double zero = fitted().coefficient(0, 0);
-    std::map<int, TorsionMean> by_torque;
-    for (const int way : { 0, 1 })
+    const auto mean_of = [&](const Bin& bin) { return bin.rows > 0.0 ? bin.sum / bin.rows - zero : std::nan(""); };
+    for (std::size_t step = 0; step < bins_[0].size(); ++step)
     {
-      for (const auto& [step, bin] : bins_[way])
+      if (bins_[0][step].rows + bins_[1][step].rows > 0.0)
       {
-        TorsionMean& mean =
-            by_torque.try_emplace(step, TorsionMean{ step * step_, std::nan(""), std::nan("") }).first->second;
-        (way == 0 ? mean.forward : mean.backward) = bin.sum / bin.rows - zero;
+        means.push_back(
+            { (static_cast<double>(step) - STEPS) * step_, mean_of(bins_[0][step]), mean_of(bins_[1][step]) });
       }
-    }
-    for (const auto& [step, mean] : by_torque)
-    {
-      means.push_back(mean);
     }
     return means;
   }
@@ -122,11 +126,9 @@ private:
     return regression;
   }
 
-  double step_;  // of the torque [N.m]
-  TorsionCourse course_;
-  double twin_{};                 // torsion under the load followed last [rad]
-  RunningRegression regression_;  // of the torsion over: one, way of turning, the twin's torsion
-  std::map<int, Bin> bins_[2];
+  double step_;                           // of the torque [N.m]
+  RunningRegression regression_;          // of the torsion over: one, way of turning, the twin's torsion
+  std::array<std::vector<Bin>, 2> bins_;  // by way of turning: torques from the least to the largest
   std::uint64_t rows_{};
   double twin_sum_{};
   double twin_squares_{};

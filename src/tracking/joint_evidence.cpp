@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/joint_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "gear/ratio.hpp"
+#include "tracking/plausible.hpp"
+
+namespace hjt
+{
+JointEvidence::Sums::Sums(const Parameters& parameters)
+  : torsion(parameters), loads(static_cast<std::size_t>(LOAD_STEPS) + 2)
+{
+}
+
+void JointEvidence::Sums::reset() noexcept
+{
+  reach = MotionReach();
+  friction = FrictionPoints();
+  torsion.reset();
+  std::fill(loads.begin(), loads.end(), std::uint64_t{ 0 });
+  current_squares = predicted_squares = temperatures = alarm_time = 0.0;
+  products.setZero();
+  assessed = 0;
+  worst.reset();
+  votes.fill(0);
+}
+
+JointEvidence::JointEvidence(const Parameters& parameters, LoadOrigin load)
+  : parameters_(parameters)
+  , load_(load)
+  , ratio_(nominalRatio(parameters.gear))
+  , load_step_(std::max(parameters.output.load_torque_limit, 1.0) / LOAD_STEPS)
+  , twin_(parameters)
+  , course_(parameters)
+  , contact_(parameters.output.load_torque_limit)
+  , health_(parameters)
+  , now_(parameters)
+{
+}
+
+void JointEvidence::setReference(std::vector<ReferenceBin> bins)
+{
+  baseline_given_ = !bins.empty();
+  if (baseline_given_)
+  {
+    health_.setReference(std::move(bins));
+  }
+}
+
+void JointEvidence::forget() noexcept
+{
+  const double end = now_.reach.end;
+  now_.reset();
+  now_.reach.begin = now_.reach.end = end;
+}
+
+void JointEvidence::reset() noexcept
+{
+  now_.reset();
+  course_.reset();
+  contact_.reset();
+  health_.reset();
+}
+
+JointEvidence::Row JointEvidence::update(const MotionSample& sample, bool fits) noexcept
+{
+  if (!isPossible(sample, parameters_))
+  {
+    ++now_.reach.impossible;
+    return Row::IMPOSSIBLE;
+  }
+  predicted_ = twin_.step(sample);
+  const double gain = parameters_.telemetry.torque_per_current;
+  const double residual = sample.current - predicted_.current;
+  const bool was_touched = isTouched();
+  contact_.update(sample, gain * residual, predicted_.friction_torque,
+                  predicted_.band > parameters_.telemetry.current_deviation);
+  addToReach(sample);
+  if (std::isfinite(sample.motor_angle))
+  {
+    twin_torsion_ = course_.to(sample.load);
+  }
+  if (isTouched())
+  {
+    ++now_.reach.touched_rows;
+    if (!was_touched)
+    {
+      health_.reset();
+    }
+    return Row::TOUCHED;
+  }
+  addRow(sample, residual);
+  return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
+}
+
+void JointEvidence::addToReach(const MotionSample& sample) noexcept
+{
+  MotionReach& reach = now_.reach;
+  if (reach.rows++ == 0)
+  {
+    reach.begin = sample.time;
+    reach.least_load = reach.most_load = sample.load;
+    reach.least_angle = reach.most_angle = sample.position;
+  }
+  reach.end = sample.time;
+  reach.least_load = std::min(reach.least_load, sample.load);
+  reach.most_load = std::max(reach.most_load, sample.load);
+  reach.least_angle = std::min(reach.least_angle, sample.position);
+  reach.most_angle = std::max(reach.most_angle, sample.position);
+  reach.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
+  reach.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
+}
+
+void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
+{
+  const double gain = parameters_.telemetry.torque_per_current;
+  const double friction = predicted_.friction_torque;
+  now_.current_squares += sample.current * sample.current;
+  now_.predicted_squares += predicted_.current * predicted_.current;
+  const Eigen::Vector3d terms(1.0, friction / gain, residual);
+  now_.products += terms * terms.transpose();
+  ++now_.loads[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
+  now_.temperatures += sample.temperatureOr(parameters_.input.temperature);
+  if (std::abs(sample.velocity) <= MOVING)
+  {
+    return;
+  }
+  if (tellsFriction(predicted_))
+  {
+    const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
+    now_.friction.add(sample.velocity, way * (friction + gain * residual), way * friction);
+  }
+  if (std::isfinite(sample.motor_angle))
+  {
+    now_.torsion.add(sample.load, twin_torsion_, sample.motor_angle / ratio_ - sample.position, sample.position,
+                     sample.velocity);
+  }
+}
+
+bool JointEvidence::tellsFriction(const MotionPrediction& predicted) const noexcept
+{
+  constexpr double MAX_PRESLIDING = 0.05;  // share of the friction not mobilised [-]
+  return parameters_.telemetry.torque_per_current * predicted.band <
+         MAX_PRESLIDING * std::abs(predicted.friction_torque);
+}
+
+bool JointEvidence::watchSignals(const MotionSample& sample) noexcept
+{
+  if (!health_.update(sample))
+  {
+    return false;
+  }
+  const Assessment& assessment = health_.assessor().assessment();
+  const Deviations& deviations = health_.assessor().deviations();
+  const bool compared = std::any_of(deviations.begin(), deviations.end(),
+                                    [](const Deviation& deviation) { return std::isfinite(deviation.score); });
+  if (assessment.state != AssessmentState::ASSESSED || !compared)
+  {
+    return true;
+  }
+  ++now_.assessed;
+  const HealthLevel before = now_.worst ? now_.worst->assessment.level : HealthLevel::OK;
+  if (assessment.level != HealthLevel::OK)
+  {
+    ++now_.votes[static_cast<std::size_t>(assessment.cause)];
+    if (before == HealthLevel::OK)
+    {
+      now_.alarm_time = sample.time;
+    }
+  }
+  if (assessment.level >= before)
+  {
+    now_.worst = JudgedWindow{ health_.indicators(), deviations, assessment };
+  }
+  return true;
+}
+
+double JointEvidence::counted() const
+{
+  return std::max(static_cast<double>(now_.reach.rows - now_.reach.touched_rows), 1.0);
+}
+
+Cause JointEvidence::cause() const
+{
+  return static_cast<Cause>(std::max_element(now_.votes.begin(), now_.votes.end()) - now_.votes.begin());
+}
+
+double JointEvidence::currentRms() const
+{
+  return std::sqrt(now_.current_squares / counted());
+}
+
+double JointEvidence::predictedRms() const
+{
+  return std::sqrt(now_.predicted_squares / counted());
+}
+
+double JointEvidence::residualRms() const
+{
+  return std::sqrt(now_.products(2, 2) / counted());
+}
+
+double JointEvidence::residualSpread() const
+{
+  const double rows = counted();
+  const double mean = now_.products(0, 2) / rows;
+  return std::sqrt(std::max(now_.products(2, 2) / rows - mean * mean, 0.0));
+}
+
+double JointEvidence::unexplainedRms() const
+{
+  const Eigen::Vector2d with = now_.products.topRightCorner<2, 1>();
+  const Eigen::Vector2d best = now_.products.topLeftCorner<2, 2>().ldlt().solve(with);
+  const double rows = counted();
+  return std::sqrt(std::max(now_.products(2, 2) - best.dot(with), 0.0) / rows);
+}
+
+double JointEvidence::loadQuantile(double share) const
+{
+  const auto enough = static_cast<std::uint64_t>(share * counted());
+  std::uint64_t rows = 0;
+  std::size_t step = 0;
+  while (step + 1 < now_.loads.size() && (rows += now_.loads[step]) <= enough)
+  {
+    ++step;
+  }
+  return load_step_ * (static_cast<double>(step) + 0.5);
+}
+
+double JointEvidence::temperature() const
+{
+  return now_.reach.rows == now_.reach.touched_rows ? parameters_.input.temperature : now_.temperatures / counted();
+}
+
+double JointEvidence::twinFrictionAt(double temperature) const
+{
+  double sum = 0.0;
+  double rows = 0.0;
+  for (const FrictionPoint& point : now_.friction.points())
+  {
+    const auto weight = static_cast<double>(point.rows);
+    sum += weight * twin_.frictionAt(point.speed, typicalLoad(), temperature);
+    rows += weight;
+  }
+  return sum / std::max(rows, 1.0);
+}
+
+double JointEvidence::typicalLoad() const
+{
+  return loadQuantile(0.5);
+}
+
+double JointEvidence::largestLoad() const
+{
+  return loadQuantile(0.999);
+}
+}  // namespace hjt
