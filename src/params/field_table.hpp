@@ -317,8 +317,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
         ofOthers("K1 is the stiffness at joint torques below this"));
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
-        ofOthers("lost motion is evaluated at joint torques below this; also the change of torque that counts as a "
-                 "reversal"));
+        ofOthers("change of torque that passes from one branch of the torsion loop to the other; torsion with more "
+                 "torque of inertia than this is left out"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("windows at one operating point the healthy reference is learned from"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
