@@ -18,6 +18,17 @@
 #ifdef HJT_COMPLETE_TOOL
 namespace
 {
+/// What joint_twin_complete says to --help.
+constexpr char HELP[] =
+#include "joint_twin_help.inc"
+    ;
+
+bool asksForHelp(int argc, char** argv)
+{
+  const std::string first = argc == 2 ? argv[1] : "";
+  return first == "--help" || first == "-h";
+}
+
 /// The tool with every command, beside this one, takes the place of the process.
 int runComplete(char** argv)
 {
@@ -40,6 +51,11 @@ int main(int argc, char** argv)
   try
   {
 #ifdef HJT_COMPLETE_TOOL
+    if (asksForHelp(argc, argv))
+    {
+      std::cout << HELP;
+      return hjt::EXIT_DONE;
+    }
     if (!line.knows(argc, argv))
     {
       return runComplete(argv);
