@@ -16,13 +16,13 @@
 #include "apps/common/interrupt.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
+namespace hjt
+{
+const char* toolHelp();  ///< what joint_twin_complete says to --help; by cmake/tool_help.cmake
+}
+
 namespace
 {
-/// What joint_twin_complete says to --help.
-constexpr char HELP[] =
-#include "joint_twin_help.inc"
-    ;
-
 bool asksForHelp(int argc, char** argv)
 {
   const std::string first = argc == 2 ? argv[1] : "";
@@ -53,7 +53,7 @@ int main(int argc, char** argv)
 #ifdef HJT_COMPLETE_TOOL
     if (asksForHelp(argc, argv))
     {
-      std::cout << HELP;
+      std::cout << hjt::toolHelp();
       return hjt::EXIT_DONE;
     }
     if (!line.knows(argc, argv))
