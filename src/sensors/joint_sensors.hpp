@@ -54,12 +54,20 @@ public:
   {
     Sensed now{ motor_angle + lines(motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines),
                 output_angle + lines(output_angle, parameters_.output_eccentricity, parameters_.output_lines),
-                motor_torque, step };
+                motor_torque };
     if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
     {
       const std::array<double, 2> normals = noise_.normals(ENCODERS, step);
       now.motor_angle += parameters_.motor_noise * normals[0];
       now.output_angle += parameters_.output_noise * normals[1];
+    }
+    if (parameters_.torque_noise > 0.0)
+    {
+      now.motor_torque += parameters_.torque_noise * noise_.normals(TORQUE, step)[0];
+    }
+    if (parameters_.torque_resolution > 0.0)
+    {
+      now.motor_torque = parameters_.torque_resolution * std::round(now.motor_torque / parameters_.torque_resolution);
     }
     if (!filled_)
     {
@@ -86,20 +94,7 @@ public:
     return readings;
   }
 
-  /// Noise and resolution come with the reading: most steps are not read [N.m].
-  double motorTorque() const noexcept
-  {
-    double torque = sensed().motor_torque;
-    if (parameters_.torque_noise > 0.0)
-    {
-      torque += parameters_.torque_noise * noise_.normals(TORQUE, sensed().step)[0];
-    }
-    if (parameters_.torque_resolution > 0.0)
-    {
-      torque = parameters_.torque_resolution * std::round(torque / parameters_.torque_resolution);
-    }
-    return torque;
-  }
+  double motorTorque() const noexcept { return sensed().motor_torque; }  ///< [N.m]
 
 private:
   enum Channel : std::uint32_t
@@ -108,13 +103,12 @@ private:
     TORQUE
   };
 
-  /// What the sensors' resolution has still to be applied to, of the torque also its noise.
+  /// What the sensors' resolution has still to be applied to, of angles; torque as it is read.
   struct Sensed
   {
     double motor_angle{};
     double output_angle{};
     double motor_torque{};
-    std::int64_t step{};
   };
 
   const Sensed& sensed() const noexcept { return line_[oldest_]; }
