@@ -8,7 +8,9 @@ import sys
 
 import matplotlib
 import numpy
+import pandas
 
+import lives_learner
 import page_section
 
 matplotlib.use("Agg")
@@ -29,6 +31,10 @@ TRIALS = {"as shipped": ("rated",),
 SHARES = [0.05, 0.1, 0.5, 0.9, 0.95]
 QUANTILES = ["q05", "q10", "q50", "q90", "q95"]
 ALPHA = 0.3
+JUDGED_SEED = 1
+LEARNER_SEED = 2
+LEARNED_EVERY = 3  # rows of the learner's lives: neighbours tell it nothing new
+LEAST_FORECASTS = 30  # of which a share is stated
 
 
 def run(options, *arguments):
@@ -55,12 +61,27 @@ def age(options, name):
     return result, read(path)
 
 
-def trials(options, duty, *overlay):
+def trials(options, seed, duty, *overlay):
     path = options.work / "trials.csv"
     result = json.loads(run(options, "trials", options.duties / f"{duty}.csv", "--grease-changes", "--lives",
-                            str(options.lives), "--every", "500", "--seed", "1", "--csv", path, "--force", "--json",
-                            *overlay))
+                            str(options.lives), "--every", "1000", "--seed", str(seed), "--csv", path, "--force",
+                            "--json", *overlay))
     return result, read(path)
+
+
+def learn(training, judged):
+    """Quantiles and CRPS [h] of a learner that sees of each check-up what the forecast sees, taught by other lives."""
+    training = training[::LEARNED_EVERY]
+    rows = numpy.concatenate([training, judged])
+    features = pandas.DataFrame({name: rows[name] for name in ("hours", "level", "cause", "severity")})
+    truth = pandas.DataFrame({"life.remaining": rows["remaining"],
+                              "life.split": ["train"] * len(training) + ["test"] * len(judged)})
+    known, weights = lives_learner.learn(features, truth)
+    weights = weights[len(training):]
+    quantiles = numpy.array([lives_learner.quantiles_of(known, weight) for weight in weights])
+    crps = numpy.array([lives_learner.crps_of(known, weight, true) for weight, true in
+                        zip(weights, judged["remaining"])])
+    return quantiles, crps
 
 
 def draw_stress(options, path):
@@ -162,41 +183,76 @@ def draw_forecasts(rows, title, axis):
     axis.grid(alpha=0.3)
 
 
+def tenths(rows, share):
+    """Forecasts in each tenth of `share` [-], 0 ... 1, as conditions on the rows."""
+    return [(share >= 0.1 * tenth) & (share < 0.1 * (tenth + 1)) for tenth in range(10)]
+
+
+def of_life(rows):
+    """Share of the life that is gone, as it turns out [-]."""
+    return rows["hours"] / (rows["hours"] + rows["remaining"])
+
+
+def of_forecast(rows):
+    """The same as the median forecast has it: what is known at the time [-]."""
+    return rows["hours"] / (rows["hours"] + rows["q50"])
+
+
+def accurate(rows, median):
+    return numpy.abs(median - rows["remaining"]) <= ALPHA * rows["remaining"]
+
+
 def draw_calibration(results, path):
     figure, axes = plt.subplots(2, 3, figsize=(13, 7.6), constrained_layout=True)
     for (name, (_, rows)), axis in zip(results.items(), axes[0]):
         draw_forecasts(rows, f"Three lives, {name}", axis)
-    axes[1, 2].remove()
     axes[0, 0].plot([], [], "k--", label="truth")
     axes[0, 0].plot([], [], "k", label="median forecast")
     axes[0, 0].fill_between([], [], color="k", alpha=0.2, label="80 % interval")
     axes[0, 0].legend(frameon=False)
+    middle = 0.05 + 0.1 * numpy.arange(10)
     for (name, (_, rows)), colour in zip(results.items(), COLOURS):
         observed = [numpy.mean(rows["remaining"] <= rows[quantile]) for quantile in QUANTILES]
         axes[1, 0].plot(SHARES, observed, colour + "o-", label=name)
-        ages = rows["hours"] / (rows["hours"] + rows["remaining"])
-        edges = numpy.linspace(0, 1, 11)
-        within = numpy.abs(rows["q50"] - rows["remaining"]) <= ALPHA * rows["remaining"]
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        share = [100 * numpy.mean(within[(ages >= low) & (ages < high)]) for low, high in zip(edges, edges[1:])]
-        axes[1, 1].plot(middle, share, colour + "o-")
+        for prefix, style in (("", "o-"), ("prior_", ":")):
+            share = [100 * numpy.mean(accurate(rows, rows[prefix + "q50"])[tenth]) for tenth in
+                     tenths(rows, of_life(rows))]
+            axes[1, 1].plot(middle, share, colour + style)
+        for share, style in ((of_life(rows), "o-"), (of_forecast(rows), "s--")):
+            covered = [100 * numpy.mean(inside(rows)[tenth]) if numpy.count_nonzero(tenth) >= LEAST_FORECASTS else
+                       numpy.nan for tenth in tenths(rows, share)]
+            axes[1, 2].plot(middle, covered, colour + style)
     axes[1, 0].plot([0, 1], [0, 1], "k:", linewidth=1)
     axes[1, 0].set_title("Calibration over all forecasts", loc="left", fontsize=10)
     axes[1, 0].set_xlabel("stated quantile [-]")
     axes[1, 0].set_ylabel("share of truths below it [-]")
     axes[1, 0].legend(frameon=False)
+    axes[1, 1].plot([], [], "ko-", label="with assessments")
+    axes[1, 1].plot([], [], "k:", label="prior")
+    axes[1, 1].legend(frameon=False)
     axes[1, 1].set_title(f"α–λ: median within {100 * ALPHA:.0f} % of the truth [%]", loc="left", fontsize=10)
     axes[1, 1].set_xlabel("λ: share of the life gone [-]")
     axes[1, 1].set_ylim(0, 100)
-    for axis in axes[1, :2]:
+    axes[1, 2].axhspan(75, 85, color="k", alpha=0.1)
+    axes[1, 2].plot([], [], "ko-", label="as it turns out")
+    axes[1, 2].plot([], [], "ks--", label="as the forecast has it")
+    axes[1, 2].legend(frameon=False)
+    axes[1, 2].set_title("80 % interval held the truth [%]", loc="left", fontsize=10)
+    axes[1, 2].set_xlabel("share of the life gone [-]")
+    axes[1, 2].set_ylim(0, 100)
+    for axis in axes[1]:
         axis.grid(alpha=0.3)
     figure.savefig(path, dpi=110)
     plt.close(figure)
 
 
+def inside(rows):
+    return (rows["remaining"] >= rows["q10"]) & (rows["remaining"] <= rows["q90"])
+
+
 def held(rows, chosen):
-    inside = (rows["remaining"] >= rows["q10"]) & (rows["remaining"] <= rows["q90"])
-    return f"{100 * numpy.mean(inside[chosen]):.0f} %" if numpy.any(chosen) else "none"
+    enough = numpy.count_nonzero(chosen) >= LEAST_FORECASTS
+    return f"{100 * numpy.mean(inside(rows)[chosen]):.0f}" if enough else "-"
 
 
 def age_table(ages):
@@ -228,17 +284,44 @@ def fatigue_table(options):
 
 
 def trial_table(results):
-    lines = ["| drives | lives | ended by " + ", ".join(ENDS)
-             + " | forecasts | 80 % interval held the truth | from half of each "
-             "life on | of those, lives ended by flank wear | by the bearing | by fatigue |",
-             "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| drives | lives | ended by " + ", ".join(ENDS) + " | forecasts | 80 % interval held the truth [%] "
+             "| lives ended by flank wear | interface wear | bearing | fatigue |", "|---" * 9 + "|"]
     for name, (result, rows) in results.items():
         ends = ", ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
-        later = rows["hours"] >= rows["remaining"]
-        lines.append(f"| {name} | {result['lives']} | {ends} | {result['forecasts']} | "
-                     f"{100 * result['coverage_80']:.0f} % "
-                     f"| {100 * result['coverage_80_from_half_life']:.0f} % | {held(rows, later & (rows['end'] == 0))} "
-                     f"| {held(rows, later & (rows['end'] == 3))} | {held(rows, later & (rows['end'] >= 4))} |")
+        causes = " | ".join(held(rows, chosen) for chosen in (rows["end"] == 0, rows["end"] == 1, rows["end"] == 3,
+                                                              rows["end"] >= 4))
+        lines.append(f"| {name} | {result['lives']} | {ends} | {len(rows)} | {held(rows, rows['end'] >= 0)} "
+                     f"| {causes} |")
+    return lines
+
+
+def tenth_table(results):
+    lines = ["| drives | tenth of the life | " + " | ".join(str(tenth + 1) for tenth in range(10)) + " |",
+             "|---" * 12 + "|"]
+    for name, (_, rows) in results.items():
+        for words, share in (("as the forecast has it", of_forecast(rows)), ("as it turns out", of_life(rows))):
+            covered = " | ".join(held(rows, tenth) for tenth in tenths(rows, share))
+            lines.append(f"| {name} | {words} | {covered} |")
+    return lines
+
+
+def score_table(options, results):
+    lines = ["| drives | forecast | CRPS [h] | median within 30 % of the truth [%] | 80 % interval held [%] |",
+             "|---|---|---|---|---|"]
+    for name, (_, rows) in results.items():
+        print(f"life: learner, {name}", file=sys.stderr)
+        training = trials(options, LEARNER_SEED, *TRIALS[name])[1]
+        exact = trials(options, JUDGED_SEED, *TRIALS[name], "--estimate-error", "0.1")[1]
+        quantiles, crps = learn(training, rows)
+        columns = [("catalogue's prior and survival", rows, "prior_"), ("with assessments", rows, ""),
+                   ("with severities of a tenth of the error", exact, "")]
+        found = [(words, of, of[prefix + "crps"], *(of[prefix + q] for q in ("q10", "q50", "q90")))
+                 for words, of, prefix in columns]
+        found.insert(1, ("learner of as many other lives", rows, crps, *quantiles.T))
+        for words, of, score, low, median, high in found:
+            truth = of["remaining"]
+            lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} | {100 * numpy.mean(accurate(of, median)):.0f} "
+                         f"| {100 * numpy.mean((truth >= low) & (truth <= high)):.0f} |")
     return lines
 
 
@@ -259,7 +342,7 @@ def main():
     results = {}
     for name, arguments in TRIALS.items():
         print(f"life: {options.lives} lives, {name}", file=sys.stderr)
-        results[name] = trials(options, *arguments)
+        results[name] = trials(options, JUDGED_SEED, *arguments)
     draw_stress(options, options.docs / "images" / "life_stress.png")
     draw_fatigue(options, ages, options.docs / "images" / "life_fatigue.png")
     draw_ageing(ages, options.docs / "images" / "life_ageing.png")
@@ -272,8 +355,10 @@ def main():
         "over their lives](images/life_fatigue.png)", "",
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
         *trial_table(results), "",
-        "![Forecasts of three lives each, calibration, and accuracy against the share of life "
-        "gone](images/life_forecast.png)"])
+        *tenth_table(results), "",
+        *score_table(options, results), "",
+        "![Forecasts of three lives each, calibration, accuracy and coverage against the "
+        "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)
 
 

@@ -137,7 +137,9 @@ void Assessor::explain(const CausePosterior& posterior) noexcept
   while (sum < Assessment::SET && assessment_.alternative_count < Assessment::MAX_ALTERNATIVES)
   {
     const std::size_t next = sorted[assessment_.alternative_count + 1];
-    assessment_.alternatives[assessment_.alternative_count++] = { static_cast<Cause>(next), probability[next] };
+    assessment_.alternatives[assessment_.alternative_count++] = { static_cast<Cause>(next), probability[next],
+                                                                  posterior.severity[next],
+                                                                  posterior.severity_deviation[next] };
     sum += probability[next];
   }
 }

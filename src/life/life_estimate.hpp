@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "life/drive_ageing.hpp"
 #include "life/nominal_use.hpp"
@@ -19,7 +18,7 @@ struct LifeEstimate
 {
   double hours{};            ///< of use so far
   double turns{};            ///< of the wave generator so far
-  RemainingHours remaining;  ///< of drives of this kind that are in use still, if they go on being used like this
+  RemainingHours remaining;  ///< of such drives that are in use still, if they go on being used like this
   std::array<double, ENDS_OF_LIFE> used{};  ///< share of each limit that the nominal drive has behind it [-]
   double grease_used{};                     ///< share of the grease's life since the change that was due last [-]
 
@@ -36,11 +35,15 @@ struct LifeEstimate
 class LifeEstimator
 {
 public:
-  explicit LifeEstimator(const Parameters& parameters) : parameters_(parameters), load_map_(parameters, POSITIONS) {}
+  explicit LifeEstimator(const Parameters& parameters)
+    : parameters_(parameters), load_map_(parameters, POSITIONS), drives_(parameters)
+  {
+  }
 
-  /// `record`: with turns in it. Takes seconds where it holds loads that were not met before.
-  /// @throws ParameterError if the ring finds no equilibrium under one of its loads.
-  LifeEstimate estimate(const UsageHistory& record)
+  /// `record`: with turns in it. `assessment`: the last one that compared a window, null: none; `reference_hours`: of
+  /// use when its sound reference was learned, 0: new [h]. Takes seconds where the record holds loads that were not met
+  /// before. @throws ParameterError if the ring finds no equilibrium under one of its loads.
+  LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours)
   {
     const LifeParameters& life = parameters_.life;
     const DutyCycle duty = record.duty();
@@ -65,23 +68,21 @@ public:
     estimate.grease_used = age.grease;
 
     const NominalUse use(ageing, life, GREASE_IS_CHANGED);
-    RemainingLife drives(life, PARTICLES, SEED);
-    drives.use(use.until(estimate.hours));
-    drives.survive();
     estimate.remaining =
-        drives.remaining(use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES));
+        drives_.remaining(use.until(estimate.hours),
+                          use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES),
+                          assessment, use.until(reference_hours));
     return estimate;
   }
 
 private:
   static constexpr int POSITIONS = 8;  // of the wave generator in a tooth pitch
-  static constexpr int PARTICLES = 4000;
-  static constexpr std::uint32_t SEED = 1;
   static constexpr int STRETCHES = 400;
   static constexpr double GREASE_CHANGES_AHEAD = 20.0;
   static constexpr bool GREASE_IS_CHANGED = true;
 
   Parameters parameters_;
   RevolutionLoadMap load_map_;
+  RemainingLife drives_;
 };
 }  // namespace hjt

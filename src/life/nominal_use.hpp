@@ -17,7 +17,7 @@ public:
     : grease_factor_(life.grease_wear_factor), grease_changes_(grease_changes)
   {
     const DriveAge rate = ageing.rates(nominalDrive(life), {});
-    hourly_ = { rate.worstFlank(), rate.interface_wear, rate.bearing_turns, {} };
+    hourly_ = { rate.worstFlank(), rate.meanFlank(), rate.interface_wear, rate.bearing_turns, {} };
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
       hourly_.fatigue[i] = ageing.fatigueRates(strengthAt(life, i));
@@ -35,8 +35,8 @@ public:
     const double extra =
         grease_rate_ > 0.0 ? 0.5 * (grease_factor_ - 1.0) * (changes + left * left) / grease_rate_ : 0.0;
     const double fresh_hours = hours + extra;
-    Usage usage{ hourly_.flank_wear * fresh_hours, hourly_.interface_wear * fresh_hours, hourly_.bearing_turns * hours,
-                 hourly_.fatigue };
+    Usage usage{ hourly_.flank_wear * fresh_hours, hourly_.mean_flank * fresh_hours,
+                 hourly_.interface_wear * fresh_hours, hourly_.bearing_turns * hours, hourly_.fatigue };
     for (auto& by_place : usage.fatigue)
     {
       for (double& damage : by_place)

@@ -4,22 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_01.hpp>
+#include <boost/math/special_functions/erf.hpp>
+#include <boost/random/sobol.hpp>
+
+#include "gear/angle.hpp"
+#include "life/assessment_errors.hpp"
 
 namespace hjt
 {
 namespace
 {
-enum Nature
-{
-  FLANK,
-  INTERFACE,
-  BEARING_LIFE,
-  SPALL_GROWTH,
-  STRENGTH,
-  NATURES
-};
+using namespace assessment_errors;
+
+constexpr double FARTHEST = 30.0;       // standard deviations: the normal distribution ends where doubles do
+constexpr double SEVERITY_RANGE = 0.9;  // of the severities that signatures have: 0.1 to 1
+constexpr double LEAST_SPREAD = 0.1;    // of a severity's logarithm, from one assessment to the next
 
 /// Hours until the use ahead has grown by `left`, of what `of` takes from a usage.
 template <class Of>
@@ -41,195 +40,275 @@ double squared(double value)
 {
   return value * value;
 }
-}  // namespace
 
-RemainingLife::RemainingLife(const LifeParameters& parameters, int particles, std::uint32_t seed)
-  : parameters_(parameters)
-  , random_(seed)
-  , particles_(static_cast<std::size_t>(particles))
-  , weights_(particles_.size(), 1.0 / static_cast<double>(particles))
-  , drawn_(particles_.size())
-  , ends_(particles_.size())
+double normalShare(double deviation) noexcept
 {
-  const BearingLife bearing(parameters);
-  for (Particle& particle : particles_)
-  {
-    const UnitVariation variation = drawVariation(parameters, bearing, random_);
-    particle.variation = { std::log(variation.flank_factor), std::log(variation.interface_factor),
-                           std::log(variation.bearing_life), std::log(variation.spall_growth),
-                           std::log(variation.strength) };
-    particle.flank_wear = 0.0;
-    particle.interface_wear = 0.0;
-  }
+  return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
 }
 
-UnitVariation RemainingLife::variationOf(const Particle& particle) noexcept
+/// The deviation below `most` of which a share `share` of the normal distribution's part below `most` lies.
+double normalBelow(double most, double share) noexcept
 {
-  return { std::exp(particle.variation[FLANK]), std::exp(particle.variation[INTERFACE]),
-           std::exp(particle.variation[BEARING_LIFE]), std::exp(particle.variation[SPALL_GROWTH]),
-           std::exp(particle.variation[STRENGTH]) };
+  const double part = share * normalShare(std::clamp(most, -FARTHEST, FARTHEST));
+  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::clamp(part, 1e-300, 1.0 - 1e-16));
 }
 
-/// Miner's sum of a place of a flexspline by a use.
-double RemainingLife::fatigueBy(const Usage& usage, double log_strength, std::size_t place) const noexcept
+/// Factor, log-normal about 1, of a drive that `ends_at` or more would have ended.
+double factorBelow(double ends_at, double spread, double share) noexcept
+{
+  return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
+}
+
+/// Miner's sum of a place by a use, of a flexspline whose strength is off by so many standard deviations.
+double fatigueBy(const Usage& usage, double deviation, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;
-  const double deviation = parameters_.fatigue_spread > 0.0 ? log_strength / parameters_.fatigue_spread : 0.0;
   const double at = std::clamp(0.5 * LAST * (1.0 + deviation / STRENGTH_REACH), 0.0, LAST);
   const auto i = std::min(static_cast<std::size_t>(at), STRENGTHS - 2);
   const double share = at - static_cast<double>(i);
   return (1.0 - share) * usage.fatigue[i][place] + share * usage.fatigue[i + 1][place];
 }
 
-void RemainingLife::use(const Usage& usage) noexcept
+double worstFatigue(const Usage& usage, double deviation) noexcept
 {
-  bearing_turns_ += usage.bearing_turns;
-  fatigue_.addFatigue(usage, 1.0);
-  for (Particle& particle : particles_)
-  {
-    particle.flank_wear += std::exp(particle.variation[FLANK]) * usage.flank_wear;
-    particle.interface_wear += std::exp(particle.variation[INTERFACE]) * usage.interface_wear;
-  }
-}
-
-void RemainingLife::read(const WearReading& reading) noexcept
-{
-  double largest = -HUGE_VAL;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-  {
-    const double spall = std::min(spallSize(variationOf(particles_[i]), bearing_turns_), MAX_SPALL);
-    const double deviation = squared((particles_[i].flank_wear - reading.flank_wear) / reading.flank_wear_error) +
-                             squared((spall - reading.spall) / reading.spall_error);
-    weights_[i] = std::log(weights_[i]) - 0.5 * deviation;
-    largest = std::max(largest, weights_[i]);
-  }
-  double sum = 0.0;
-  for (double& weight : weights_)
-  {
-    weight = std::exp(weight - largest);
-    sum += weight;
-  }
-  double squares = 0.0;
-  for (double& weight : weights_)
-  {
-    weight /= sum;
-    squares += weight * weight;
-  }
-  if (squares * static_cast<double>(weights_.size()) > 2.0)
-  {
-    resample();
-  }
-}
-
-bool RemainingLife::hasEnded(const Particle& particle) const noexcept
-{
-  bool broken = false;
+  double worst = 0.0;
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
-    broken = broken || fatigueBy(fatigue_, particle.variation[STRENGTH], place) >= 1.0;
+    worst = std::max(worst, fatigueBy(usage, deviation, place));
   }
-  return broken || particle.flank_wear >= parameters_.flank_wear_limit ||
-         particle.interface_wear >= parameters_.interface_wear_limit ||
-         spallSize(variationOf(particle), bearing_turns_) >= 1.0;
+  return worst;
 }
 
-void RemainingLife::survive() noexcept
+/// Wear of a particle as the severity of a fault, and the chance that it is found.
+struct Wear
 {
-  double left = 0.0;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
+  Wear(FaultKind kind, double size) noexcept
+    : severity(size)
+    , found(size > 0.0 ? detectionShare(kind) * normalShare(std::log(size / DETECTED_SEVERITY) / DETECTED_SPREAD) : 0.0)
   {
-    left += hasEnded(particles_[i]) ? 0.0 : weights_[i];
   }
-  for (std::size_t i = 0; i < particles_.size() && left > 0.0; ++i)
+
+  double severity;
+  double found;
+};
+
+/// Density of an estimate if the severity is this one, log-normal, over that of any estimate [-].
+double estimateDensity(const Alternative& estimate, double severity) noexcept
+{
+  if (severity <= 0.0 || estimate.severity <= 0.0)
   {
-    weights_[i] = hasEnded(particles_[i]) ? 0.0 : weights_[i] / left;
+    return 0.0;
+  }
+  const double stated = std::sqrt(std::log1p(squared(estimate.severity_deviation / estimate.severity)));
+  const double spread = std::max(stated, LEAST_SPREAD);
+  return SEVERITY_RANGE * std::exp(-0.5 * squared(std::log(estimate.severity / severity) / spread)) /
+         (estimate.severity * spread * std::sqrt(TWO_PI));
+}
+}  // namespace
+
+double RemainingHours::crps(double hours) const noexcept
+{
+  // On each stretch of (F - H)^2 with F straight from a to b: length (a^2 + a b + b^2) / 3, a and b less H.
+  double sum = 0.0;
+  double reached = 0.0;
+  const auto add = [&](double from, double to, double at_from, double at_to, double step)
+  {
+    const double a = at_from - step;
+    const double b = at_to - step;
+    sum += (to - from) * (a * a + a * b + b * b) / 3.0;
+  };
+  for (std::size_t i = 0; i + 1 < BINS; ++i)
+  {
+    const double from = edge(i);
+    const double to = edge(i + 1);
+    const double next = reached + probability[i];
+    if (hours <= from || hours >= to)
+    {
+      add(from, to, reached, next, hours <= from ? 1.0 : 0.0);
+    }
+    else
+    {
+      const double middle = reached + probability[i] * (hours - from) / (to - from);
+      add(from, hours, reached, middle, 0.0);
+      add(hours, to, middle, next, 1.0);
+    }
+    reached = next;
+  }
+  return sum + std::max(hours - edge(BINS - 1), 0.0);
+}
+
+RemainingLife::RemainingLife(const Parameters& parameters)
+  : parameters_(parameters.life)
+  , fault_scale_(parameters.fault_scale)
+  , bearing_(parameters.life)
+  , points_(PARTICLES)
+  , drives_(PARTICLES)
+  , ends_(PARTICLES)
+{
+  boost::random::sobol engine(NATURES);
+  const double range = static_cast<double>(boost::random::sobol::max()) + 1.0;
+  for (Point& point : points_)
+  {
+    for (double& coordinate : point)
+    {
+      coordinate = (static_cast<double>(engine()) + 0.5) / range;
+    }
   }
 }
 
-void RemainingLife::resample() noexcept
+/// The strength of which the use so far breaks all that are weaker, in standard deviations.
+double RemainingLife::weakestLeft(const Usage& so_far) const noexcept
 {
-  // Systematic: one draw for all.
-  const double spacing = 1.0 / static_cast<double>(particles_.size());
-  double mark = spacing * boost::random::uniform_01<double>()(random_);
-  std::array<double, NATURES> mean{};
-  for (std::size_t i = 0; i < particles_.size(); ++i)
+  double broken = -STRENGTH_REACH;
+  double whole = STRENGTH_REACH;
+  if (worstFatigue(so_far, broken) < 1.0)
   {
-    for (int k = 0; k < NATURES; ++k)
-    {
-      mean[k] += weights_[i] * particles_[i].variation[k];
-    }
+    return -FARTHEST;
   }
-  std::array<double, NATURES> variance{};
-  for (std::size_t i = 0; i < particles_.size(); ++i)
+  for (int i = 0; i < 40 && worstFatigue(so_far, whole) < 1.0; ++i)
   {
-    for (int k = 0; k < NATURES; ++k)
-    {
-      variance[k] += weights_[i] * squared(particles_[i].variation[k] - mean[k]);
-    }
+    const double middle = 0.5 * (broken + whole);
+    (worstFatigue(so_far, middle) < 1.0 ? whole : broken) = middle;
   }
-  std::size_t from = 0;
-  double reached = weights_[0];
-  boost::random::normal_distribution<double> normal;
-  constexpr double SHRINK = 0.98;  // (3 d - 1) / (2 d) with Liu and West's discount d = 0.96
-  const double spread = std::sqrt(1.0 - SHRINK * SHRINK);
-  for (Particle& drawn : drawn_)
-  {
-    while (reached < mark && from + 1 < particles_.size())
-    {
-      reached += weights_[++from];
-    }
-    mark += spacing;
-    drawn = particles_[from];
-    const double flank_before = drawn.variation[FLANK];
-    const double interface_before = drawn.variation[INTERFACE];
-    for (int k = 0; k < NATURES; ++k)
-    {
-      drawn.variation[k] =
-          mean[k] + SHRINK * (drawn.variation[k] - mean[k]) + spread * std::sqrt(variance[k]) * normal(random_);
-    }
-    // Another variation would have worn another depth by the same use.
-    drawn.flank_wear *= std::exp(drawn.variation[FLANK] - flank_before);
-    drawn.interface_wear *= std::exp(drawn.variation[INTERFACE] - interface_before);
-  }
-  particles_.swap(drawn_);
-  std::fill(weights_.begin(), weights_.end(), spacing);
+  return whole;
 }
 
-RemainingHours RemainingLife::remaining(const FutureLoad& future_load) noexcept
+RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_far, double weakest,
+                                          bool is_spalled) const noexcept
 {
+  Drive drive;
+  const double spread = parameters_.wear_spread;
+  drive.variation.flank_factor = factorBelow(parameters_.flank_wear_limit / so_far.flank_wear, spread, point[FLANK]);
+  drive.variation.interface_factor =
+      factorBelow(parameters_.interface_wear_limit / so_far.interface_wear, spread, point[INTERFACE]);
+  drive.variation.spall_growth =
+      parameters_.spall_growth * factorBelow(HUGE_VAL, parameters_.spall_spread, point[SPALL_GROWTH]);
+  // -ln of Weibull's share of bearings that last: to the life that would have ended by now, and to a first spall now.
+  const auto lasting = [this](double turns) { return std::pow(turns / bearing_.scale, bearing_.shape); };
+  const double least = lasting(so_far.bearing_turns / (1.0 + drive.variation.spall_growth));
+  const double whole = lasting(so_far.bearing_turns);
+  const double share_spalled = -std::expm1(least - whole);
+  const double drawn =
+      is_spalled ? least - std::log1p(-point[BEARING_LIFE] * share_spalled) : whole - std::log1p(-point[BEARING_LIFE]);
+  drive.variation.bearing_life = bearing_.scale * std::pow(drawn, 1.0 / bearing_.shape);
+  drive.log_weight = is_spalled ? std::log(share_spalled / SPALLED) - least : -whole - std::log(1.0 - SPALLED);
+  drive.deviation = -normalBelow(-weakest, point[STRENGTH]);
+  drive.variation.strength = std::exp(parameters_.fatigue_spread * drive.deviation);
+  return drive;
+}
+
+double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_far, const Usage& at_reference,
+                                 const UnitVariation& variation) const noexcept
+{
+  const Wear flank(FaultKind::TOOTH_WEAR, variation.flank_factor * (so_far.mean_flank - at_reference.mean_flank) /
+                                              fault_scale_.tooth_wear_depth);
+  const Wear interface(FaultKind::INTERFACE_WEAR, variation.interface_factor *
+                                                      (so_far.interface_wear - at_reference.interface_wear) /
+                                                      fault_scale_.interface_wear_depth);
+  if (assessment.level == HealthLevel::OK)
+  {
+    return (1.0 - flank.found) * (1.0 - interface.found);
+  }
+  const double spall = std::min(spallSize(variation, so_far.bearing_turns), 1.0) -
+                       std::min(spallSize(variation, at_reference.bearing_turns), 1.0);
+  double known = 0.0;
+  double sum = 0.0;
+  const auto add = [&](const Alternative& item)
+  {
+    if (item.cause == causeOf(FaultKind::TOOTH_WEAR))
+    {
+      known += item.confidence;
+      sum += item.confidence * flank.found * estimateDensity(item, flank.severity);
+    }
+    else if (item.cause == causeOf(FaultKind::INTERFACE_WEAR))
+    {
+      known += item.confidence;
+      sum += item.confidence * interface.found * estimateDensity(item, interface.severity);
+    }
+    else if (item.cause == causeOf(FaultKind::BEARING_INNER_RACE) ||
+             item.cause == causeOf(FaultKind::BEARING_OUTER_RACE) || item.cause == causeOf(FaultKind::BEARING_BALL))
+    {
+      known += item.confidence;
+      sum += item.confidence * estimateDensity(item, spall);
+    }
+  };
+  add({ assessment.cause, assessment.confidence, assessment.severity, assessment.severity_deviation });
+  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  {
+    add(assessment.alternatives[i]);
+  }
+  return sum + (1.0 - IN_SET) * std::max(1.0 - known, FALSE_ALARMS);
+}
+
+std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const Drive& drive, const Usage& so_far,
+                                                                           const FutureLoad& future_load) const noexcept
+{
+  const UnitVariation& variation = drive.variation;
+  const auto until_broken = [&](std::size_t place)
+  {
+    return hoursUntil(future_load, 1.0 - fatigueBy(so_far, drive.deviation, place),
+                      [&](const Usage& usage) { return fatigueBy(usage, drive.deviation, place); });
+  };
+  return { hoursUntil(future_load, parameters_.flank_wear_limit / variation.flank_factor - so_far.flank_wear,
+                      [](const Usage& usage) { return usage.flank_wear; }),
+           hoursUntil(future_load,
+                      parameters_.interface_wear_limit / variation.interface_factor - so_far.interface_wear,
+                      [](const Usage& usage) { return usage.interface_wear; }),
+           hoursUntil(future_load, variation.bearing_life * (1.0 + variation.spall_growth) - so_far.bearing_turns,
+                      [](const Usage& usage) { return usage.bearing_turns; }),
+           until_broken(0),
+           until_broken(1),
+           until_broken(2) };
+}
+
+RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& future_load,
+                                        const Assessment* assessment, const Usage& at_reference) noexcept
+{
+  const double weakest = weakestLeft(so_far);
+  double largest = -HUGE_VAL;  // no weight is lost to the range of doubles
+  for (std::size_t i = 0; i < PARTICLES; ++i)
+  {
+    const bool is_spalled = static_cast<double>(i) < SPALLED * static_cast<double>(PARTICLES);
+    drives_[i] = drive(points_[i], so_far, weakest, is_spalled);
+    largest = std::max(largest, drives_[i].log_weight);
+  }
   RemainingHours result;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
+  double sum = 0.0;
+  for (std::size_t i = 0; i < PARTICLES; ++i)
   {
-    const Particle& particle = particles_[i];
-    const UnitVariation variation = variationOf(particle);
-    const auto until_broken = [&](std::size_t place)
-    {
-      const double strength = particle.variation[STRENGTH];
-      return hoursUntil(future_load, 1.0 - fatigueBy(fatigue_, strength, place),
-                        [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
-    };
-    const std::array<double, 3 + STRESS_PLACES> hours{
-      hoursUntil(future_load, (parameters_.flank_wear_limit - particle.flank_wear) / variation.flank_factor,
-                 [](const Usage& usage) { return usage.flank_wear; }),
-      hoursUntil(future_load, (parameters_.interface_wear_limit - particle.interface_wear) / variation.interface_factor,
-                 [](const Usage& usage) { return usage.interface_wear; }),
-      hoursUntil(future_load, variation.bearing_life * (1.0 + variation.spall_growth) - bearing_turns_,
-                 [](const Usage& usage) { return usage.bearing_turns; }),
-      until_broken(0),
-      until_broken(1),
-      until_broken(2)
-    };
+    const Drive& particle = drives_[i];
+    const auto hours = hoursLeft(particle, so_far, future_load);
     const auto first = std::min_element(hours.begin(), hours.end());
-    result.by_cause[static_cast<std::size_t>(first - hours.begin())] += weights_[i];
-    result.ended += *first == 0.0 ? weights_[i] : 0.0;
-    ends_[i] = { *first, weights_[i] };
+    const double weight =
+        std::exp(particle.log_weight - largest) *
+        (assessment != nullptr ? likelihood(*assessment, so_far, at_reference, particle.variation) : 1.0);
+    result.by_cause[static_cast<std::size_t>(first - hours.begin())] += weight;
+    ends_[i] = { *first, weight };
+    sum += weight;
   }
+  for (double& share : result.by_cause)
+  {
+    share /= sum;
+  }
+  summarize(result, sum);
+  return result;
+}
+
+/// Bins and quantiles of the ends. `sum`: of their weights.
+void RemainingLife::summarize(RemainingHours& result, double sum) noexcept
+{
   std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.hours < b.hours; });
   double reached = 0.0;
   std::size_t quantile = 0;
+  std::size_t bin = 0;
   for (const End& end : ends_)
   {
-    reached += end.weight;
+    while (bin + 1 < RemainingHours::BINS && end.hours >= RemainingHours::edge(bin + 1))
+    {
+      ++bin;
+    }
+    result.probability[bin] += end.weight / sum;
+    reached += end.weight / sum;
     for (; quantile < result.quantile.size() && reached >= RemainingHours::SHARES[quantile]; ++quantile)
     {
       result.quantile[quantile] = end.hours;
@@ -239,6 +318,5 @@ RemainingHours RemainingLife::remaining(const FutureLoad& future_load) noexcept
   {
     result.quantile[quantile] = ends_.back().hours;
   }
-  return result;
 }
 }  // namespace hjt

@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include <boost/random/mersenne_twister.hpp>
-
+#include "harmonic_joint_twin/health/assessment.hpp"
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
 
@@ -28,7 +26,8 @@ inline double strengthAt(const LifeParameters& parameters, std::size_t i)
 /// How much a drive has been used: what the nominal drive would have aged by it.
 struct Usage
 {
-  double flank_wear{};      ///< of the nominal drive [m]
+  double flank_wear{};      ///< of the nominal drive, worse side [m]
+  double mean_flank{};      ///< the same, mean of both sides: half the play's growth [m]
   double interface_wear{};  ///< of the nominal drive [m]
   double bearing_turns{};   ///< [turns at rated torque]
   /// Miner's sums by strength and place: fatigue does not grow in proportion to the nominal drive's.
@@ -36,21 +35,16 @@ struct Usage
 
   Usage operator-(const Usage& other) const noexcept
   {
-    Usage rest{ flank_wear - other.flank_wear, interface_wear - other.interface_wear,
+    Usage rest{ flank_wear - other.flank_wear, mean_flank - other.mean_flank, interface_wear - other.interface_wear,
                 bearing_turns - other.bearing_turns, fatigue };
-    rest.addFatigue(other, -1.0);
-    return rest;
-  }
-
-  void addFatigue(const Usage& other, double times) noexcept
-  {
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
       for (std::size_t place = 0; place < STRESS_PLACES; ++place)
       {
-        fatigue[i][place] += times * other.fatigue[i][place];
+        rest.fatigue[i][place] -= other.fatigue[i][place];
       }
     }
+    return rest;
   }
 };
 
@@ -61,75 +55,100 @@ struct FutureLoad
   std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
 };
 
-/// What the indicators say of a drive's wear.
-struct WearReading
-{
-  double flank_wear{};        ///< depth, from the lost motion [m]
-  double flank_wear_error{};  ///< its standard deviation, > 0 [m]
-  double spall{};             ///< size of the bearing's spall, from the lines of the bearing [-]
-  double spall_error{};       ///< its standard deviation, > 0 [-]
-};
-
-/// Hours of use that are left.
+/// Hours of use that are left, as a distribution.
 struct RemainingHours
 {
   static constexpr std::array<double, 5> SHARES{ 0.05, 0.1, 0.5, 0.9, 0.95 };
-  std::array<double, SHARES.size()> quantile{};  ///< by which these shares of the particles have ended [h]
-  double ended{};                                ///< share of the particles that has ended already [-]
-  /// Shares that end by flank wear, interface wear, bearing, fatigue of tooth space, transition, flange [-]
-  std::array<double, 3 + STRESS_PLACES> by_cause{};
+  static constexpr std::array CAUSES{
+    EndOfLife::FLANK_WEAR,          EndOfLife::INTERFACE_WEAR,     EndOfLife::BEARING,
+    EndOfLife::TOOTH_SPACE_FATIGUE, EndOfLife::TRANSITION_FATIGUE, EndOfLife::FLANGE_FATIGUE
+  };
+  static constexpr std::size_t BINS = 102;
+  static constexpr double FIRST_EDGE = 10.0;  // [h]
+  static constexpr double BINS_PER_DECADE = 20.0;
+
+  /// Where bin `i` begins: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
+  static double edge(std::size_t i) noexcept
+  {
+    return i == 0 ? 0.0 : FIRST_EDGE * std::pow(10.0, (static_cast<double>(i) - 1.0) / BINS_PER_DECADE);
+  }
+
+  /// Continuous ranked probability score of the bins' distribution, even within each, against `hours` that came; what
+  /// lies in the last bin counts as its beginning [h].
+  double crps(double hours) const noexcept;
+
+  std::array<double, BINS> probability{};        ///< that the end comes within each bin [-]
+  std::array<double, SHARES.size()> quantile{};  ///< by which these shares have ended [h]
+  std::array<double, CAUSES.size()> by_cause{};  ///< that it ends so, in the order of CAUSES [-]
 };
 
-/// The remaining life as a distribution: a particle filter on what cannot be seen of one drive, its variation.
+/// The remaining life as a distribution over what cannot be seen of one drive, its variation.
 ///
 /// A particle is a drive with factors of wear, a life of its bearing and a fatigue strength of its own, drawn from what
-/// the literature and the catalogue leave open (log-normal; the Weibull distribution of the bearing's life). Use ages
-/// every particle by the same laws; a reading weighs it by how likely it makes what was read. Where few particles carry
-/// the weight they are redrawn, with a kernel that keeps mean and variance of the variations (Liu and West 2001).
+/// the literature and the catalogue leave open (log-normal; the Weibull distribution of the bearing's life), given
+/// that its use so far has not ended it: each is drawn from its distribution beyond that limit. The points are Sobol's.
+/// Use ages every particle by the same laws. An assessment weighs it by how likely its wear, as severities of faults,
+/// makes what was said:
+///
+///   no fault found   prod_k (1 - D_k(s_k))
+///   fault found      sum_k p_k D_k(s_k) f(e_k; s_k) / u + r max(1 - sum_k p_k, q)
+///
+/// k: tooth_wear, interface_wear, a spall at a race or ball; s_k the particle's severity since the reference was
+/// learned; p_k, e_k the assessment's probability and severity, f log-normal about s_k with the assessment's deviation,
+/// u the density of severities beforehand; D_k the chance that such wear is found (1 of a spall that is named); r: how
+/// often the cause is in no set; q: false alarms (life/assessment_errors). The errors of the assessments of one drive
+/// are mostly those of its signatures and stay, so that the last counts alone.
 class RemainingLife
 {
 public:
-  RemainingLife(const LifeParameters& parameters, int particles, std::uint32_t seed);
+  explicit RemainingLife(const Parameters& parameters);
 
-  /// Ages all particles. Allocates nothing.
-  void use(const Usage& usage) noexcept;
-
-  /// Weighs all particles. Allocates nothing.
-  void read(const WearReading& reading) noexcept;
-
-  /// The drive is known to be in use still: particles at their end lose their weight, unless all are. Allocates
-  /// nothing.
-  void survive() noexcept;
-
-  /// The hours until each particle's end, with this use ahead. Allocates nothing.
-  RemainingHours remaining(const FutureLoad& future_load) noexcept;
+  /// Of a drive that is in use still after `so_far`, with this use ahead; `assessment`: the last one of a window that
+  /// was compared, null: none; `at_reference`: the use when the sound reference of that window was learned, 0: new.
+  /// Allocates nothing.
+  RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
+                           const Usage& at_reference) noexcept;
 
 private:
-  struct Particle
+  static constexpr std::size_t PARTICLES = 4096;
+  static constexpr double SPALLED = 0.25;  // of them, the first: bearings with a spall, however rare those are
+  enum Nature
   {
-    std::array<double, 5>
-        variation;  // logarithms: flank factor, interface factor, bearing life, spall growth, strength
-    double flank_wear;
-    double interface_wear;
+    FLANK,
+    INTERFACE,
+    BEARING_LIFE,
+    SPALL_GROWTH,
+    STRENGTH,
+    NATURES
   };
-  static constexpr double MAX_SPALL = 3.0;  // beyond the end of use one is as bad as the other
-  bool hasEnded(const Particle& particle) const noexcept;
-  static UnitVariation variationOf(const Particle& particle) noexcept;
-  double fatigueBy(const Usage& usage, double log_strength, std::size_t place) const noexcept;
-  void resample() noexcept;
+  using Point = std::array<double, NATURES>;  // evenly within 0 ... 1
 
-  LifeParameters parameters_;
-  boost::random::mt19937 random_;
-  double bearing_turns_{};
-  Usage fatigue_;  // so far; its other entries are unused
-  std::vector<Particle> particles_;
-  std::vector<double> weights_;  // sum 1
-  std::vector<Particle> drawn_;  // scratch
+  /// One that `so_far` has not ended.
+  struct Drive
+  {
+    UnitVariation variation;
+    double deviation;   // of the strength's logarithm, in standard deviations
+    double log_weight;  // logarithm of the chance of such a bearing, to last and to have a spall or none
+  };
   struct End
   {
     double hours;
     double weight;
   };
-  std::vector<End> ends_;  // scratch
+
+  double weakestLeft(const Usage& so_far) const noexcept;
+  Drive drive(const Point& point, const Usage& so_far, double weakest, bool is_spalled) const noexcept;
+  double likelihood(const Assessment& assessment, const Usage& so_far, const Usage& at_reference,
+                    const UnitVariation& variation) const noexcept;
+  std::array<double, RemainingHours::CAUSES.size()> hoursLeft(const Drive& drive, const Usage& so_far,
+                                                              const FutureLoad& future_load) const noexcept;
+  void summarize(RemainingHours& result, double sum) noexcept;
+
+  LifeParameters parameters_;
+  FaultScaleParameters fault_scale_;
+  BearingLife bearing_;
+  std::vector<Point> points_;
+  std::vector<Drive> drives_;  // scratch
+  std::vector<End> ends_;      // scratch
 };
 }  // namespace hjt

@@ -202,7 +202,7 @@ void JointTracker::publish()
     const Stamp stamp = stream_.clock.stamp(comparison->time);
     outputs_.offer(stamp, *comparison, tracker_);
     life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
-                comparison->temperature);
+                comparison->temperature, tracker_.assessment());
     comparison_ = *comparison;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/life_publisher.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -38,13 +39,14 @@ std::string unusedName(const std::string& path)
 LifePublisher::LifePublisher(ros::NodeHandle& node, const Parameters& parameters)
   : parameters_(parameters)
   , path_(parameters.life.use_record == NO_FILE ? "" : parameters.life.use_record)
-  , counted_{ 0, UsageHistory(parameters.life) }
+  , counted_{ 0, UsageHistory(parameters.life), {}, 0 }
   , stretches_(STRETCH_SLOTS, counted_)
   , record_(parameters.life)
   , estimator_(parameters)
   , publisher_(node.advertise<harmonic_joint_twin::RemainingLife>(topics::REMAINING_LIFE, 1, true))
 {
   readRecord();
+  reference_hours_ = record_.hours();
   thread_ = std::thread([this] { run(); });
 }
 
@@ -89,7 +91,8 @@ void LifePublisher::readRecord()
   }
 }
 
-void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept
+void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
+                          const Assessment& assessment) noexcept
 {
   const Stamp elapsed = instant - last_;
   if (elapsed >= 0 && elapsed < COUNT_PERIOD)
@@ -103,6 +106,13 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   }
   counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
   counted_.until = instant;
+  if (assessment.windows != counted_.windows)
+  {
+    const bool compared = assessment.state == AssessmentState::ASSESSED;
+    const bool restarted = assessment.windows < counted_.windows;
+    counted_.assessment = compared ? assessment : restarted ? Assessment() : counted_.assessment;
+    counted_.windows = assessment.windows;
+  }
   if (instant >= counted_from_ && instant - counted_from_ < STRETCH)
   {
     return;
@@ -134,6 +144,9 @@ void LifePublisher::takeStretches()
 {
   for (const Stretch* stretch = stretches_.front(); stretch != nullptr; stretch = stretches_.front())
   {
+    reference_hours_ = stretch->windows < windows_ ? record_.hours() : reference_hours_;
+    windows_ = stretch->windows;
+    assessment_ = stretch->assessment;
     record_.add(stretch->use);
     until_ = stretch->until;
     stretches_.pop();
@@ -148,15 +161,24 @@ void LifePublisher::publish()
   }
   try
   {
-    const LifeEstimate estimate = estimator_.estimate(record_);
+    const bool assessed = assessment_.state == AssessmentState::ASSESSED;
+    const LifeEstimate estimate = estimator_.estimate(record_, assessed ? &assessment_ : nullptr, reference_hours_);
+    const RemainingHours& remaining = estimate.remaining;
     harmonic_joint_twin::RemainingLife message;
     message.header.stamp = toRosTime(until_);
     message.header.frame_id = parameters_.joint.name;
     message.hours = estimate.hours;
     message.turns = estimate.turns;
-    message.remaining_hours_10 = estimate.remaining.quantile[1];
-    message.remaining_hours_50 = estimate.remaining.quantile[2];
-    message.remaining_hours_90 = estimate.remaining.quantile[3];
+    message.assessed = assessed ? toRosTime(assessment_.stamp) : ros::Time();
+    message.remaining_hours_10 = remaining.quantile[1];
+    message.remaining_hours_50 = remaining.quantile[2];
+    message.remaining_hours_90 = remaining.quantile[3];
+    for (std::size_t i = 0; i < RemainingHours::BINS; ++i)
+    {
+      message.remaining_hours[i] = RemainingHours::edge(i);
+      message.probability[i] = remaining.probability[i];
+    }
+    std::copy(remaining.by_cause.begin(), remaining.by_cause.end(), message.end_probability.begin());
     message.nearest_limit = nameOf(estimate.nearest());
     message.flank_wear_used = estimate.usedOf(EndOfLife::FLANK_WEAR);
     message.interface_wear_used = estimate.usedOf(EndOfLife::INTERFACE_WEAR);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -30,14 +31,18 @@ public:
   ~LifePublisher();
 
   /// One thread, the loop's: counts the time since the last call. No allocation, no lock.
-  /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC].
-  void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature) noexcept;
+  /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC]; the assessment counts if
+  /// it compared its window.
+  void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
+             const Assessment& assessment) noexcept;
 
 private:
   struct Stretch
   {
     Stamp until;
     UsageHistory use;
+    Assessment assessment;  // the last one that compared a window; of none its state is WAITING
+    std::uint64_t windows;  // of the assessment: fewer than before after a reset
   };
   void readRecord();
   void run();
@@ -52,6 +57,9 @@ private:
   Stamp last_{};
   SlotRing<Stretch> stretches_;
   UsageHistory record_;
+  Assessment assessment_;
+  std::uint64_t windows_{};
+  double reference_hours_{};  // of use, when the assessment began to learn its reference
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

@@ -52,7 +52,7 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
         {
           publishers_.offer(twin);
           const JointOutputs& joint = twin.outputs();
-          life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature);
+          life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature, twin.assessment());
         },
         [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(parameters.realtime, loop_))

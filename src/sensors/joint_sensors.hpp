@@ -13,7 +13,6 @@
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/counter_noise.hpp"
 #include "sensors/incremental_encoder.hpp"
-#include "sensors/velocity_estimate.hpp"
 
 namespace hjt
 {
@@ -27,74 +26,67 @@ namespace hjt
 ///        s    noise, root mean square, s_T of the torque                         [rad], [N.m]
 ///        n standard normal, a new number at every step: of seed, sensor and step      [-]
 /// All readings have the same delay, in whole steps. An effect set to zero costs nothing and changes no bit.
+///
+/// A velocity is the difference of two readings of an angle, as a drive takes it:
+/// Law:   v = (a_k - a_(k-n)) / (n P),  n = sensors.velocity_window / P rounded, at least 1
+/// where  P    time between two steps                                                [s]
+/// Until n + 1 angles have come in, the difference is taken over what there is; with one angle the velocity is zero.
+///
+/// Steps are only kept; errors are added when one is read first, the resolution at every reading.
 class JointSensors
 {
 public:
   /// `period`: between two updates [s].
   JointSensors(const SensorParameters& parameters, double period)
     : parameters_(parameters)
+    , period_(period)
     , noise_(static_cast<std::uint32_t>(parameters.noise_seed))
     , motor_encoder_(parameters)
     , output_encoder_(parameters)
-    , motor_velocity_(parameters.velocity_window, period)
-    , output_velocity_(parameters.velocity_window, period)
-    , line_(1 + static_cast<std::size_t>(std::lround(parameters.delay / period)))
+    , delay_(static_cast<std::size_t>(std::lround(parameters.delay / period)))
+    , window_(std::max<std::size_t>(1, std::lround(parameters.velocity_window / period)))
+    , instants_(delay_ + window_ + 1)
   {
   }
 
-  void reset() noexcept
-  {
-    motor_velocity_.reset();
-    output_velocity_.reset();
-    filled_ = false;
-  }
+  void reset() noexcept { count_ = 0; }
 
   /// Once every period. `step`: number of the instant, the same for the same stamp; angles [rad], torque [N.m].
   void update(std::int64_t step, double motor_angle, double output_angle, double motor_torque) noexcept
   {
-    Sensed now{ motor_angle + lines(motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines),
-                output_angle + lines(output_angle, parameters_.output_eccentricity, parameters_.output_lines),
-                motor_torque };
-    if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
-    {
-      const std::array<double, 2> normals = noise_.normals(ENCODERS, step);
-      now.motor_angle += parameters_.motor_noise * normals[0];
-      now.output_angle += parameters_.output_noise * normals[1];
-    }
-    if (parameters_.torque_noise > 0.0)
-    {
-      now.motor_torque += parameters_.torque_noise * noise_.normals(TORQUE, step)[0];
-    }
-    if (parameters_.torque_resolution > 0.0)
-    {
-      now.motor_torque = parameters_.torque_resolution * std::round(now.motor_torque / parameters_.torque_resolution);
-    }
-    if (!filled_)
-    {
-      std::fill(line_.begin(), line_.end(), now);
-      filled_ = true;
-    }
-    line_[oldest_] = now;
-    oldest_ = oldest_ + 1 == line_.size() ? 0 : oldest_ + 1;
-    motor_velocity_.update(sensed().motor_angle);
-    output_velocity_.update(sensed().output_angle);
+    newest_ = newest_ + 1 == instants_.size() ? 0 : newest_ + 1;
+    instants_[newest_] = { step, motor_angle, output_angle, motor_torque, false };
+    count_ = std::min(count_ + 1, instants_.size());
   }
 
+  /// After an update.
   EncoderReadings encoders() const noexcept
   {
+    const std::size_t intervals = std::min(window_, count_ - 1);
+    const Instant& now = sensed(delay_);
     EncoderReadings readings;
-    readings.motor_count = motor_encoder_.count(sensed().motor_angle);
+    readings.motor_count = motor_encoder_.count(now.motor_angle);
     readings.motor_angle = motor_encoder_.angle(readings.motor_count);
-    readings.motor_velocity =
-        motor_velocity_.velocity([this](double angle) { return motor_encoder_.angle(motor_encoder_.count(angle)); });
-    readings.output_count = output_encoder_.count(sensed().output_angle);
-    readings.output_angle = output_encoder_.unwrappedAngle(sensed().output_angle);
-    readings.output_velocity =
-        output_velocity_.velocity([this](double angle) { return output_encoder_.unwrappedAngle(angle); });
+    readings.output_count = output_encoder_.count(now.output_angle);
+    readings.output_angle = output_encoder_.unwrappedAngle(now.output_angle);
+    if (intervals > 0)
+    {
+      const Instant& before = sensed(delay_ + intervals);
+      const double time = static_cast<double>(intervals) * period_;
+      readings.motor_velocity =
+          (readings.motor_angle - motor_encoder_.angle(motor_encoder_.count(before.motor_angle))) / time;
+      readings.output_velocity = (readings.output_angle - output_encoder_.unwrappedAngle(before.output_angle)) / time;
+    }
     return readings;
   }
 
-  double motorTorque() const noexcept { return sensed().motor_torque; }  ///< [N.m]
+  /// After an update [N.m].
+  double motorTorque() const noexcept
+  {
+    const double torque = sensed(delay_).motor_torque;
+    const double resolution = parameters_.torque_resolution;
+    return resolution > 0.0 ? resolution * std::round(torque / resolution) : torque;
+  }
 
 private:
   enum Channel : std::uint32_t
@@ -103,15 +95,38 @@ private:
     TORQUE
   };
 
-  /// What the sensors' resolution has still to be applied to, of angles; torque as it is read.
-  struct Sensed
+  struct Instant
   {
-    double motor_angle{};
-    double output_angle{};
-    double motor_torque{};
+    std::int64_t step{};
+    double motor_angle{};   // [rad]
+    double output_angle{};  // [rad]
+    double motor_torque{};  // [N.m]
+    bool sensed{};          // with the sensors' errors
   };
 
-  const Sensed& sensed() const noexcept { return line_[oldest_]; }
+  /// That of so many steps ago, or the first there was.
+  const Instant& sensed(std::size_t back) const noexcept
+  {
+    const std::size_t kept = std::min(back, count_ - 1);
+    Instant& at = instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
+    if (!at.sensed)
+    {
+      at.sensed = true;
+      at.motor_angle += lines(at.motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines);
+      at.output_angle += lines(at.output_angle, parameters_.output_eccentricity, parameters_.output_lines);
+      if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
+      {
+        const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
+        at.motor_angle += parameters_.motor_noise * normals[0];
+        at.output_angle += parameters_.output_noise * normals[1];
+      }
+      if (parameters_.torque_noise > 0.0)
+      {
+        at.motor_torque += parameters_.torque_noise * noise_.normals(TORQUE, at.step)[0];
+      }
+    }
+    return at;
+  }
 
   /// Error of an encoder that comes back every turn [rad].
   static double lines(double angle, double eccentricity, const std::array<double, 2>& others) noexcept
@@ -131,13 +146,14 @@ private:
   }
 
   SensorParameters parameters_;
+  double period_;  // [s]
   CounterNoise noise_;
   IncrementalEncoder motor_encoder_;
   AbsoluteEncoder output_encoder_;
-  VelocityEstimate motor_velocity_;
-  VelocityEstimate output_velocity_;
-  std::vector<Sensed> line_;  // ring: one more than the delay has steps
-  std::size_t oldest_{};
-  bool filled_{};
+  std::size_t delay_;                      // of the readings [steps]
+  std::size_t window_;                     // of the velocities [steps]
+  mutable std::vector<Instant> instants_;  // ring of the last
+  std::size_t newest_{};
+  std::size_t count_{};  // instants held
 };
 }  // namespace hjt

@@ -122,16 +122,23 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
     return slope;
   };
 
-  Eigen::Vector2d v = old_speeds;
-  descend(v, true);
-  if (std::abs(v[0]) < STICK_RANGE * width_)
+  // With the motor at rest if friction can hold it there.
+  const auto rests = [&](Eigen::Vector2d& v)
   {
-    Eigen::Vector2d at_rest(0.0, v[1]);
-    const Eigen::Vector2d slope = descend(at_rest, false);
-    if (std::abs(slope[0]) <= step * shaftStrength(friction))
-    {
-      return at_rest;
-    }
+    v[0] = 0.0;
+    const Eigen::Vector2d slope = descend(v, false);
+    return std::abs(slope[0]) <= step * shaftStrength(friction);
+  };
+  Eigen::Vector2d v = old_speeds;
+  if (old_speeds[0] == 0.0 && rests(v))
+  {
+    return v;
+  }
+  v = old_speeds;
+  descend(v, true);
+  if (Eigen::Vector2d at_rest = v; std::abs(v[0]) < STICK_RANGE * width_ && rests(at_rest))
+  {
+    return at_rest;
   }
   return v;
 }

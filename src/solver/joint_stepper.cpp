@@ -276,6 +276,16 @@ bool JointStepper::stepRungeKutta(double length) noexcept
   return true;
 }
 
+/// Of motor and of output, each with the other held: squares of the angular frequencies [rad^2/s^2].
+Eigen::Vector2d JointStepper::swingSquares() const noexcept
+{
+  const RingResponse& ring = dynamics_.response();
+  const Eigen::Vector2d friction = dynamics_.frictionStiffness().diagonal();
+  return (Eigen::Vector2d(ring.motor_stiffness + dynamics_.model().motor.coggingStiffness(), ring.output_stiffness) +
+          friction)
+      .cwiseQuotient(dynamics_.model().inertia());
+}
+
 double JointStepper::phaseAdvance() const noexcept
 {
   if (marches_)
@@ -283,15 +293,18 @@ double JointStepper::phaseAdvance() const noexcept
     return 0.0;
   }
   const RingResponse& ring = dynamics_.response();
-  const Eigen::Vector2d inverse = dynamics_.model().inertia().cwiseInverse();
-  const Eigen::Matrix2d friction = dynamics_.frictionStiffness();
-  const double motor =
-      (ring.motor_stiffness + friction(0, 0) + dynamics_.model().motor.coggingStiffness()) * inverse[0];
-  const double output = (ring.output_stiffness + friction(1, 1)) * inverse[1];
-  const double cross = ring.velocity_ratio * ring.output_stiffness - friction(0, 1);
-  const double fastest = 0.5 * (motor + output) + std::sqrt(0.25 * (motor - output) * (motor - output) +
-                                                            cross * cross * inverse[0] * inverse[1]);
+  const Eigen::Vector2d squares = swingSquares();
+  const double cross = ring.velocity_ratio * ring.output_stiffness - dynamics_.frictionStiffness()(0, 1);
+  const double fastest = 0.5 * squares.sum() + std::sqrt(0.25 * (squares[0] - squares[1]) * (squares[0] - squares[1]) +
+                                                         cross * cross / dynamics_.model().inertia().prod());
   return substep_ * std::sqrt(std::max(fastest, 0.0));
+}
+
+bool JointStepper::isCoarse() const noexcept
+{
+  // The square of the fastest swing is at most the sum of the squares.
+  return substep_ * substep_ * swingSquares().sum() > MAX_PHASE_ADVANCE * MAX_PHASE_ADVANCE &&
+         phaseAdvance() > MAX_PHASE_ADVANCE;
 }
 
 double JointStepper::energyResidual() const noexcept

@@ -76,12 +76,14 @@ public:
   /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness; 0 in steps of
   /// their own length, whose error is controlled [rad].
   double phaseAdvance() const noexcept;
+  bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 
 private:
   using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
                                                            boost::numeric::odeint::vector_space_algebra>;
+  Eigen::Vector2d swingSquares() const noexcept;
   bool substep(double length) noexcept;
   bool march(const JointInputs& inputs, double& left) noexcept;
   void leaveMarch() noexcept;

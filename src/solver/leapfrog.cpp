@@ -8,6 +8,19 @@ namespace hjt
 {
 namespace
 {
+/// Speeds after a kick that without friction would lead to `free`. On the surface the friction is in few terms, and all
+/// is done to be quick.
+Eigen::Vector2d rub(const JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
+                    const Eigen::Vector2d& free, double dt) noexcept
+{
+  Eigen::Vector2d after;
+  if (system.onSurface() && friction.slide(system.friction(), system.velocityRatio(), before, free, dt, after))
+  {
+    return after;
+  }
+  return friction.solve(system.friction(), system.velocityRatio(), before, free, dt);
+}
+
 /// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
 /// approached without overshoot however steep the fading. Leaves the drive's torque in `system`.
 ///
@@ -25,9 +38,7 @@ Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, doubl
     Eigen::Vector2d inertia = system.model().inertia();
     const Eigen::Vector2d momentum = inertia.cwiseProduct(before) + dt * (others + Eigen::Vector2d(gain * torque, 0.0));
     inertia[0] += dt * gain * slope;
-    return system.dryFriction()
-        .withMotor(inertia[0])
-        .solve(system.friction(), system.velocityRatio(), before, momentum.cwiseQuotient(inertia), dt);
+    return rub(system, system.dryFriction().withMotor(inertia[0]), before, momentum.cwiseQuotient(inertia), dt);
   };
   Eigen::Vector2d after = kick(kept + share * motor.faded(wanted, 0.0), share * motor.fadeSlope(wanted));
   if (std::abs(after[0]) > motor.speedLimit())
@@ -58,16 +69,9 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   system.drive_torque = wanted + lag * (x[DRIVE_TORQUE] - wanted);
   system.updateFriction(before);
   const double presliding = system.preslidingTorque();
-  Eigen::Vector2d torque = system.torque();
-  torque[0] += presliding;
+  Eigen::Vector2d torque = system.torque() + Eigen::Vector2d(presliding, 0.0);
   Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
-  Eigen::Vector2d after;
-  // On the surface the friction is in few terms, and all is done to be quick.
-  if (!system.onSurface() ||
-      !system.dryFriction().slide(system.friction(), system.velocityRatio(), before, free, dt, after))
-  {
-    after = system.dryFriction().solve(system.friction(), system.velocityRatio(), before, free, dt);
-  }
+  Eigen::Vector2d after = rub(system, system.dryFriction(), before, free, dt);
   if (motor.fades(wanted, after[0]))
   {
     torque[0] -= system.driveTorque();

@@ -15,19 +15,19 @@ struct LifeTrialOptions
 {
   int lives{ 100 };
   std::uint32_t seed{ 1 };
-  double every{ 250.0 };            ///< hours of use between two readings
-  int particles{ 2000 };            ///< of the filter
-  double flank_wear_error{ 1e-6 };  ///< of one reading, standard deviation [m]
-  double spall_error{ 0.05 };       ///< of one reading, standard deviation [-]
+  double every{ 250.0 };         ///< hours of use between two assessments
+  double estimate_error{ 1.0 };  ///< of estimated severities, over what docs/health.md found [-]
   bool grease_changes{};
 };
 
-/// A forecast of the filter at one reading, and the true life.
+/// A forecast at one assessment, and the true life.
 struct LifeForecast
 {
   double hours{};      ///< of use when the forecast was made
   double remaining{};  ///< what came [h]
+  Assessment assessment;
   RemainingHours forecast;
+  RemainingHours prior;  ///< of who knows the use alone
 
   /// The interval from the 10 to the 90 % quantile holds what came.
   bool held() const { return remaining >= forecast.quantile[1] && remaining <= forecast.quantile[3]; }
@@ -52,8 +52,8 @@ struct Coverage
 /// Over all forecasts from a share `from` of each life on.
 Coverage coverage(const std::vector<LifeTrial>& trials, double from);
 
-/// Drives drawn from the spread of the parameters, each worn by the laws until its end and watched by a filter that
-/// knows neither its variation nor, but for the readings with their errors, its wear.
+/// Drives drawn from the spread of the parameters, each worn by the laws until its end, and forecast by one who knows
+/// its use and what assessments with their errors say of its wear, but neither its variation nor its wear.
 /// `longest`: a life still going on then is left out [h].
 std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAgeing& ageing,
                                      const LifeTrialOptions& options, double longest,

@@ -47,7 +47,7 @@ bool FaultSchedule::push(const Fault& fault, Stamp stamp) noexcept
 
 bool FaultSchedule::pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept
 {
-  while (size_ > 0 && waiting_[size_ - 1].stamp <= instant)
+  while (isDue(instant))
   {
     --size_;
     fault = waiting_[size_].fault;

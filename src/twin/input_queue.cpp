@@ -53,7 +53,7 @@ void InputQueue::push(const Input& input, Stamp now) noexcept
 
 bool InputQueue::pop(Stamp instant, Input& input) noexcept
 {
-  if (size_ == 0 || inputs_[first_].stamp > instant)
+  if (!isDue(instant))
   {
     return false;
   }

@@ -72,6 +72,7 @@ void Twin::push(const Input& input) noexcept
     return;
   }
   impl_->queue.push(input, impl_->simulated_until);
+  impl_->counters.input = impl_->queue.counters();
 }
 
 bool Twin::step(Stamp until) noexcept
@@ -96,7 +97,7 @@ Stamp Twin::stepLength() const noexcept
 
 const JointOutputs& Twin::outputs() const noexcept
 {
-  return impl_->outputs;
+  return impl_->presentOutputs();
 }
 
 const TwinCounters& Twin::counters() const noexcept

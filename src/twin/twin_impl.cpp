@@ -150,7 +150,8 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   observed_ring.restart();
   queue.clear();
   counters = {};
-  now = (stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length) * step_length;
+  instant = stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length;
+  now = instant * step_length;
   simulated_until = stamp;
   in_force_since.fill(std::numeric_limits<Stamp>::min());
   command = 0.0;
@@ -165,10 +166,10 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   monitor.reset();
   signals.reset();
   assessor.reset();
-  outputs = {};
   last_failed = std::numeric_limits<Stamp>::min();
   last_doubtful = last_failed;
-  fillOutputs(true);
+  converged = true;
+  outputs_known = false;
   observe();
   return settled;
 }
@@ -246,7 +247,6 @@ void Twin::Impl::takeInputs() noexcept
         break;
     }
   }
-  counters.input = queue.counters();
 }
 
 /// The surface of the present faults, built in the background: requested, and used when ready.
@@ -284,15 +284,20 @@ double Twin::Impl::commandInForce() noexcept
 
 void Twin::Impl::step() noexcept
 {
+  ++instant;
   now += step_length;
   simulated_until = now;
-  const bool followed = takeFaults();
-  takeInputs();
+  const bool followed = !waiting.isDue(now) || takeFaults();
+  if (queue.isDue(now))
+  {
+    takeInputs();
+  }
   moveBrake();
   takeSurface();
   const double wanted = commandInForce();
   const double within_limit = model.motor.clamped(wanted);
-  const bool converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  outputs_known = false;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
   counters.torque_clamped += within_limit != wanted ? 1 : 0;
@@ -300,9 +305,8 @@ void Twin::Impl::step() noexcept
   counters.load_clamped += load_clamped ? 1 : 0;
   const bool cut = stepper.status().cuts > 0;
   const bool jumped = stepper.status().jumps > 0;
-  fillOutputs(converged);
-  const bool coarse = outputs.phase_advance > JointStepper::MAX_PHASE_ADVANCE;
-  counters.overloads += std::abs(outputs.joint_torque) > parameters.output.torque_limit ? 1 : 0;
+  const bool coarse = stepper.isCoarse();
+  counters.overloads += std::abs(stepper.dynamics().response().output_torque) > parameters.output.torque_limit ? 1 : 0;
   counters.solver_failures += converged ? 0 : 1;
   counters.step_cuts += cut ? 1 : 0;
   counters.jumps += jumped ? 1 : 0;
@@ -326,6 +330,11 @@ double Twin::Impl::greaseTemperature() const noexcept
   return heat ? std::clamp(heat->grease(), MIN_TEMPERATURE, MAX_TEMPERATURE) : temperature;
 }
 
+double Twin::Impl::housingTemperature() const noexcept
+{
+  return heat ? heat->housing() : temperature;
+}
+
 void Twin::Impl::resetHeat() noexcept
 {
   heat_stamp = now;
@@ -345,7 +354,7 @@ void Twin::Impl::takeHeat(double motor_torque) noexcept
     return;
   }
   copper_heat += parameters.motor.copper_loss * motor_torque * motor_torque / parameters.solver.rate;
-  if (now / step_length % steps_per_heat == 0)
+  if (instant % steps_per_heat == 0)
   {
     const double dissipated = stepper.dissipatedEnergy();
     heat->advance(toSeconds(now - heat_stamp), { dissipated - heat_booked, copper_heat }, temperature);
@@ -355,7 +364,17 @@ void Twin::Impl::takeHeat(double motor_torque) noexcept
   }
 }
 
-void Twin::Impl::fillOutputs(bool converged) noexcept
+const JointOutputs& Twin::Impl::presentOutputs() noexcept
+{
+  if (!outputs_known)
+  {
+    outputs_known = true;
+    fillOutputs();
+  }
+  return outputs;
+}
+
+void Twin::Impl::fillOutputs() noexcept
 {
   const RingResponse& ring = stepper.dynamics().response();
   const Eigen::Vector2d& friction = stepper.frictionTorque();
@@ -367,7 +386,7 @@ void Twin::Impl::fillOutputs(bool converged) noexcept
   outputs.motor_torque = stepper.dynamics().shaftTorque();
   outputs.load_torque = load_torque;
   outputs.temperature = greaseTemperature();
-  outputs.housing_temperature = heat ? heat->housing() : temperature;
+  outputs.housing_temperature = housingTemperature();
   outputs.wave_generator_torque = -ring.wave_generator_torque;
   outputs.joint_torque = ring.output_torque;
   outputs.friction_torque = std::abs(friction[0] + ring.velocity_ratio * friction[1]);
@@ -386,10 +405,11 @@ void Twin::Impl::fillOutputs(bool converged) noexcept
 /// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
-  sensors.update(now / step_length, outputs.motor_angle, outputs.output_angle, stepper.driveTorque());
-  monitor.update({ now, outputs.motor_angle, outputs.motor_velocity, outputs.output_angle, outputs.output_velocity,
-                   outputs.motor_torque, outputs.joint_torque });
-  if (watching && now / step_length % steps_per_sample == 0)
+  const JointDynamics& dynamics = stepper.dynamics();
+  sensors.update(instant, stepper.motorAngle(), stepper.outputAngle(), stepper.driveTorque());
+  monitor.update({ now, stepper.motorAngle(), stepper.speeds()[0], stepper.outputAngle(), stepper.speeds()[1],
+                   dynamics.shaftTorque(), dynamics.response().output_torque });
+  if (watching && instant % steps_per_sample == 0)
   {
     takeReadings();
   }
@@ -406,7 +426,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
   sample.load_torque = load_torque;
-  sample.temperature = outputs.housing_temperature;
+  sample.temperature = housingTemperature();
   if (signals.update(sample))
   {
     assessor.update(signals.indicators());
@@ -427,7 +447,7 @@ LobeLoads Twin::Impl::lobes() const noexcept
   {
     const RingForces& forces = dynamics.ring().forces();
     return lobeLoads({ forces.of<ToothMesh>().flank_force, forces.of<WaveGeneratorContact>().force, tooth_angles,
-                       outputs.motor_angle });
+                       stepper.motorAngle() });
   }
   const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
   LobeLoads loads;

@@ -31,6 +31,8 @@ struct Twin::Impl
   void step() noexcept;
   LobeLoads lobes() const noexcept;
   SolverState solverState(Stamp since) const noexcept;
+  /// Filled when they are asked for.
+  const JointOutputs& presentOutputs() noexcept;
 
   Parameters parameters;
   JointFaults faults;
@@ -52,6 +54,7 @@ struct Twin::Impl
   JointStepper stepper;
   ObservedRing observed_ring;
   Stamp step_length;
+  std::int64_t instant{};  // number of the present one, from the epoch on
   Stamp now{};
   Stamp simulated_until{};  // an input with an earlier stamp is late: now, or the start if that is not on the grid
   InputQueue queue;
@@ -70,6 +73,8 @@ struct Twin::Impl
   bool brake_commanded{};
   Stamp brake_moves{};  // when the command is carried out
   JointOutputs outputs;
+  bool outputs_known{};  // those of the present instant
+  bool converged{ true };
   JointSensors sensors;
   HealthMonitor monitor;
   SignalMonitor signals;
@@ -92,10 +97,11 @@ private:
   void takeSurface() noexcept;
   double commandInForce() noexcept;
   double greaseTemperature() const noexcept;
+  double housingTemperature() const noexcept;
   void resetHeat() noexcept;
   void takeHeat(double motor_torque) noexcept;
   void moveBrake() noexcept;
-  void fillOutputs(bool converged) noexcept;
+  void fillOutputs() noexcept;
   void observe() noexcept;
   void takeReadings() noexcept;
 };

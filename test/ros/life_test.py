@@ -39,9 +39,9 @@ class Life(unittest.TestCase):
             self.torque.publish(0.5)
             time.sleep(0.02)
 
-    def start(self):
+    def start(self, **values):
         load_parameters(NODE, configuration_files(),
-                        {"life/use_record": self.record, "life/forecast_period": PERIOD})
+                        {"life/use_record": self.record, "life/forecast_period": PERIOD, **values})
         node = Node(NODE.lstrip("/"))
         self.addCleanup(node.kill)
         return node
@@ -80,6 +80,33 @@ class Life(unittest.TestCase):
         node.kill()
         self.start()
         self.assertGreaterEqual(self.forecast().hours, second.hours)
+
+    def check_density(self, forecast):
+        edges, shares = forecast.remaining_hours, forecast.probability
+        self.assertEqual(edges[0], 0.0)
+        self.assertTrue(all(a < b for a, b in zip(edges, edges[1:])))
+        self.assertAlmostEqual(sum(shares), 1.0, delta=1e-9)
+        self.assertAlmostEqual(sum(forecast.end_probability), 1.0, delta=1e-9)
+        for quantile, share in ((forecast.remaining_hours_10, 0.1), (forecast.remaining_hours_50, 0.5),
+                                (forecast.remaining_hours_90, 0.9)):
+            sooner = sum(p for edge, p in zip(edges[1:], shares) if edge <= quantile)
+            begun = sum(p for edge, p in zip(edges, shares) if edge <= quantile)
+            self.assertTrue(sooner - 1e-9 <= share <= begun + 1e-9, (quantile, sooner, begun))
+
+    def test_density_is_published_and_counts_assessments(self):
+        # Half its life was gone before the reference was learned: silence since then says nothing of it.
+        with open(self.record, "w") as file:
+            file.write("duration,motor_speed,load_torque,temperature\n7.2e+7,200.0,30.0,40.0\n")
+        self.start(**{"indicators/window_turns": 5.0, "indicators/baseline_windows": 8})
+        unread = self.forecast()
+        self.assertGreater(unread.hours, 20000.0)
+        self.check_density(unread)
+        wait_until(lambda: self.forecast().assessed.to_nsec() > 0, "an assessment that counts")
+        read = self.forecast()
+        self.check_density(read)
+        self.assertLess(read.assessed, read.header.stamp)
+        median = unread.remaining_hours_50
+        self.assertAlmostEqual(read.remaining_hours_50, median, delta=0.02 * median)
 
     def test_a_record_that_cannot_be_read_is_set_aside(self):
         with open(self.record, "w") as file:

@@ -3,6 +3,7 @@
 import csv
 import math
 
+import indicators_test
 import tool
 
 HEADER = "duration,motor_speed,load_torque,temperature\n"
@@ -58,7 +59,7 @@ class Life(tool.ToolTest):
         self.assertEqual([row["allowed"] for row in beyond], [0.0] * 3)
 
     def test_trials_are_the_same_every_time(self):
-        trials = ("life", "trials", self.duty(), "--lives", 5, "--every", 5000, "--particles", 200)
+        trials = ("life", "trials", self.duty(), "--lives", 5, "--every", 5000)
         first = self.succeed_json(*trials, "--seed", 3)
         self.assertEqual(first, self.succeed_json(*trials, "--seed", 3))
         self.assertEqual(first["lives"], 5)
@@ -87,11 +88,34 @@ class Life(tool.ToolTest):
         # Those that last so long are not those that wear fast.
         self.assertGreater(half["hours"] + half["remaining_q50"], new["remaining_q50"])
         self.assertEqual(new["nearest"], "bearing")
+        for report in (half, new):
+            hours, probability = (report["density"][key] for key in ("hours", "probability"))
+            self.assertAlmostEqual(sum(probability), 1.0, delta=1e-9)
+            self.assertAlmostEqual(sum(report["end_probability"].values()), 1.0, delta=1e-9)
+            self.assertTrue(all(a < b for a, b in zip(hours, hours[1:])))
+            begun = sum(p for hour, p in zip(hours, probability) if hour <= report["remaining_q50"])
+            self.assertTrue(0.5 <= begun < 0.75, begun)
         self.assertLess(new["remaining_q50"], 38500.0)  # of the bearing alone, docs/life.md
         age = self.succeed_json("life", "age", "use.csv", "--grease-changes", "--hours", 20000.0)
         self.assertAlmostEqual(age["turns"], half["turns"], delta=1e-3 * half["turns"])
         self.fail_with(1, ["the motor does not turn"], "remaining", self.write(
             "rest.csv", "time,motor_angle_encoder,motor_torque\n0,1,0\n1,1,0\n"))
+
+    def test_an_assessment_tells_of_the_wear(self):
+        new = self.write("new.csv", indicators_test.recording())
+        spalled = self.write("spalled.csv", indicators_test.recording(line_after=0.0, seconds=12.0))
+        options = [*indicators_test.COLUMNS, *indicators_test.SMALL_WINDOWS]
+        self.succeed("indicators", new, *options, "--save-baseline", "b.yaml")
+        sound, worn, unread = (self.succeed_json("remaining", path, *options, "--hours", 1e6, *more)
+                               for path, more in [(new, ["--baseline", "b.yaml"]), (spalled, ["--baseline", "b.yaml"]),
+                                                  (spalled, [])])
+        self.assertEqual((sound["level"], worn["cause"]), ("OK", "bearing_outer_race"))
+        self.assertNotIn("level", unread)
+        self.assertGreater(worn["end_probability"]["bearing"], unread["end_probability"]["bearing"])
+        self.assertLess(worn["remaining_q50"], 0.5 * unread["remaining_q50"])
+        self.assertGreater(sound["remaining_q10"], unread["remaining_q10"])
+        self.fail_with(1, ["no window lies at an operating point that b.yaml knows"], "remaining", self.write(
+            "slow.csv", "t,theta,phi,amps\n0,0,0,1\n0.5,1,0.01,1\n"), *options, "--baseline", "b.yaml")
 
 
 if __name__ == "__main__":

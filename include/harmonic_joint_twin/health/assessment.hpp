@@ -40,7 +40,9 @@ struct Evidence
 struct Alternative
 {
   Cause cause{};
-  double confidence{};  ///< its probability [-]
+  double confidence{};          ///< its probability [-]
+  double severity{};            ///< of the fault if this is the cause, mean; 0 with NONE [-]
+  double severity_deviation{};  ///< standard deviation of that [-]
 };
 
 /// What the indicators say of the drive.

@@ -31,8 +31,10 @@ public:
   void clear() noexcept;
   /// `fault` valid. @returns false if it is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
-  /// Takes the earliest with a stamp not after `instant`. False: there is none. One that comes late, after a newer one
-  /// of its kind and place was taken, is dropped.
+  /// Whether one has a stamp not after `instant`.
+  bool isDue(Stamp instant) const noexcept { return size_ > 0 && waiting_[size_ - 1].stamp <= instant; }
+  /// Takes the earliest that is due. False: there is none. One that comes late, after a newer one of its kind and place
+  /// was taken, is dropped.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:

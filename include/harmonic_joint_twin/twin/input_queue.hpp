@@ -48,7 +48,10 @@ public:
   /// `now`: up to where has been simulated; an earlier stamp is late.
   void push(const Input& input, Stamp now) noexcept;
 
-  /// Takes the earliest input with a stamp not after `instant`. False: there is none.
+  /// Whether an input has a stamp not after `instant`.
+  bool isDue(Stamp instant) const noexcept { return size_ > 0 && inputs_[first_].stamp <= instant; }
+
+  /// Takes the earliest input that is due. False: there is none.
   bool pop(Stamp instant, Input& input) noexcept;
 
   const InputCounters& counters() const noexcept { return counters_; }

@@ -98,7 +98,7 @@ private:
         return true;
       }
       on_surface_ += twin.onSurface() ? 1 : 0;
-      if (!twin.outputs().converged)
+      if (twin.counters().solver_failures > 0)
       {
         return true;
       }

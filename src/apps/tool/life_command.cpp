@@ -239,17 +239,19 @@ int age(const AgeOptions& options)
 /// Every forecast of every drive that came to its end.
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
-  CsvWriter csv(path, { "life", "hours", "remaining", "q05", "q10", "q50", "q90", "q95", "flank", "interface",
-                        "bearing", "tooth_space", "transition", "flange", "end" });
+  CsvWriter csv(path, { "life", "hours", "remaining", "end", "level", "cause", "severity", "q05", "q10", "q50", "q90",
+                        "q95", "crps", "prior_q10", "prior_q50", "prior_q90", "prior_crps" });
   for (std::size_t i = 0; i < lives.size(); ++i)
   {
     for (const LifeForecast& forecast : lives[i].forecasts)
     {
-      std::vector<double> row{ static_cast<double>(i), forecast.hours, forecast.remaining };
-      row.insert(row.end(), forecast.forecast.quantile.begin(), forecast.forecast.quantile.end());
-      row.insert(row.end(), forecast.forecast.by_cause.begin(), forecast.forecast.by_cause.end());
-      row.push_back(static_cast<double>(*lives[i].life.end));
-      csv.writeRow(row);
+      const auto& quantile = forecast.forecast.quantile;
+      const auto& prior = forecast.prior.quantile;
+      csv.writeRow({ static_cast<double>(i), forecast.hours, forecast.remaining,
+                     static_cast<double>(*lives[i].life.end), static_cast<double>(forecast.assessment.level),
+                     static_cast<double>(forecast.assessment.cause), forecast.assessment.severity, quantile[0],
+                     quantile[1], quantile[2], quantile[3], quantile[4], forecast.forecast.crps(forecast.remaining),
+                     prior[1], prior[2], prior[3], forecast.prior.crps(forecast.remaining) });
     }
   }
   csv.close();
@@ -325,11 +327,9 @@ void declareTrials(Command& command, TrialsOptions& options)
   LifeTrialOptions& trial = options.trials;
   command.add("--lives", trial.lives, "drives").range(1, 1000000);
   command.add("--seed", trial.seed, "of all that is drawn");
-  command.add("--every", trial.every, "hours of use between two readings").range(1e-3, 1e9);
-  command.add("--particles", trial.particles, "of the filter").range(10, 1000000);
-  command.add("--flank-wear-error", trial.flank_wear_error, "of one reading, one sigma [m]").range(1e-9, 1e-3);
-  command.add("--spall-error", trial.spall_error, "of one reading, one sigma, of its size at the end")
-      .range(1e-6, 10.0);
+  command.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
+  command.add("--estimate-error", trial.estimate_error, "errors of estimated severities, over those of docs/health.md")
+      .range(0.0, 10.0);
 }
 
 const Subcommand TRIALS{

@@ -77,12 +77,12 @@ public:
 
   void record(Twin& twin)
   {
-    const JointOutputs& o = twin.outputs();
-    if (o.stamp % period_ != 0)
+    if (twin.stamp() % period_ != 0)
     {
       return;
     }
     ++rows_;
+    const JointOutputs& o = twin.outputs();
     const EncoderReadings e = twin.encoders();
     csv_.writeRow({ toSeconds(o.stamp - begin_), o.motor_angle,  o.motor_velocity,          o.output_angle,
                     o.output_velocity,           e.motor_angle,  e.motor_velocity,          e.output_angle,

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "harmonic_joint_twin/params/faults.hpp"
+
+namespace hjt
+{
+/// How reliable assessments of wear are: counts of docs/health.md. As they are few, a share is the mean of what they
+/// leave open: one more counts on either side (Laplace's rule of succession).
+namespace assessment_errors
+{
+/// Share of drives whose wear of a kind is found at all: of the windows judged at severities 0.2 and 0.5, check-up and
+/// work together. 0: never, spalls among them [-].
+constexpr double detectionShare(FaultKind kind) noexcept
+{
+  switch (kind)
+  {
+    case FaultKind::TOOTH_WEAR:
+      return (6.0 + 1.0) / (6.0 + 2.0);
+    case FaultKind::INTERFACE_WEAR:
+      return (6.0 + 1.0) / (8.0 + 2.0);
+    case FaultKind::LUBRICANT_DEGRADATION:
+      return (4.0 + 1.0) / (8.0 + 2.0);
+    default:
+      return 0.0;
+  }
+}
+
+/// Severity from which on it is found there, log-normal from drive to drive: median, standard deviation of the
+/// logarithm. Assumed: the smallest severity of a signature; 0.2 is found.
+constexpr double DETECTED_SEVERITY = 0.1;
+constexpr double DETECTED_SPREAD = 0.3;
+
+/// Of alarms at severity 0.3 and more by these three kinds: the cause was right in 8 of 9, in the set in 9 of 9.
+constexpr double RIGHT_CAUSE = (8.0 + 1.0) / (9.0 + 2.0);
+constexpr double IN_SET = (9.0 + 1.0) / (9.0 + 2.0);
+
+/// Sound windows beyond the threshold, of 142.
+constexpr double FALSE_ALARMS = 2.0 / 142.0;
+}  // namespace assessment_errors
+}  // namespace hjt
