@@ -164,7 +164,7 @@ def measure(case, tools, folder, repeats):
 
 
 def figure(case, seconds):
-    return f"{case.duration / seconds:.3g}" if case.duration > 0.0 else f"{1e3 * seconds:.0f} ms"
+    return f"{float(f'{case.duration / seconds:.3g}'):g}" if case.duration > 0.0 else f"{1e3 * seconds:.0f} ms"
 
 
 def main():

@@ -16,8 +16,19 @@
 #include "apps/common/interrupt.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
+namespace hjt
+{
+const char* toolHelp();  ///< what joint_twin_complete says to --help; by cmake/tool_help.cmake
+}
+
 namespace
 {
+bool asksForHelp(int argc, char** argv)
+{
+  const std::string first = argc == 2 ? argv[1] : "";
+  return first == "--help" || first == "-h";
+}
+
 /// The tool with every command, beside this one, takes the place of the process.
 int runComplete(char** argv)
 {
@@ -40,6 +51,11 @@ int main(int argc, char** argv)
   try
   {
 #ifdef HJT_COMPLETE_TOOL
+    if (asksForHelp(argc, argv))
+    {
+      std::cout << hjt::toolHelp();
+      return hjt::EXIT_DONE;
+    }
     if (!line.knows(argc, argv))
     {
       return runComplete(argv);

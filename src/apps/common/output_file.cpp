@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -52,15 +51,20 @@ CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& co
 
 void CsvWriter::writeRow(const std::vector<double>& values)
 {
+  texts_.resize(values.size());
   line_.clear();
-  const char* separator = "";
-  for (const double value : values)
+  for (std::size_t column = 0; column < values.size(); ++column)
   {
-    // The shortest text that reads back as the same number.
-    fmt::format_to(std::back_inserter(line_), "{}{}", separator, value);
-    separator = ",";
+    Text& text = texts_[column];
+    // The shortest text that reads back as the same number. Many a column's is that of the row before.
+    if (text.size == 0 || std::memcmp(&text.value, &values[column], sizeof(double)) != 0)
+    {
+      text.value = values[column];
+      text.size = static_cast<std::size_t>(fmt::format_to(text.digits.data(), "{},", text.value) - text.digits.data());
+    }
+    line_.insert(line_.end(), text.digits.data(), text.digits.data() + text.size);
   }
-  line_.push_back('\n');
+  line_.back() = '\n';
   std::fwrite(line_.data(), 1, line_.size(), file_.get());
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -27,7 +29,16 @@ public:
 private:
   [[noreturn]] void fail() const;
 
+  /// A number as it was last written in a column, with the separator behind it.
+  struct Text
+  {
+    double value;
+    std::array<char, 32> digits;  // at most 24, and the separator
+    std::size_t size{};           // zero: none yet
+  };
+
   std::string path_;
+  std::vector<Text> texts_;
   std::vector<char> line_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
