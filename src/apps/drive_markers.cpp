@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a twin's drive for rviz: contact forces in, markers out.
+// Draws a twin's drive for rviz: contact forces in, markers out. What the picture exaggerates may change meanwhile.
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
+#include <dynamic_reconfigure/server.h>
 #include <ros/ros.h>
 
+#include "harmonic_joint_twin/DriveMarkersConfig.h"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "ros_io/drive_markers.hpp"
@@ -52,7 +55,13 @@ int main(int argc, char** argv)
   ros::NodeHandle node("~");
   try
   {
-    const hjt::DriveMarkers markers = readMarkers(node);
+    hjt::DriveMarkers markers = readMarkers(node);
+    using Config = harmonic_joint_twin::DriveMarkersConfig;
+    dynamic_reconfigure::Server<Config> server(node);
+    server.setCallback(
+        [&markers](const Config& config, std::uint32_t) {
+          markers.setStyle({ markers.style().frame, config.exaggeration, config.arrow_length, config.full_force });
+        });
     ros::Publisher publisher = node.advertise<visualization_msgs::MarkerArray>("markers", 1);
     const ros::Subscriber subscriber = ros::NodeHandle().subscribe<harmonic_joint_twin::ContactForces>(
         "contact_forces", 1,

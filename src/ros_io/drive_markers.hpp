@@ -38,6 +38,9 @@ class DriveMarkers
 public:
   DriveMarkers(const Parameters& parameters, const MarkerStyle& style);
 
+  const MarkerStyle& style() const { return style_; }
+  void setStyle(const MarkerStyle& style) { style_ = style; }
+
   /// @throws std::invalid_argument unless every array has as many entries as the flexspline has teeth.
   visualization_msgs::MarkerArray draw(const harmonic_joint_twin::ContactForces& forces) const;
 

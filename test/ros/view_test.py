@@ -5,6 +5,7 @@ import math
 import sys
 import unittest
 
+import dynamic_reconfigure.client
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -36,6 +37,19 @@ class View(unittest.TestCase):
             self.assertLess(max(radii), 0.050, part)
         self.assertEqual(len(drawing["circular_spline", 0].points), 202 * 24)
         self.assertEqual(len(drawing["flexspline", 0].colors), 200 * 24)
+
+    def test_the_exaggeration_changes_meanwhile(self):
+        def depth():
+            """Of the flexspline, between its nearest and its farthest point from the axis [m]."""
+            radii = [math.hypot(point.x, point.y) for point in self.drawing()["flexspline", 0].points]
+            return max(radii) - min(radii)
+
+        before = depth()
+        client = dynamic_reconfigure.client.Client("/base/drive_markers", timeout=10.0)
+        client.update_configuration({"exaggeration": 2.0})
+        wait_until(lambda: depth() < 0.7 * before, "teeth drawn half as deep")
+        client.update_configuration({"exaggeration": 4.0})
+        wait_until(lambda: abs(depth() - before) < 0.05 * before, "teeth drawn as before")
 
     def test_arrows_and_colours_tell_the_load(self):
         command = rospy.Publisher("/base/joint_twin/motor_torque_command", Float64, queue_size=10)
