@@ -32,7 +32,7 @@ namespace hjt
 /// where  P    time between two steps                                                [s]
 /// Until n + 1 angles have come in, the difference is taken over what there is; with one angle the velocity is zero.
 ///
-/// Steps are only kept; errors are added when one is read first, the resolution at every reading.
+/// Steps are only kept: errors are those of what is read, of the encoders once for each step.
 class JointSensors
 {
 public:
@@ -83,7 +83,12 @@ public:
   /// After an update [N.m].
   double motorTorque() const noexcept
   {
-    const double torque = sensed(delay_).motor_torque;
+    const Instant& now = instant(delay_);
+    double torque = now.motor_torque;
+    if (parameters_.torque_noise > 0.0)
+    {
+      torque += parameters_.torque_noise * noise_.normals(TORQUE, now.step)[0];
+    }
     const double resolution = parameters_.torque_resolution;
     return resolution > 0.0 ? resolution * std::round(torque / resolution) : torque;
   }
@@ -101,14 +106,19 @@ private:
     double motor_angle{};   // [rad]
     double output_angle{};  // [rad]
     double motor_torque{};  // [N.m]
-    bool sensed{};          // with the sensors' errors
+    bool sensed{};          // the angles are with the encoders' errors
   };
 
   /// That of so many steps ago, or the first there was.
-  const Instant& sensed(std::size_t back) const noexcept
+  Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);
-    Instant& at = instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
+    return instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
+  }
+
+  const Instant& sensed(std::size_t back) const noexcept
+  {
+    Instant& at = instant(back);
     if (!at.sensed)
     {
       at.sensed = true;
@@ -119,10 +129,6 @@ private:
         const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
         at.motor_angle += parameters_.motor_noise * normals[0];
         at.output_angle += parameters_.output_noise * normals[1];
-      }
-      if (parameters_.torque_noise > 0.0)
-      {
-        at.motor_torque += parameters_.torque_noise * noise_.normals(TORQUE, at.step)[0];
       }
     }
     return at;
