@@ -143,8 +143,8 @@ class Bench:
                               stdout=subprocess.PIPE)
         # 1: some run failed, as its row in the index says; or all was refused, and nothing reported.
         if done.returncode == 1 and not done.stdout:
-            sys.exit(f"evaluate_health: the sweep of {plan} was refused, as said above; runs of another version of the "
-                     f"software or of another plan stay in {out} until you delete it")
+            sys.exit(f"evaluate_health: the sweep of {plan} was refused (message above); runs of another version of "
+                     f"the software or of another plan stay in {out} until you delete it")
         if done.returncode not in (0, 1):
             sys.exit(f"evaluate_health: the sweep of {plan} ended with {done.returncode}")
         with open(out / "index.csv", newline="", encoding="utf-8") as index:

@@ -18,7 +18,6 @@ constexpr double detectionShare(FaultKind kind) noexcept
     case FaultKind::TOOTH_WEAR:
       return (7.0 + 1.0) / (9.0 + 2.0);
     case FaultKind::INTERFACE_WEAR:
-      return (9.0 + 1.0) / (9.0 + 2.0);
     case FaultKind::LUBRICANT_DEGRADATION:
       return (9.0 + 1.0) / (9.0 + 2.0);
     default:

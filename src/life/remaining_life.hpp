@@ -97,7 +97,7 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 /// the literature and the catalogue leave open (log-normal; the Weibull distribution of the bearing's life), given
 /// that its use so far has not ended it: each is drawn from its distribution beyond that limit. The points are Sobol's.
 /// Use ages every particle by the same laws. An assessment weighs it by how likely its wear, as severities of faults,
-/// makes what was said:
+/// makes what it reports:
 ///
 ///   no fault found   prod_k (1 - D_k(s_k)); 1 of a window whose load did not go both ways, which shows little wear
 ///   fault found      sum_k p_k D_k(s_k) f(e_k; s_k) / u + r max(1 - sum_k p_k, q)

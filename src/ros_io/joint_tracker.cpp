@@ -23,7 +23,7 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// The verdict is of the rows of up to this long; then it begins anew [s].
+/// The verdict is of the rows of up to this long; then it starts again [s].
 constexpr double JUDGED_SPAN = 1800.0;
 /// A worse verdict is reported once it has stood for this long: the first rows of a motion are few [s].
 constexpr double CONFIRMED_AFTER = 10.0;
@@ -295,7 +295,7 @@ MeasuredFriction JointTracker::measuredFriction() const
 void JointTracker::judgeEvidence(double arm_friction)
 {
   const MotionReach& reach = tracker_.evidence().reach();
-  const bool is_new = confirmed_ > reach.end;  // the telemetry began anew
+  const bool is_new = confirmed_ > reach.end;  // the telemetry started again
   Verdict verdict = judge(tracker_.evidence(), parameters_, context(arm_friction));
   // After JUDGED_SPAN the last verdict stands until there is another.
   const bool is_open = !verdict.judged && verdict_.judged && whyNotJudged().empty() && !is_new;

@@ -90,7 +90,7 @@ public:
   /// As `joint_twin compare` measures it, of the rows that the verdict is of.
   MeasuredFriction measuredFriction() const;
 
-  /// Makes the verdict anew; `arm_friction`: what all joints have in common of `measuredFriction` [-].
+  /// Makes the verdict again; `arm_friction`: what all joints have in common of `measuredFriction` [-].
   void judgeEvidence(double arm_friction);
 
   /// A message on the load's topic.

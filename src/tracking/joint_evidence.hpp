@@ -75,7 +75,7 @@ public:
   /// `sample`: its load holds weight and inertia too. `fits`: else the signals are not looked at.
   Row update(const MotionSample& sample, bool fits = true) noexcept;
 
-  /// Begins anew, but keeps what the signals are held against and what touches the arm.
+  /// Starts again, but keeps what the signals are held against and what touches the arm.
   void forget() noexcept;
   /// All of it: other rows follow.
   void reset() noexcept;
