@@ -138,19 +138,28 @@ ArmJoint readJoint(const std::string& place, const YAML::Node& node)
   }
   return joint;
 }
+
+/// The file's map over that of the file that it is like, and so on.
+YAML::Node loadWhole(const std::string& path, int depth = 0)
+{
+  constexpr int MAX_DEPTH = 8;
+  const YAML::Node root = load(path);
+  const Section own(path, root, { "like", "description", "base", "tip", "gravity", "payload", "joints" });
+  if (!own.has("like"))
+  {
+    return root;
+  }
+  if (depth == MAX_DEPTH)
+  {
+    throw ParameterError(path + ": like: more than " + std::to_string(MAX_DEPTH) + " files in a row");
+  }
+  return overlaid(loadWhole(beside(path, own.value<std::string>("like")), depth + 1), root);
+}
 }  // namespace
 
 ArmDescription readArmDescription(const std::string& path)
 {
-  YAML::Node root = load(path);
-  const Section own(path, root, { "like", "description", "base", "tip", "gravity", "payload", "joints" });
-  if (own.has("like"))
-  {
-    const std::string other = beside(path, own.value<std::string>("like"));
-    const YAML::Node base = load(other);
-    const Section whole(other, base, { "description", "base", "tip", "gravity", "payload", "joints" });
-    root = overlaid(base, root);
-  }
+  const YAML::Node root = loadWhole(path);
   const Section section(path, root, { "description", "base", "tip", "gravity", "payload", "joints" });
   ArmDescription arm;
   arm.origin = path;

@@ -140,8 +140,10 @@ class Arms(tool.ToolTest):
         self.write("tilted.yaml", f"like: {ARMS}/ur10.yaml\ngravity: [0.0, 9.82, 0.0]\n")
         summary = self.succeed_json("checkup", "--arm", "tilted.yaml", "--joint", "base", "--out", "a.csv")
         self.assertGreater(summary["largest_torque"], 100.0)  # the base carries weight
+        self.write("twice.yaml", f"like: {ARMS}/ur10e.yaml\ngravity: [0.0, 9.82, 0.0]\n")
+        self.succeed("checkup", "--arm", "twice.yaml", "--joint", "base", "--out", "twice.csv")
         for text, parts in (("like: no.yaml\n", ["no.yaml cannot be read"]),
-                            (f"like: {ARMS}/ur3e.yaml\n", ["ur3e.yaml", "unknown key 'like'"]),
+                            ("like: bad.yaml\n", ["bad.yaml", "more than 8 files in a row"]),
                             (f"like: {ARMS}/ur3.yaml\nweight: 3\n", ["unknown key 'weight'"]),
                             ("- 3\n", ["keys and values expected"])):
             self.write("bad.yaml", text)
