@@ -8,6 +8,7 @@ import base64
 import concurrent.futures
 import json
 import os
+import signal
 import sys
 
 try:
@@ -261,10 +262,14 @@ def main():
         make_joint_page(directory)
         return
     arm = read_record(directory, "arm.json")
-    with concurrent.futures.ProcessPoolExecutor() as pool:
+    quiet = dict(initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
+    with concurrent.futures.ProcessPoolExecutor(**quiet) as pool:
         list(pool.map(make_joint_page, [os.path.join(directory, joint["joint"]) for joint in arm["joints"]]))
     write_page(directory, "arm_page.html", arm=arm)
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("comparison_page: interrupted")

@@ -14,12 +14,13 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, GREASE, JUDGED, QUICK
+from health_runs import CHECK_UP, GREASE, JUDGED, QUICK, SERIES_MOTIONS
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 SURE = 0.3            # severity from which on the cause should be right
+SERIES_WINDOWS = 120  # of each drawn gear, beside those of its reference
 SET = 0.9             # probability that the causes of a set have together
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:green",
@@ -63,18 +64,47 @@ def poisson_bound(count):
     return 0.5 * degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
 
 
+def alarms(runs):
+    """(hours, windows beyond the threshold, two in a row of one gear, 95 % bound of the latter in 1000 h, the same if
+    windows are independent)."""
+    hours = sum(run.motion.window for run in runs) / 3600.0
+    count = sum(map(beyond, runs))
+    pairs = sum(beyond(one) and beyond(other) and one.gear is other.gear for one, other in zip(runs, runs[1:]))
+    share_bound = poisson_bound(count) / len(runs)
+    return hours, count, pairs, 1000.0 * poisson_bound(pairs) / hours, 1000.0 * share_bound ** 2 * len(runs) / hours
+
+
 def sound_table(sound):
     lines = ["| gear, motion | windows | hours | beyond the threshold | two in a row | 95 % bound of alarms in 1000 h "
              "| the same, windows independent |", "|---|---|---|---|---|---|---|"]
     groups = [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
               itertools.groupby(sound, key=lambda run: (run.gear.name, run.motion.name))]
     for name, own in [*groups, ("all", sound)]:
-        hours = sum(run.motion.window for run in own) / 3600.0
-        count = sum(beyond(run) for run in own)
-        pairs = sum(beyond(one) and beyond(other) for one, other in zip(own, own[1:]))
-        bound = poisson_bound(count) / len(own)
-        lines.append(f"| {name} | {len(own)} | {hours:.2f} | {count} | {pairs} | "
-                     f"{1000.0 * poisson_bound(pairs) / hours:.0f} | {1000.0 * bound ** 2 * len(own) / hours:.1f} |")
+        hours, count, pairs, bound, independent = alarms(own)
+        lines.append(f"| {name} | {len(own)} | {hours:.2f} | {count} | {pairs} | {bound:.0f} | {independent:.1f} |")
+    return lines
+
+
+def series(bench, gears):
+    """Table of sound runs of many drawn gears, each compared with the reference of its own."""
+    temperature = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
+    runs = []
+    for number in range(gears):
+        gear = health_runs.drawn(number)
+        motion = SERIES_MOTIONS[number % len(SERIES_MOTIONS)]
+        runs += bench.judge(bench.sound("series", gear, motion, temperature, SERIES_WINDOWS, 10000 + number), gear,
+                            motion)
+    lines = ["| motion | gears | windows | not judged | hours | beyond the threshold | gears with one | two in a row "
+             "| 95 % bound of alarms in 1000 h | the same, windows independent |", "|---|" + "---|" * 9]
+    judged = [run for run in runs if run.window]
+    for name in [*(motion.name for motion in SERIES_MOTIONS), "all"]:
+        own = [run for run in judged if name in (run.motion.name, "all")]
+        if own:
+            missing = sum(name in (run.motion.name, "all") for run in runs) - len(own)
+            hours, count, pairs, bound, independent = alarms(own)
+            with_one = len({run.gear.name for run in own if beyond(run)})
+            lines.append(f"| {name} | {len({run.gear.name for run in own})} | {len(own)} | {missing} | {hours:.1f} | "
+                         f"{count} | {with_one} | {pairs} | {bound:.3g} | {independent:.3g} |")
     return lines
 
 
@@ -222,6 +252,8 @@ def main():
     parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes again, and nothing else")
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
+    parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
+                        "page's table of them, and nothing else; half a minute each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
@@ -233,6 +265,9 @@ def main():
         return
     if options.quick:
         print("\n".join(report(bench, QUICK, *collect(bench, QUICK, 40), page)))
+        return
+    if options.series:
+        page_section.write(page, "series", series(bench, options.series))
         return
     images = options.docs / "images" / "health"
     if options.figures:

@@ -11,6 +11,8 @@ import math
 import subprocess
 import sys
 
+import numpy
+
 RATIO = 101.0
 TOOTH = 40                # of the figures of the single faults
 ACCELERATION = 300.0      # of a motion at work [deg/s^2]
@@ -47,6 +49,19 @@ def uneven(seed):
                                                 f"  manufacture.circular_spline_pitch_seed: {seed}"])
 
 
+def drawn(number):
+    """A gear of the series: cup, play, preload, grease and errors of the circular spline drawn."""
+    draw = numpy.random.default_rng(number).uniform
+    stiffer = draw(0.93, 1.07)
+    slopes = ", ".join(f"{stiffer * slope:.0f}.0" for slope in (33200.0, 56100.0, 65200.0))
+    return Gear(f"drawn {number}", False, [
+        f"  cup.torsion_stiffness: [{slopes}]", f"  mesh.flank_clearance: {draw(-1.4e-6, -0.7e-6):.3e}",
+        f"  bearing.race_preload: {draw(450.0, 590.0):.1f}", f"  bearing.viscosity: {draw(300e-6, 380e-6):.3e}",
+        f"  manufacture.circular_spline_pitch_deviation: {draw(3e-6, 12e-6):.3e}",
+        f"  manufacture.circular_spline_pitch_seed: {5000 + number}",
+        f"  manufacture.circular_spline_eccentricity: [{draw(-1e-6, 1e-6):.3e}, {draw(-1e-6, 1e-6):.3e}]"])
+
+
 # The split. Every tooth of a gear whose teeth differ is solved, which takes longest: it runs the check-up only.
 Trial = collections.namedtuple("Trial", "name gear motions severities tooth seed")
 FITTED = Trial("fitted", EVEN, [CHECK_UP, STACKING, SLOW_TURN, FAST_TURN], [0.15, 0.4, 1.0], 90, 2)
@@ -54,6 +69,7 @@ CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, SLOW_TURN], [0.25,
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5)]
 JUDGED = [Trial("judged", STIFF, [CHECK_UP, PICK_AND_PLACE, SEAM, TURN], [0.2, 0.5], 130, 6),
           Trial("judged", uneven(2468), [CHECK_UP], [0.2], 130, 6)]
+SERIES_MOTIONS = [CHECK_UP, PICK_AND_PLACE, SEAM, TURN]  # of drawn gears, one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)]
 
 GREASE = (10.0, 50.0)     # [degC]

@@ -191,21 +191,7 @@ bool JointDynamics::surfaceAgrees() const noexcept
 
 SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) noexcept
 {
-  const DrivePosition target{ motor_angle, output_angle, model_.ring.gear.wave_amplitude };
-  SolveStatus result = ring_.moveTo(target);
-  if (!result.ok() && std::isfinite(motor_angle) && std::isfinite(output_angle))
-  {
-    // On balls, teeth that begin to touch have no stiffness yet, and Newton's method may fail where an equilibrium is
-    // near. A ring inserted again beyond half a pitch of twist would stand in the next spaces.
-    if (!model_.ring.of<WaveGeneratorContact>().hasKinks())
-    {
-      result = ring_.descend(target).addEffort(result);
-    }
-    if (!result.ok())
-    {
-      result = ring_.reinsert(target).addEffort(result);
-    }
-  }
+  const SolveStatus result = ring_.reach({ motor_angle, output_angle, model_.ring.gear.wave_amplitude });
   status.iterations += result.iterations;
   status.cuts += result.cuts;
   status.jumps += result.jumps;

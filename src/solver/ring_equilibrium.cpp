@@ -210,6 +210,22 @@ SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
   return status;
 }
 
+/// On balls, teeth that begin to touch have no stiffness yet, and Newton's method may fail where an equilibrium is near. A
+/// ring inserted again beyond half a pitch of twist would stand in the next spaces.
+SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
+{
+  SolveStatus status = moveTo(target);
+  if (status.ok() || !std::isfinite(target.wave_generator_angle) || !std::isfinite(target.output_angle))
+  {
+    return status;
+  }
+  if (!model_.of<WaveGeneratorContact>().hasKinks())
+  {
+    status = descend(target).addEffort(status);
+  }
+  return status.ok() ? status : reinsert(target).addEffort(status);
+}
+
 /// Straight to the target; where that fails, by halved paths that grow again.
 SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 {

@@ -51,6 +51,9 @@ public:
   /// spaces are paired again on the way. Slow; `iterations` counts its steps. On failure the state is unchanged.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
+  /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
+  SolveStatus reach(const DrivePosition& target) noexcept;
+
   const RingModel& model() const noexcept { return model_; }
   const RingShape& shape() const noexcept { return now_.shape; }
   const DrivePosition& position() const noexcept { return now_.position; }

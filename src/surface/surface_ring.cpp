@@ -124,7 +124,7 @@ bool SurfaceRing::insert()
 bool SurfaceRing::moveTo(double motor_angle, double v)
 {
   ++solves_;
-  return ring_.moveTo({ motor_angle, v + motor_angle / ratio_, wave_amplitude_ }).ok();
+  return ring_.reach({ motor_angle, v + motor_angle / ratio_, wave_amplitude_ }).ok();
 }
 
 Node SurfaceRing::measure()

@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "ring_fixture.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -262,6 +264,39 @@ TEST(FailedMove, ThatGotHalfWayLeavesAnEquilibriumToo)
     }
   }
   EXPECT_GT(failures, 3);
+}
+
+/// 592 N.m on a gear with pitch errors; found as its table was built.
+TEST(FailedMove, IsReachedByDescent)
+{
+  const Parameters parameters = shippedParameters(
+      { "manufacture.circular_spline_pitch_deviation=9.884e-6", "manufacture.circular_spline_pitch_seed=5900" },
+      { "joints/shoulder" });
+  const RingModel model(parameters);
+  RingEquilibrium ring(model, staticSolver(parameters.solver));
+  const double pitch = model.rest.pitchAngle();
+  const double amplitude = parameters.gear.wave_amplitude;
+  const auto at = [&](double pitches, double twist) -> DrivePosition
+  { return { pitches * pitch, twist + pitches * pitch / nominalRatio(parameters.gear), amplitude }; };
+  constexpr double TWIST = -0.010368091;
+  ASSERT_TRUE(ring.insert(at(0.0, 0.0)).ok());
+  for (int piece = 1; piece <= 40; ++piece)
+  {
+    ASSERT_TRUE(ring.moveTo(at(0.0, TWIST * piece / 40)).ok());
+  }
+  int failed = 0;
+  for (int place = 0; place >= -16 * 68; --place)
+  {
+    const DrivePosition next = at(place / 16.0, TWIST);
+    const SolveStatus status = ring.moveTo(next);
+    if (!status.ok())
+    {
+      ++failed;
+      ASSERT_TRUE(ring.reach(next).ok());
+    }
+    expectEquilibrium(ring, staticSolver(parameters.solver).force_tolerance);
+  }
+  EXPECT_GT(failed, 0);
 }
 
 TEST(FaultyTooth, OfNotANumberIsSaidAndDoesNotSpread)
