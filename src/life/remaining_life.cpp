@@ -59,7 +59,7 @@ double factorBelow(double ends_at, double spread, double share) noexcept
   return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
 }
 
-/// Miner's sum of a place by a use, of a flexspline whose strength is off by so many standard deviations.
+/// Miner's sum of a place by a use. @param deviation of the flexspline's strength, in standard deviations
 double fatigueBy(const Usage& usage, double deviation, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;

@@ -383,11 +383,10 @@ void bindSlowMotion(py::module& module)
       .def_readonly("lost_motion", &TorsionLoop::lost_motion,
                     "between the middles of the loop at plus and minus the lost motion torque [rad]");
   addText(loop);
-  module.def(
-      "analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"), py::arg("lost_motion_torque"),
-      py::arg("steps") = 200,
-      "Wave generator locked, load swept slowly between plus and minus amplitude [N.m], in so many steps a sweep; "
-      "lost_motion_torque: e.g. 4 % of the rated torque [N.m]. Returns TorsionLoop. NotConverged.");
+  module.def("analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"),
+             py::arg("lost_motion_torque"), py::arg("steps") = 200,
+             "Wave generator locked, load swept slowly between plus and minus amplitude [N.m]; steps: of a sweep; "
+             "lost_motion_torque: e.g. 4 % of the rated torque [N.m]. Returns TorsionLoop. NotConverged.");
 }
 }  // namespace
 

@@ -431,7 +431,7 @@ void bindMarch(py::class_<TwinObject>& twin)
            "reached.\n\n"
            "steps: how many; None: as many as the arrays have. motor_torque, load_torque [N.m], brake (0 or 1), "
            "temperature [degC]: a number, or an array of shape (steps,) with the value of each step; None: what was "
-           "commanded before. A given torque does not time out during the run. every: rows at every so many steps. "
+           "commanded before. A given torque does not time out during the run. every: steps from one row to the next. "
            "out: an "
            "array of an earlier run, to be overwritten; None: a new one.\n\n"
            "Returns a structured array of shape (steps // every,) with dtype STEP_DTYPE. InputError.")

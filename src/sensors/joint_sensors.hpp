@@ -109,7 +109,7 @@ private:
     bool sensed{};          // the angles are with the encoders' errors
   };
 
-  /// That of so many steps ago, or the first there was.
+  /// That of `back` steps ago, or the first there was.
   Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);

@@ -140,7 +140,7 @@ struct DeviationTable
   };
   std::vector<Pitch> pitches;  ///< none: there are no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
-  int shift{};                 ///< of the pattern against that of the table: so many teeth on; >= 0
+  int shift{};                 ///< of the pattern against that of the table [teeth]; >= 0
 };
 
 /// Which of ascending values lies below a given one, in constant time.
@@ -196,7 +196,7 @@ public:
     return (1.0 - v_) * low + v_ * high;
   }
 
-  /// The first so many of them at once.
+  /// The first COUNT of them at once.
   template <int COUNT>
   Eigen::Array<float, COUNT, 1> values() const noexcept
   {

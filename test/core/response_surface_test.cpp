@@ -217,9 +217,8 @@ TEST(ParallelTasks, PassOnWhatOneThrows)
   for (const unsigned threads : { 1u, 3u })
   {
     EXPECT_THROW(runTasks(50, threads, fail_at(20), [](std::size_t) {}), std::runtime_error);
-    EXPECT_THROW(
-        runTasks(50, threads, fail_at(99), [](std::size_t) -> void { throw std::logic_error("of who is told"); }),
-        std::logic_error);
+    EXPECT_THROW(runTasks(50, threads, fail_at(99), [](std::size_t) -> void { throw std::logic_error("of any task"); }),
+                 std::logic_error);
     done = 0;
     std::size_t last = 0;
     runTasks(50, threads, fail_at(99), [&last](std::size_t finished) { last = finished; });
@@ -912,19 +911,19 @@ TEST(SurfaceBalls, ArePooledByTheirDepth)
 TEST(SurfaceBalls, AreNotThereForSeveralFaultsOrUnequalTeeth)
 {
   const Parameters parameters = surfaceParameters();
-  std::string told;
+  std::string notice;
   SurfaceSource source = cached();
-  source.notice = [&](const std::string& what) { told = what; };
+  source.notice = [&](const std::string& what) { notice = what; };
   FaultList faults;
   faults.set(parseFault("bearing_cage:1:3", parameters), 0);
   faults.set(parseFault("bearing_ball:1:4", parameters), 0);
   EXPECT_EQ(surfaceWithFaults(parameters, faults, source), nullptr);
-  EXPECT_THAT(told, testing::HasSubstr("more than one fault of the bearing"));
+  EXPECT_THAT(notice, testing::HasSubstr("more than one fault of the bearing"));
   faults.set(parseFault("bearing_ball:0:4", parameters), 0);
   EXPECT_NE(surfaceWithFaults(parameters, faults, source), nullptr);
   faults.set(parseFault("flexspline_crack:1:40", parameters), 0);
   EXPECT_EQ(surfaceWithFaults(parameters, faults, source), nullptr);
-  EXPECT_THAT(told, testing::HasSubstr("teeth differ"));
+  EXPECT_THAT(notice, testing::HasSubstr("teeth differ"));
 }
 
 /// A ball that has dropped does in a gear with a broken tooth nearly what it does in one without.
@@ -1027,9 +1026,9 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
 TEST(SceneAuto, ManyFaultsThatSetInLaterHaveFewTables)
 {
   Parameters parameters = surfaceParameters();
-  std::string told;
+  std::string notice;
   SurfaceSource source = cached();
-  source.notice = [&](const std::string& what) { told = what; };
+  source.notice = [&](const std::string& what) { notice = what; };
   for (const char* fault : { "flange_crack:0.1:-1:0.002", "flange_crack:0.2:-1:0.002", "flange_crack:0.3:-1:0.002",
                              "flange_crack:0.5:-1:0.002" })
   {
@@ -1050,14 +1049,14 @@ TEST(SceneAuto, ManyFaultsThatSetInLaterHaveFewTables)
     return on_surface;
   };
   EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000 }), testing::ElementsAre(true, true));
-  EXPECT_EQ(told, "");
+  EXPECT_EQ(notice, "");
   for (std::size_t i = 0; i < parameters.faults.size(); ++i)
   {
     parameters.faults[i].onset += 0.001 * static_cast<double>(i);
   }
   EXPECT_THAT(surfaces_after({ 1'900'000, 2'500'000, 4'900'000, 5'500'000 }),
               testing::ElementsAre(true, false, false, true));
-  EXPECT_THAT(told, testing::HasSubstr("of the first and the last faults only"));
+  EXPECT_THAT(notice, testing::HasSubstr("of the first and the last faults only"));
 }
 
 /// The full ring from the first instant, and the surface as soon as it is there, without a step in the torque.
@@ -1160,11 +1159,11 @@ TEST(SurfaceRing, TellsAfterHowManyPitchesTheGearIsTheSameAgain)
 
 TEST(SurfaceBuilder, AGearWithErrorsOnBothMembersHasNone)
 {
-  std::string told;
+  std::string notice;
   Twin twin(shippedParameters({ "solver.scene=auto", "manufacture.flexspline_pitch_deviation=2.0e-6",
                                 "manufacture.circular_spline_pitch_deviation=2.0e-6" }),
-            { cacheDirectory(), {}, [&](const std::string& what) { told = what; } });
-  EXPECT_NE(told.find("not the same again"), std::string::npos);
+            { cacheDirectory(), {}, [&](const std::string& what) { notice = what; } });
+  EXPECT_NE(notice.find("not the same again"), std::string::npos);
   twin.commandMotorTorque(0, 0.5);
   advance(twin, SECOND / 100);
   EXPECT_FALSE(twin.onSurface());

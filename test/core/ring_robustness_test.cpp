@@ -276,8 +276,9 @@ TEST(FailedMove, IsReachedByDescent)
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   const double pitch = model.rest.pitchAngle();
   const double amplitude = parameters.gear.wave_amplitude;
-  const auto at = [&](double pitches, double twist) -> DrivePosition
-  { return { pitches * pitch, twist + pitches * pitch / nominalRatio(parameters.gear), amplitude }; };
+  const auto at = [&](double pitches, double twist) -> DrivePosition {
+    return { pitches * pitch, twist + pitches * pitch / nominalRatio(parameters.gear), amplitude };
+  };
   constexpr double TWIST = -0.010368091;
   ASSERT_TRUE(ring.insert(at(0.0, 0.0)).ok());
   for (int piece = 1; piece <= 40; ++piece)

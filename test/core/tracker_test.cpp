@@ -180,13 +180,13 @@ INSTANTIATE_TEST_SUITE_P(Modes, TrackerInMode,
                          testing::Values(InputMode::TORQUE, InputMode::MOTION, InputMode::OBSERVER));
 
 /// Comparisons of a joint that stands at an angle under a load of 12 N.m.
-Comparison standing(const Parameters& parameters, bool told)
+Comparison standing(const Parameters& parameters, bool received)
 {
   Tracker tracker(parameters, InputMode::MOTION);
   Comparison last;
   for (int i = 0; i < 100; ++i)
   {
-    if (told)
+    if (received)
     {
       tracker.pushLoad(PERIOD * i, 12.0);
     }
@@ -224,10 +224,10 @@ TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
     Tracker tracker(parameters, InputMode::MOTION);
     for (int i = 0; i < 200; ++i)
     {
-      const int told = i - 5 * late;  // 40 ms
-      if (told >= 0)
+      const int received = i - 5 * late;  // 40 ms
+      if (received >= 0)
       {
-        tracker.pushLoad(PERIOD * told, told);
+        tracker.pushLoad(PERIOD * received, received);
       }
       tracker.push(rowAt(PERIOD * i));
       for (const Comparison& now : takeAll(tracker))

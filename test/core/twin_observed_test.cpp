@@ -102,7 +102,7 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
   EXPECT_EQ(allocationCount(), before);
 }
 
-/// What one reader of the health was told of the solver, another is told as well.
+/// What one reader of the health learns of the solver, another learns as well.
 TEST(ObservedHealth, HasAReportForEveryReader)
 {
   // Steps are too long for the swing on a shaft that gives way, under a load that presses the bearing.

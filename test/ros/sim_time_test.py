@@ -22,7 +22,7 @@ PERIOD = MILLISECOND       # of joint_states
 
 
 class SimTime(unittest.TestCase):
-    """One story, told in order: the clock belongs to both nodes."""
+    """One story, in order: the clock belongs to both nodes."""
 
     @classmethod
     def setUpClass(cls):

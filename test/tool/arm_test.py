@@ -316,9 +316,9 @@ class Arm(tool.ToolTest):
             joints = self.succeed_json("follow", path, "--arm", "ur5")["joints"]
             for number, joint in enumerate(joints):
                 column = names.index(f"target_moment_{number}")
-                told = [float(line.split(",")[column]) for line in lines]
+                reported = [float(line.split(",")[column]) for line in lines]
                 difference = joint["load_difference_rms"]
-                span = max(told) - min(told)
+                span = max(reported) - min(reported)
                 print(f"{os.path.basename(path):22} {joint['joint']:9} {difference:.3f} N.m of {span:.1f}")
                 self.assertLess(difference, max(SLOW, FAST_SHARE * span), (path, joint["joint"]))
 

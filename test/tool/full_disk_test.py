@@ -34,7 +34,7 @@ class FullDisk(tool.ToolTest):
         return done.stderr
 
     def check_active(self, name, text):
-        """The unfinished bag: told, readable once it is indexed, and without its last chunk alone."""
+        """The unfinished bag: reported, readable once it is indexed, and without its last chunk alone."""
         self.assertFalse(os.path.exists(self.path(name)))
         self.assertIn(f"{name} cannot be written", text)
         self.assertIn(f"{name}.active has {LIMIT} bytes of ", text)
@@ -42,8 +42,8 @@ class FullDisk(tool.ToolTest):
         with rosbag.Bag(self.path(name + ".active"), "a", allow_unindexed=True) as bag:
             for _ in bag.reindex():
                 pass
-        told = int(text.split(" bytes of ")[1].split()[0])
-        self.assertGreater(len(tool.raw_messages(self.path(name + ".active"))), 0.3 * told)
+        reported = int(text.split(" bytes of ")[1].split()[0])
+        self.assertGreater(len(tool.raw_messages(self.path(name + ".active"))), 0.3 * reported)
 
     def test_a_simulation_keeps_what_was_recorded(self):
         text = self.fail_at_limit("simulate", "--torque", 0.2, "--duration", 3, "--out", "out.bag")

@@ -58,9 +58,9 @@ class Identify(tool.ToolTest):
         self.assertTrue(all(isinstance(value, float) for value in overlay["bearing"].values()))
         loaded = self.succeed_json("parameters", "--config", "joints/elbow.yaml", "--config", self.path("found.yaml"))
         self.assertIn(str(gain["value"])[:8], str(loaded))
-        told = ["--set", "telemetry.load=target_moment"]
-        before = self.succeed_json("follow", "a.bag", *OPTIONS, *told)
-        after = self.succeed_json("follow", "a.bag", *OPTIONS, *told, "--config", self.path("found.yaml"), "--out",
+        given = ["--set", "telemetry.load=target_moment"]
+        before = self.succeed_json("follow", "a.bag", *OPTIONS, *given)
+        after = self.succeed_json("follow", "a.bag", *OPTIONS, *given, "--config", self.path("found.yaml"), "--out",
                                   "a.csv")
         self.assertLess(after["current_residual_rms"], 0.5 * before["current_residual_rms"])
         self.assertIn(after["unreadable"], range(10, 15))  # of 14 some may have been dropped

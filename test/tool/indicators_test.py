@@ -84,11 +84,11 @@ class Indicators(tool.ToolTest):
         for name, seconds in [("a.bag", 1.5), ("b.bag", 1.2)]:
             self.succeed("simulate", *run, "--duration", seconds, "--out", name)
         short = ["--set", "indicators.window_turns=5.0"]
-        told = self.succeed_json("indicators", "--windows", "a.bag", "b.bag", *short)["windows"]
-        self.assertEqual({window["recording"] for window in told}, {"a.bag", "b.bag"})
+        reported = self.succeed_json("indicators", "--windows", "a.bag", "b.bag", *short)["windows"]
+        self.assertEqual({window["recording"] for window in reported}, {"a.bag", "b.bag"})
         found = self.succeed_json("indicators", "a.bag", "b.bag", *short)["windows"]
-        self.assertEqual([window["recording"] for window in told], [window["recording"] for window in found])
-        for one, other in zip(told, found):
+        self.assertEqual([window["recording"] for window in reported], [window["recording"] for window in found])
+        for one, other in zip(reported, found):
             for name in ["kinematic_error", "running_torque", "error_wave_generator_2_cos"]:
                 self.assertAlmostEqual(one["indicators"][name], other["indicators"][name], delta=1e-8)
 

@@ -245,11 +245,11 @@ record:
             with self.subTest(name):
                 self.assertLess(abs(first - others.mean()), max(5.0 * others.std(ddof=1), 0.05 * abs(others.mean())))
         # The tool finds in the file what the twin found as it ran.
-        told = self.succeed_json("indicators", "a/" + file_name, "--config", "real_sensors.yaml",
-                                 "--set", "indicators.window_turns=20.0")["windows"]
-        self.assertEqual(len(told), len(windows["window_end"]))
+        reported = self.succeed_json("indicators", "a/" + file_name, "--config", "real_sensors.yaml",
+                                     "--set", "indicators.window_turns=20.0")["windows"]
+        self.assertEqual(len(reported), len(windows["window_end"]))
         for name in ("kinematic_error", "running_torque", "residual_rms", "error_outer"):
-            for window, value in zip(told[1:], windows[name][1:]):
+            for window, value in zip(reported[1:], windows[name][1:]):
                 self.assertAlmostEqual(window["indicators"][name], value, delta=1e-9)
 
     def test_a_fault_grows_within_a_run(self):

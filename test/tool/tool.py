@@ -73,7 +73,7 @@ class ToolTest(unittest.TestCase):
         process = subprocess.Popen([self.executable, *map(str, arguments)], cwd=self.directory,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    env=dict(os.environ, **(environment or {})))
-        # Not the usage told at the end: it counts what this process had when it started the other.
+        # Not the usage reported at the end: it counts what this process had when it started the other.
         peak = 0
         while process.poll() is None:
             peak = max(peak, peak_memory(process.pid))
