@@ -210,8 +210,8 @@ SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
   return status;
 }
 
-/// On balls, teeth that begin to touch have no stiffness yet, and Newton's method may fail where an equilibrium is near.
-/// A ring inserted again beyond half a pitch of twist would stand in the next spaces.
+/// On balls, teeth that begin to touch have no stiffness yet: an equilibrium may be near where Newton's method fails. A
+/// ring inserted again beyond half a pitch of twist would stand in the next spaces.
 SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 {
   SolveStatus status = moveTo(target);
