@@ -8,6 +8,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
+#include "health/angle_multiples.hpp"
 #include "health/running_regression.hpp"
 
 namespace hjt
@@ -49,7 +50,11 @@ class OrderTracker
 {
 public:
   explicit OrderTracker(const LineOrders& orders)
-    : orders_(orders), row_(Eigen::VectorXd::Zero(COLUMNS)), targets_(0.0, 0.0), regression_(COLUMNS, LINE_SIGNALS)
+    : orders_(orders)
+    , rotations_(orders)
+    , row_(Eigen::VectorXd::Zero(COLUMNS))
+    , targets_(0.0, 0.0)
+    , regression_(COLUMNS, LINE_SIGNALS)
   {
   }
 
@@ -61,13 +66,7 @@ public:
     row_.head<NUISANCES>() << 1.0, sample.direction, sample.speed, std::cos(sample.output_angle),
         std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
         sample.load * sample.load * sample.load;
-    for (std::size_t line = 0; line < LINE_COUNT; ++line)
-    {
-      const auto column = static_cast<Eigen::Index>(NUISANCES + 2 * line);
-      const double angle = orders_[line] * sample.motor_angle;
-      row_[column] = std::cos(angle);
-      row_[column + 1] = std::sin(angle);
-    }
+    rotations_.at(sample.motor_angle, row_.data() + NUISANCES);
     targets_ = { sample.kinematic_error, sample.motor_torque };
     regression_.add(row_, targets_);
   }
@@ -117,6 +116,7 @@ private:
   static constexpr int COLUMNS = NUISANCES + 2 * static_cast<int>(LINE_COUNT);
 
   LineOrders orders_;
+  AngleMultiples<LINE_COUNT> rotations_;
   Eigen::VectorXd row_;
   Eigen::Vector2d targets_;
   RunningRegression regression_;

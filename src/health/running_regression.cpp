@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Cholesky>
+
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {
@@ -13,6 +16,22 @@ namespace
 // Of a column's mean square [-]: what stands out of the others by less than a thousandth has no coefficient of its own,
 // such as the ripple of a steady speed beside the constant.
 constexpr double RIDGE = 1e-6;
+
+/// Adds row row' to a matrix of that order, by columns: its lower triangle, and above it what fills whole vectors.
+HJT_VECTOR_CLONES void addSquare(const double* __restrict__ row, int order, double* __restrict__ square) noexcept
+{
+  constexpr int VECTOR = 8;
+  for (int column = 0; column < order; ++column)
+  {
+    const double factor = row[column];
+    double* __restrict__ sums = square + static_cast<std::ptrdiff_t>(column) * order;
+#pragma omp simd
+    for (int i = column & -VECTOR; i < order; ++i)
+    {
+      sums[i] += factor * row[i];
+    }
+  }
+}
 }  // namespace
 
 RunningRegression::RunningRegression(int columns, int targets)
@@ -48,11 +67,7 @@ void RunningRegression::add(const Eigen::Ref<const Eigen::VectorXd>& row,
                             const Eigen::Ref<const Eigen::VectorXd>& targets) noexcept
 {
   weight_ += 1.0;
-  for (Eigen::Index column = 0; column < row.size(); ++column)
-  {
-    const Eigen::Index rest = row.size() - column;
-    normal_.col(column).tail(rest) += row[column] * row.tail(rest);
-  }
+  addSquare(row.data(), static_cast<int>(row.size()), normal_.data());
   for (Eigen::Index target = 0; target < targets.size(); ++target)
   {
     moments_.col(target) += targets[target] * row;

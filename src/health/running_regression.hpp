@@ -35,7 +35,7 @@ public:
 
 private:
   double weight_{};
-  Eigen::MatrixXd normal_;   // lower triangle of sum x x'
+  Eigen::MatrixXd normal_;   // sum x x', of which the lower triangle counts
   Eigen::MatrixXd moments_;  // sum x y'
   Eigen::VectorXd squares_;  // sum y^2
   Eigen::VectorXd scale_;    // of the columns at the last fit
