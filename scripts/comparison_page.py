@@ -147,8 +147,7 @@ def draw_spectrum(width, data):
     ripple = spectrum["order"] > LOWEST_ORDER
     top = 1.3 * max(spectrum["forward"][ripple].max(), spectrum["backward"][ripple].max())
     for name, text in (("wave_generator_1", "1"), ("wave_generator_2", "2"), ("wave_generator_4", "4"),
-                       ("cage", "cage"),
-                       ("ball", "ball"), ("ball_double", "ball ×2"), ("outer", "outer race"), ("inner", "inner race")):
+                       ("cage_lobes", "cage"), ("ball", "ball"), ("outer", "outer race"), ("inner", "inner race")):
         order = data["record"]["line_orders"][name]
         axes.axvline(order, color="0.75", lw=0.7, zorder=0)
         axes.text(order, top, " " + text, rotation=90, va="top", ha="right", fontsize=7, color="0.35")

@@ -207,7 +207,7 @@ def write(bench, source, page):
     windows = calibration_windows(bench)
     errors = trust(layout, windows, table)
     of_severity = severity_error(layout, windows, table, errors)
-    scalars = [name for name in layout.names if not name.startswith(("error_", "torque_"))]
+    scalars = [name for name in layout.names if not name.startswith(("error_", "torque_", "ripple_"))]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
              "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
              "// clang-format off",

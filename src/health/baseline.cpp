@@ -46,7 +46,7 @@ double studentOf(double score, double freedom) noexcept
 /// For the parts of a line the floor is a share of its amplitude: the part itself may be near zero.
 std::size_t sizeOf(std::size_t indicator) noexcept
 {
-  for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
   {
     if (indicator >= cosineIndex(signal, 0) && indicator <= sineIndex(signal, PHASE_LOCKED - 1))
     {

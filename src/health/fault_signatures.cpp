@@ -26,7 +26,7 @@ public:
   /// A line that only grows: what lies below its mean is no fault.
   void amplitude(Feature feature, Line line) const noexcept
   {
-    for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
       const std::size_t indicator = amplitudeIndex(signal, index(line));
       single(feature, indicator, std::max(deviations_[indicator].score, 0.0));
@@ -37,7 +37,7 @@ public:
   /// else.
   void vector(Feature feature, Line line) const noexcept
   {
-    for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
       const Deviation& cosine = deviations_[cosineIndex(signal, index(line))];
       const Deviation& sine = deviations_[sineIndex(signal, index(line))];

@@ -58,24 +58,26 @@ struct LineRow
   Feature feature;
 };
 
-/// The tracked lines; each is an indicator of the kinematic error and of the motor torque.
+/// The tracked lines; each is an indicator of every LineSignal.
 inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
     { Line::WAVE_GENERATOR_1, "wave_generator_1", Feature::ORDER_1 },
     { Line::WAVE_GENERATOR_2, "wave_generator_2", Feature::ORDER_2 },
     { Line::WAVE_GENERATOR_4, "wave_generator_4", Feature::ORDER_4 },
+    { Line::WAVE_GENERATOR_6, "wave_generator_6", Feature::ORDER_6 },
+    { Line::WAVE_GENERATOR_8, "wave_generator_8", Feature::ORDER_8 },
     { Line::CIRCULAR_SPLINE_2, "circular_spline_2", Feature::ORDER_CIRCULAR_SPLINE },
-    { Line::CAGE, "cage", Feature::CAGE },
     { Line::CAGE_LOBES, "cage_lobes", Feature::CAGE },
+    { Line::CAGE_LOBES_DOUBLE, "cage_lobes_double", Feature::CAGE },
     { Line::BALL, "ball", Feature::BALL },
-    { Line::BALL_DOUBLE, "ball_double", Feature::BALL },
+    { Line::BALL_BELOW, "ball_below", Feature::BALL },
+    { Line::BALL_FAR_BELOW, "ball_far_below", Feature::BALL },
+    { Line::BALL_ABOVE, "ball_above", Feature::BALL },
     { Line::OUTER, "outer", Feature::OUTER },
     { Line::OUTER_BELOW, "outer_below", Feature::OUTER },
+    { Line::OUTER_FAR_BELOW, "outer_far_below", Feature::OUTER },
     { Line::OUTER_ABOVE, "outer_above", Feature::OUTER },
     { Line::INNER, "inner", Feature::INNER },
-    { Line::INNER_BELOW, "inner_below", Feature::INNER },
-    { Line::INNER_ABOVE, "inner_above", Feature::INNER },
-    { Line::TOOTH_PASS, "tooth_pass", Feature::TOOTH_PASS },
-    { Line::TOOTH_PASS_ABOVE, "tooth_pass_above", Feature::TOOTH_PASS },
+    { Line::INNER_DOUBLE, "inner_double", Feature::INNER },
 } };
 static_assert(isInOrder(LINES, &LineRow::line), "a row for each Line, in its order");
 }  // namespace hjt

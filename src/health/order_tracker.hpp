@@ -23,6 +23,7 @@ struct LineSample
   double load{};             ///< at the joint, 0: not known [N.m]
   double kinematic_error{};  ///< motor angle / ratio - output angle [rad]
   double motor_torque{};     ///< [N.m]
+  double ripple{};           ///< of the motor angle, see RippleFilter [rad]
 };
 
 struct LineFit
@@ -35,7 +36,7 @@ struct LineFit
   double amplitude() const noexcept { return std::hypot(cosine, sine); }
 };
 
-/// Amplitude and phase of lines at known orders, in kinematic error and motor torque at once.
+/// Amplitude and phase of lines at known orders, in all LineSignals at once.
 ///
 /// Law:   y(t) = b . n(t) + sum_k ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  least squares over one window
 /// where  theta  motor angle of the very sample [rad];  o_k  order [1/turn]
@@ -53,7 +54,7 @@ public:
     : orders_(orders)
     , rotations_(orders)
     , row_(Eigen::VectorXd::Zero(COLUMNS))
-    , targets_(0.0, 0.0)
+    , targets_(Eigen::Vector3d::Zero())
     , regression_(COLUMNS, LINE_SIGNALS)
   {
   }
@@ -67,30 +68,22 @@ public:
         std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
         sample.load * sample.load * sample.load;
     rotations_.at(sample.motor_angle, row_.data() + NUISANCES);
-    targets_ = { sample.kinematic_error, sample.motor_torque };
+    targets_ = { sample.kinematic_error, sample.motor_torque, sample.ripple };
     regression_.add(row_, targets_);
   }
 
   /// `angle_step`: mean travel between two samples [rad]. False: too little came.
   bool fit(double angle_step) noexcept
   {
-    // The tooth pass stands last, so that what the samples cannot show is the tail of the columns.
-    std::size_t visible = index(Line::TOOTH_PASS);
-    if (orders_[index(Line::TOOTH_PASS_ABOVE)] * angle_step < USED_BAND * 0.5 * TWO_PI)
-    {
-      visible = LINE_COUNT;
-    }
-    const int used = NUISANCES + 2 * static_cast<int>(visible);
     angle_step_ = angle_step;
-    const bool fitted = regression_.fit(used);
-    used_ = fitted ? used : 0;
-    return fitted;
+    fitted_ = regression_.fit(COLUMNS);
+    return fitted_;
   }
 
   LineFit line(LineSignal signal, std::size_t line) const noexcept
   {
     const int column = NUISANCES + 2 * static_cast<int>(line);
-    if (column >= used_ || orders_[line] * angle_step_ >= USED_BAND * 0.5 * TWO_PI ||
+    if (!fitted_ || orders_[line] * angle_step_ >= USED_BAND * 0.5 * TWO_PI ||
         regression_.inflation(column) > MAX_INFLATION || regression_.inflation(column + 1) > MAX_INFLATION)
     {
       return {};
@@ -118,9 +111,9 @@ private:
   LineOrders orders_;
   AngleMultiples<LINE_COUNT> rotations_;
   Eigen::VectorXd row_;
-  Eigen::Vector2d targets_;
+  Eigen::Vector3d targets_;
   RunningRegression regression_;
-  int used_{};           // columns of the last fit
+  bool fitted_{};
   double angle_step_{};  // of the last fit [rad]
 };
 }  // namespace hjt

@@ -16,7 +16,11 @@ struct Label
   std::string unit;
 };
 
-constexpr std::array<std::array<const char*, 2>, LINE_SIGNALS> SIGNALS{ { { "error", "rad" }, { "torque", "N.m" } } };
+constexpr std::array<std::array<const char*, 2>, LINE_SIGNALS> SIGNALS{ {
+    { "error", "rad" },
+    { "torque", "N.m" },
+    { "ripple", "rad" },
+} };
 
 std::array<Label, INDICATOR_COUNT> makeLabels()
 {
@@ -73,7 +77,7 @@ SignalIndicators difference(const SignalIndicators& measured, const SignalIndica
     result.values[i] -= model.values[i];
     result.uncertainty[i] = std::hypot(measured.uncertainty[i], model.uncertainty[i]);
   }
-  for (const LineSignal signal : { LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE })
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
   {
     for (std::size_t line = 0; line < PHASE_LOCKED; ++line)
     {

@@ -11,12 +11,14 @@ namespace hjt
 {
 namespace
 {
-constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;  // over which the mean speed forgets [rad]
-constexpr double MEAN_TIME = 0.5;             // and the time, for a joint that stands [s]
-constexpr double ACCELERATION_TIME = 0.02;    // over which the acceleration is smoothed, twice [s]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;    // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;            // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;     // memory of the friction estimate
+constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // over which the mean speed forgets [rad]
+constexpr double MEAN_TIME = 0.5;                // and the time, for a joint that stands [s]
+constexpr double LARGEST_RIPPLE = 4e-3;          // of a calm motion, by the speed as read [rad]
+constexpr double SETTLING_TIME = 0.4;            // after it was larger or the speed not steady [s]
+constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;       // over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;               // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;        // memory of the friction estimate
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
@@ -42,8 +44,10 @@ void SignalMonitor::reset() noexcept
   refused_ = 0;
   started_ = false;
   mean_velocity_ = 0.0;
-  smooth_velocity_ = 0.0;
-  acceleration_ = 0.0;
+  speed_ = RippleFilter();
+  angle_ = RippleFilter();
+  calm_ = 0.0;
+  waiting_count_ = 0;
   turn_travel_ = 0.0;
   tracked_ = false;
   residual_mean_ = 0.0;
@@ -62,7 +66,8 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
   last_ = sample;
   last_angle_ = motor_angle;
   mean_velocity_ = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : 0.0;
-  smooth_velocity_ = mean_velocity_;
+  speed_ = RippleFilter(mean_velocity_);
+  angle_ = RippleFilter(mean_velocity_);
   torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
 }
 
@@ -92,12 +97,12 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   const double velocity = std::isfinite(sample.motor_velocity) ? sample.motor_velocity : travel / seconds;
   const double kept = std::exp(-std::abs(travel) / MEAN_TRAVEL - seconds / MEAN_TIME);
   mean_velocity_ = kept * mean_velocity_ + (1.0 - kept) * velocity;
-  const double held = std::exp(-seconds / ACCELERATION_TIME);
-  smooth_velocity_ = held * smooth_velocity_ + (1.0 - held) * velocity;
-  acceleration_ = held * acceleration_ + (1.0 - held) * (velocity - smooth_velocity_) / ACCELERATION_TIME;
+  speed_.update(velocity, seconds);
+  angle_.update(travel / seconds, seconds);
   window_.elapsed += elapsed;
 
   const bool both = motor_known && std::isfinite(sample.output_angle);
+  window_.motor_encoder = window_.motor_encoder && motor_known;
   window_.both_encoders = window_.both_encoders && both;
   const double torsion = both ? motor_angle / ratio_ - sample.output_angle - torsion_zero_ : 0.0;
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
@@ -110,7 +115,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
     addTurn(motor_angle, travel, torsion);
     if (even)
     {
-      const double inertia_torque = output_.load_inertia * acceleration_ / ratio_;
+      const double inertia_torque = output_.load_inertia * speed_.acceleration() / ratio_;
       loop_.add(torsion, joint_torque, std::abs(inertia_torque) < parameters_.lost_motion_torque);
     }
   }
@@ -118,6 +123,9 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     efficiency_.update(elapsed, sample.motor_torque * velocity, sample.load_torque * velocity / ratio_);
   }
+  const bool calm = moving && even && std::abs(speed_.ripple()) < LARGEST_RIPPLE;
+  calm_ = calm ? calm_ + seconds : 0.0;
+  waiting_count_ = calm ? waiting_count_ : 0;
   if (moving && even)
   {
     addSteady(sample, motor_angle, travel, torsion);
@@ -145,10 +153,11 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   const double direction = std::copysign(1.0, mean_velocity_);
   const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const double load = std::isfinite(sample.load_torque) ? sample.load_torque : 0.0;
-  tracker_.add({ motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque });
-  if (tracked_ && window_.both_encoders)
+  if (calm_ > SETTLING_TIME)
   {
-    addResidual(travel);
+    addLines(
+        { motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque, angle_.ripple() },
+        travel, sample.stamp);
   }
   friction_.add(travel, mean_velocity_, output_angle, sample.motor_torque - load / ratio_);
   window_.travel += std::abs(travel);
@@ -156,6 +165,26 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   window_.speed.add(std::abs(mean_velocity_));
   window_.direction.add(direction);
   window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
+}
+
+/// Takes those that have waited long enough, and the oldest if there are too many.
+void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept
+{
+  while (waiting_count_ > 0 &&
+         (waiting_count_ == waiting_.size() || stamp - waiting_[first_waiting_].stamp > WAITING_TIME))
+  {
+    const Waiting& oldest = waiting_[first_waiting_];
+    tracker_.add(oldest.sample);
+    if (tracked_ && window_.both_encoders)
+    {
+      addResidual(oldest.travel);
+    }
+    window_.line_travel += std::abs(oldest.travel);
+    ++window_.line_samples;
+    first_waiting_ = (first_waiting_ + 1) % waiting_.size();
+    --waiting_count_;
+  }
+  waiting_[(first_waiting_ + waiting_count_++) % waiting_.size()] = { sample, travel, stamp };
 }
 
 void SignalMonitor::addTurn(double motor_angle, double travel, double torsion) noexcept
@@ -220,10 +249,14 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
     set(ScalarIndicator::RESIDUAL_KURTOSIS, window_.residual_fourth / window_.residuals / (mean_square * mean_square));
     set(ScalarIndicator::RESIDUAL_CREST, std::sqrt(window_.residual_largest / mean_square));
   }
-  if (window_.samples > 0 && tracker_.fit(window_.travel / window_.samples))
+  if (window_.line_samples > 0 && tracker_.fit(window_.line_travel / window_.line_samples))
   {
     tracked_ = true;
     fillLines(LineSignal::MOTOR_TORQUE);
+    if (window_.motor_encoder)
+    {
+      fillLines(LineSignal::MOTOR_RIPPLE);
+    }
     if (window_.both_encoders)
     {
       fillLines(LineSignal::KINEMATIC_ERROR);

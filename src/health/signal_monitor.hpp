@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
@@ -8,6 +10,7 @@
 #include "health/efficiency_estimate.hpp"
 #include "health/friction_estimate.hpp"
 #include "health/order_tracker.hpp"
+#include "health/ripple_filter.hpp"
 #include "health/signal_sample.hpp"
 #include "health/torsion_loop_estimate.hpp"
 #include "health/turn_window.hpp"
@@ -19,7 +22,8 @@ namespace hjt
 /// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
 /// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says.
 /// Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed itself within
-/// indicators.speed_change of it.
+/// indicators.speed_change of it. Lines are fitted to what is calm of that: from 20 ms before until 0.4 s after a change
+/// of speed nothing is, for it is larger than they are by a factor of a thousand, and the drive rings on after it.
 class SignalMonitor
 {
 public:
@@ -55,6 +59,9 @@ private:
     std::int64_t elapsed{};  // [ns]
     double travel{};         // at steady speed [rad]
     int samples{};           // at steady speed
+    double line_travel{};    // of the samples that lines are fitted to [rad]
+    int line_samples{};
+    bool motor_encoder{ true };
     bool both_encoders{ true };
     Mean speed;
     Mean direction;
@@ -69,8 +76,17 @@ private:
     double residual_largest{};
   };
 
+  /// A sample for the lines that waits whether the motion stays calm.
+  struct Waiting
+  {
+    LineSample sample;
+    double travel{};       // [rad]
+    std::int64_t stamp{};  // [ns]
+  };
+
   void start(const SignalSample& sample, double motor_angle) noexcept;
   void addSteady(const SignalSample& sample, double motor_angle, double travel, double torsion) noexcept;
+  void addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept;
   void addTurn(double motor_angle, double travel, double torsion) noexcept;
   void addResidual(double travel) noexcept;
   void complete(std::int64_t stamp) noexcept;
@@ -91,14 +107,18 @@ private:
 
   bool started_{};
   SignalSample last_;
-  double last_angle_{};       // of the motor [rad]
-  double torsion_zero_{};     // of the first sample, so that what is summed is small [rad]
-  double mean_velocity_{};    // over about half a turn [rad/s]
-  double smooth_velocity_{};  // of the motor [rad/s]
-  double acceleration_{};     // of the motor [rad/s^2]
-  double turn_travel_{};      // since the turn window was read [rad]
-  bool tracked_{};            // lines have been fitted: the residual means something
-  double residual_mean_{};    // slow [rad]
+  double last_angle_{};     // of the motor [rad]
+  double torsion_zero_{};   // of the first sample, so that what is summed is small [rad]
+  double mean_velocity_{};  // over about half a turn [rad/s]
+  RippleFilter speed_;      // of the speed as read: uneven stamps do not disturb it
+  RippleFilter angle_;      // of the motor angle
+  double calm_{};           // how long the motion has been [s]
+  std::array<Waiting, 128> waiting_;
+  std::size_t first_waiting_{};
+  std::size_t waiting_count_{};
+  double turn_travel_{};    // since the turn window was read [rad]
+  bool tracked_{};          // lines have been fitted: the residual means something
+  double residual_mean_{};  // slow [rad]
   Window window_;
 };
 }  // namespace hjt

@@ -47,12 +47,13 @@ enum class Feature : std::size_t
   ORDER_1,
   ORDER_2,
   ORDER_4,
+  ORDER_6,
+  ORDER_8,
   ORDER_CIRCULAR_SPLINE,
   CAGE,
   BALL,
   OUTER,
   INNER,
-  TOOTH_PASS,
   COUNT
 };
 constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);

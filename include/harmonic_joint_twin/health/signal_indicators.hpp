@@ -11,8 +11,8 @@
 namespace hjt
 {
 /// Indicators out of encoders and torque alone; formulas, windows and the faults they answer to in docs/indicators.md.
-/// After these scalars come, for kinematic error and motor torque alike, the amplitude of every tracked line and the
-/// cosine and sine parts of the lines whose phase stays.
+/// After these scalars come, for each LineSignal, the amplitude of every tracked line and the cosine and sine parts of
+/// the lines whose phase stays.
 enum class ScalarIndicator : std::size_t
 {
   RATIO_DEVIATION,
@@ -35,9 +35,12 @@ enum class ScalarIndicator : std::size_t
 enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
-  MOTOR_TORQUE
+  MOTOR_TORQUE,
+  MOTOR_RIPPLE  ///< of its angle: what is too fast for the drive's control and so not in the torque
 };
-constexpr std::size_t LINE_SIGNALS = 2;
+inline constexpr std::array ALL_LINE_SIGNALS{ LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE,
+                                              LineSignal::MOTOR_RIPPLE };
+constexpr std::size_t LINE_SIGNALS = ALL_LINE_SIGNALS.size();
 
 constexpr auto SCALAR_COUNT = static_cast<std::size_t>(ScalarIndicator::COUNT);
 constexpr std::size_t LINE_BLOCK = LINE_COUNT + 2 * PHASE_LOCKED;
