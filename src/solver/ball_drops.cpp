@@ -131,17 +131,15 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
   const double h_u = drop.rate * table.pitch;
   const double h_uu = drop.second * table.pitch * table.pitch;
 
-  Change change;
-  change.energy = times(e000, power);
-  change.by_u = u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
-  change.by_v = w_v * times(e010, power);
-  change.by_uu = u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
+  SurfaceEnergy energy;
+  energy.value = times(e000, power);
+  energy.by_u = u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
+  energy.by_v = w_v * times(e010, power);
+  energy.by_uu = u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
                  chi_u * (chi_u * times(e002, power) + 2.0 * h_u * times(e001, by_power)) +
                  h_u * h_u * times(e000, by_power_twice) + h_uu * times(e000, by_power);
-  change.by_uv = w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
-  change.by_vv = w_v * w_v * times(e020, power) + w_vv * times(e010, power);
-  change.contact_force = forces[0] * x + forces[1] * x * x;
-  change.flanks = forces[2] * x + forces[3] * x * x;
-  return change;
+  energy.by_uv = w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
+  energy.by_vv = w_v * w_v * times(e020, power) + w_vv * times(e010, power);
+  return { energy, forces[0] * x + forces[1] * x * x, forces[2] * x + forces[3] * x * x };
 }
 }  // namespace hjt

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "elements/race_deflection.hpp"
+#include "solver/surface_energy.hpp"
 
 namespace hjt
 {
@@ -62,9 +63,9 @@ public:
   /// same v. The friction of the outer race, a hundredth of the flanks', stays as it is.
   struct Change
   {
-    double energy{}, by_u{}, by_v{}, by_uu{}, by_uv{}, by_vv{};  ///< u [pitches], v [rad] [J]
-    double contact_force{};                                      ///< [N]
-    double flanks{};                                             ///< part of their friction [-]
+    SurfaceEnergy energy;
+    double contact_force{};  ///< [N]
+    double flanks{};         ///< part of their friction [-]
   };
   /// `v` on the table.
   Change at(double motor_angle, double v) const noexcept;

@@ -33,7 +33,7 @@ LineIndex::LineIndex(const std::vector<double>& lines)
   }
 }
 
-SurfaceCell::Energy SurfaceCell::energy() const noexcept
+SurfaceEnergy SurfaceCell::energy() const noexcept
 {
   // Two cubics side by side along v: of the energy and of its slope by u. By the place within the cell.
   using Pair = Eigen::Array2d;
@@ -168,25 +168,20 @@ std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept
 
 RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& housing_stiffness) const noexcept
 {
-  SurfaceCell::Energy energy = place.cell.energy();
+  SurfaceEnergy energy = place.cell.energy();
   RingResponse response;
   response.velocity_ratio = place.cell.value(SurfaceNode::VELOCITY_RATIO);
   response.output_stiffness = place.cell.value(SurfaceNode::OUTPUT_STIFFNESS);
   if (!place.deviation.empty())
   {
-    const SurfaceCell::Energy more = place.deviation.energy();
-    energy.value += more.value;
-    energy.by_u += more.by_u;
-    energy.by_v += more.by_v;
-    energy.by_uu += more.by_uu;
-    energy.by_uv += more.by_uv;
-    energy.by_vv += more.by_vv;
+    energy += place.deviation.energy();
     response.velocity_ratio += place.deviation.value(SurfaceNode::VELOCITY_RATIO);
     response.output_stiffness += place.deviation.value(SurfaceNode::OUTPUT_STIFFNESS);
   }
   if (balls_)
   {
-    addBalls(place.balls, energy, response);
+    energy += place.balls.energy;
+    stiffen(place.balls.energy, response);
   }
   const double per_pitch = pitches_per_radian_;
   const double k_uu = energy.by_uu * per_pitch * per_pitch;
@@ -204,15 +199,8 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
 
 /// The energy's own curvature changes stiffness and velocity ratio: the stiffness between motor and output is minus
 /// ratio times that of the output.
-void ResponseSurface::addBalls(const BallDrops::Change& change, SurfaceCell::Energy& energy,
-                               RingResponse& response) const noexcept
+void ResponseSurface::stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept
 {
-  energy.value += change.energy;
-  energy.by_u += change.by_u;
-  energy.by_v += change.by_v;
-  energy.by_uu += change.by_uu;
-  energy.by_uv += change.by_uv;
-  energy.by_vv += change.by_vv;
   const double stiffness = response.output_stiffness + change.by_vv;
   const double across = change.by_uv * pitches_per_radian_ - change.by_vv * inverse_ratio_;
   if (stiffness > 0.0)

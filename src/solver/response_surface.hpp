@@ -14,6 +14,7 @@
 
 #include "model/ring_response.hpp"
 #include "solver/ball_drops.hpp"
+#include "solver/surface_energy.hpp"
 
 namespace hjt
 {
@@ -181,12 +182,8 @@ public:
 
   bool empty() const noexcept { return below_ == nullptr; }
 
-  /// Energy and its derivatives by u [pitches] and v [rad]: bicubic after Hermite.
-  struct Energy
-  {
-    double value, by_u, by_v, by_uu, by_uv, by_vv;
-  };
-  Energy energy() const noexcept;
+  /// Bicubic after Hermite.
+  SurfaceEnergy energy() const noexcept;
 
   /// Bilinear, of any value but the energy's.
   double value(int which) const noexcept
@@ -291,7 +288,7 @@ public:
   double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
 
 private:
-  void addBalls(const BallDrops::Change& change, SurfaceCell::Energy& energy, RingResponse& response) const noexcept;
+  void stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept;
   void locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept;
 
   SurfaceTable table_;

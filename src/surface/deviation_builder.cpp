@@ -238,7 +238,7 @@ private:
   /// Whether what lies in a cell is close enough to the deviation measured there.
   bool agrees(const SurfaceCell& cell, const Node& measured, const Torques& tolerance) const
   {
-    const SurfaceCell::Energy energy = cell.energy();
+    const SurfaceEnergy energy = cell.energy();
     return ((torques(energy.by_u, energy.by_v) - torques(measured)).abs() <= tolerance).all();
   }
 
@@ -450,7 +450,7 @@ private:
       {
         const SurfaceCell cell(low.data(), high.data(), 0.0, (pitch.lines[between] - pitch.lines[kept]) / height,
                                static_cast<double>(pitch.columns), 1.0 / height);
-        const SurfaceCell::Energy energy = cell.energy();
+        const SurfaceEnergy energy = cell.energy();
         Node& node = pitch.nodes[between * stride + column];
         for (int value = SurfaceNode::BILINEAR; value < SurfaceNode::VALUES; ++value)
         {

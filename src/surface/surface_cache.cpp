@@ -382,25 +382,32 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                            });
 }
 
+/// See SurfaceRing. Solved for only where it is not known beforehand.
+int repetition(const Parameters& parameters, const JointModel& model, const std::string& faults)
+{
+  const bool alike = faults.empty() && teethAreAlike(parameters) && !model.ring.of<WaveGeneratorContact>().hasKinks();
+  return alike ? 1 : SurfaceRing(parameters, model).repetition();
+}
+
 /// See obtainSurface. `teeth_alike`: it is wanted without deviations only.
 std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
                                           const std::string& faults, const SurfaceSource& source, bool teeth_alike)
 {
   // The cache is asked only for gears that repeat: what stops others is not in its keys.
-  const int repetition = SurfaceRing(parameters, model).repetition();
-  const Parameters equal_parameters = repetition == 1 ? parameters : withEqualTeeth(parameters);
-  const JointModel equal = repetition == 1 ? model : JointModel(equal_parameters);
-  if (repetition == 0 || (repetition > 1 && SurfaceRing(equal_parameters, equal).repetition() != 1))
+  const int pitches = repetition(parameters, model, faults);
+  const Parameters equal_parameters = pitches == 1 ? parameters : withEqualTeeth(parameters);
+  const JointModel equal = pitches == 1 ? model : JointModel(equal_parameters);
+  if (pitches == 0 || (pitches > 1 && repetition(equal_parameters, equal, {}) != 1))
   {
     tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
-  if (repetition > 1 && teeth_alike)
+  if (pitches > 1 && teeth_alike)
   {
     tell(source, NO_SURFACE + "the bearing is faulty and teeth differ" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
-  const std::string key = repetition == 1 ? header(parameters, faults) : header(equal_parameters, {});
+  const std::string key = pitches == 1 ? header(parameters, faults) : header(equal_parameters, {});
   const unsigned threads = threadsFor(source);
   std::optional<SurfaceTable> table = obtain<SurfaceTable>(
       "surface", key, source,
@@ -410,13 +417,13 @@ std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const Jo
     return std::nullopt;
   }
   SurfaceTables tables{ std::move(*table), {} };
-  if (repetition > 1)
+  if (pitches > 1)
   {
     std::optional<DeviationTable> deviations = obtain<DeviationTable>(
         "deviations", header(parameters, faults), source,
         [&]
         {
-          return buildDeviations(parameters, equal, model, repetition, tables.table.lines.front(),
+          return buildDeviations(parameters, equal, model, pitches, tables.table.lines.front(),
                                  tables.table.lines.back(), source.progress, MAX_DEVIATION_POINTS, threads);
         });
     if (!deviations)

@@ -2,6 +2,7 @@
 #include "health/signal_monitor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -14,6 +15,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/angle_multiples.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
 #include "test/core/test_parameters.hpp"
@@ -88,6 +90,25 @@ private:
   double motor_angle_{};
   std::int64_t stamp_{};
 };
+
+TEST(AngleMultiples, AreCosineAndSineOfEveryTrackedOrder)
+{
+  const Parameters parameters = shippedParameters();
+  const LineOrders orders = trackedOrders(parameters.gear, parameters.bearing);
+  const AngleMultiples<LINE_COUNT> multiples(orders);
+  for (const double angle : { 0.0, 0.3, -2.7, 1e2, -3e4 })
+  {
+    std::array<double, 2 * LINE_COUNT> rotations{};
+    multiples.at(angle, rotations.data());
+    for (std::size_t line = 0; line < LINE_COUNT; ++line)
+    {
+      // Rounding of the order times the angle, and of two or three products.
+      const double tolerance = 1e-15 * (10.0 + std::abs(orders[line] * angle));
+      EXPECT_NEAR(rotations[2 * line], std::cos(orders[line] * angle), tolerance) << "order " << orders[line];
+      EXPECT_NEAR(rotations[2 * line + 1], std::sin(orders[line] * angle), tolerance) << "order " << orders[line];
+    }
+  }
+}
 
 TEST(TrackedOrders, AreThoseOfTheGearAndItsBearing)
 {
