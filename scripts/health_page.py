@@ -23,8 +23,7 @@ SURE = 0.3            # severity from which on the cause should be right
 SERIES_WINDOWS = 120  # of each drawn gear, beside those of its reference
 SET = 0.9             # probability that the causes of a set have together
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
-COLOURS = {"check-up": "tab:blue", "pick-and-place": "tab:orange", "seam": "tab:green",
-           "turn at 40°/s": "tab:red"}
+COLOURS = ["tab:blue", "tab:orange", "tab:green", "tab:red"]  # of the motions
 
 
 def collect(bench, trials, sound_windows):
@@ -186,13 +185,14 @@ def draw_scores(kinds, sound, faulty, path):
     """Score of every window over the threshold, by kind and severity; sound ones on top."""
     names = ["sound", *[kind["kind"] for kind in kinds]]
     severities = severities_of(faulty)
+    colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), COLOURS))
     figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
     for run in [*sound, *faulty]:
         row = names.index("sound" if run.kind == "healthy" else run.kind)
         shift = 0.0 if run.kind == "healthy" else 0.28 * (severities.index(run.severity) - (len(severities) - 1) / 2)
         axis.plot(max(run.window.largest, 0.02), row + shift, "o" if run.motion == CHECK_UP else "x",
-                  color=COLOURS[run.motion.name], markersize=4, alpha=0.7)
-    for name, colour in COLOURS.items():
+                  color=colours[run.motion.name], markersize=4, alpha=0.7)
+    for name, colour in colours.items():
         axis.plot([], [], "o" if name == CHECK_UP.name else "x", color=colour, label=name)
     axis.axvline(1.0, color="k", linewidth=1)
     axis.set_xscale("log")

@@ -19,9 +19,10 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
               "bearing_ball": {"error_ball": 5e-6, "torque_ball": 1e-2},
               "bearing_cage": {"error_cage_lobes": 1e-5, "torque_cage_lobes": 1e-2},
               "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
-ERRORS = [0.3, 0.45, 0.6]                   # tried, of each number of a signature,
-LENGTH_ERRORS = [0.02, 0.03, 0.06]          # of its length,
-LINE_ERRORS = [0.1, 0.2, 0.4]               # and of the lines of a sound drive
+ERRORS = [0.15, 0.2, 0.3, 0.45, 0.6]       # tried, of each number of a signature,
+# of its length, no more: with 0.06 strong faults no longer have their own signature,
+LENGTH_ERRORS = [0.01, 0.02, 0.03]
+LINE_ERRORS = [0.05, 0.1, 0.2, 0.4, 0.8]   # and of the lines of a sound drive
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
 

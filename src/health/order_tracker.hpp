@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -45,14 +48,16 @@ struct LineFit
 /// Nothing is resampled and no speed need be constant: the line is a function of the angle, whichever way and however
 /// fast it is passed, and the motion may go back and forth. Lines fitted at once do not leak into each other.
 ///
-/// Not valid: a line above 0.8 of half the samples a turn, and one that the travel cannot tell from another (variance
-/// inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15 for 1.98 beside 2).
+/// Not valid, and not fitted: a line above 0.8 of half the samples a turn. Not valid either: one that the travel cannot
+/// tell from another (variance inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15
+/// for 1.98 beside 2).
 class OrderTracker
 {
 public:
   explicit OrderTracker(const LineOrders& orders)
-    : orders_(orders)
-    , rotations_(orders)
+    : orders_(sorted(orders))
+    , places_(placesOf(orders))
+    , rotations_(orders_)
     , row_(Eigen::VectorXd::Zero(COLUMNS))
     , targets_(Eigen::Vector3d::Zero())
     , regression_(COLUMNS, LINE_SIGNALS)
@@ -75,16 +80,19 @@ public:
   /// `angle_step`: mean travel between two samples [rad]. False: too little came.
   bool fit(double angle_step) noexcept
   {
-    angle_step_ = angle_step;
-    fitted_ = regression_.fit(COLUMNS);
-    return fitted_;
+    const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
+    const auto seen = std::lower_bound(orders_.begin(), orders_.end(), highest) - orders_.begin();
+    const int used = NUISANCES + 2 * static_cast<int>(seen);
+    const bool fitted = regression_.fit(used);
+    used_ = fitted ? used : 0;
+    return fitted;
   }
 
   LineFit line(LineSignal signal, std::size_t line) const noexcept
   {
-    const int column = NUISANCES + 2 * static_cast<int>(line);
-    if (!fitted_ || orders_[line] * angle_step_ >= USED_BAND * 0.5 * TWO_PI ||
-        regression_.inflation(column) > MAX_INFLATION || regression_.inflation(column + 1) > MAX_INFLATION)
+    const int column = NUISANCES + 2 * static_cast<int>(places_[line]);
+    if (column >= used_ || regression_.inflation(column) > MAX_INFLATION ||
+        regression_.inflation(column + 1) > MAX_INFLATION)
     {
       return {};
     }
@@ -108,12 +116,31 @@ private:
   static constexpr int NUISANCES = 8;
   static constexpr int COLUMNS = NUISANCES + 2 * static_cast<int>(LINE_COUNT);
 
-  LineOrders orders_;
+  using Places = std::array<std::size_t, LINE_COUNT>;
+
+  static LineOrders sorted(LineOrders orders)
+  {
+    std::sort(orders.begin(), orders.end());
+    return orders;
+  }
+
+  static Places placesOf(const LineOrders& orders)
+  {
+    Places places{};
+    for (std::size_t line = 0; line < LINE_COUNT; ++line)
+    {
+      places[line] = static_cast<std::size_t>(
+          std::count_if(orders.begin(), orders.end(), [&](double other) { return other < orders[line]; }));
+    }
+    return places;
+  }
+
+  LineOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
+  Places places_;      // of the lines among them
   AngleMultiples<LINE_COUNT> rotations_;
   Eigen::VectorXd row_;
   Eigen::Vector3d targets_;
   RunningRegression regression_;
-  bool fitted_{};
-  double angle_step_{};  // of the last fit [rad]
+  int used_{};  // columns of the last fit
 };
 }  // namespace hjt

@@ -123,7 +123,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     efficiency_.update(elapsed, sample.motor_torque * velocity, sample.load_torque * velocity / ratio_);
   }
-  const bool calm = moving && even && std::abs(speed_.ripple()) < LARGEST_RIPPLE;
+  const bool calm = moving && even && (!motor_known || std::abs(speed_.ripple()) < LARGEST_RIPPLE);
   calm_ = calm ? calm_ + seconds : 0.0;
   waiting_count_ = calm ? waiting_count_ : 0;
   if (moving && even)
@@ -153,7 +153,7 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   const double direction = std::copysign(1.0, mean_velocity_);
   const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const double load = std::isfinite(sample.load_torque) ? sample.load_torque : 0.0;
-  if (calm_ > SETTLING_TIME)
+  if (calm_ > SETTLING_TIME || !window_.motor_encoder)
   {
     addLines(
         { motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque, angle_.ripple() },

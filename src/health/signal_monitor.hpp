@@ -24,6 +24,7 @@ namespace hjt
 /// Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed itself within
 /// indicators.speed_change of it. Lines are fitted to what is calm of that: nothing from 20 ms before until 0.4 s after
 /// a change of speed, for it is larger than they are by a factor of a thousand, and the drive rings on after it.
+/// Without a motor encoder, to all that is steady.
 class SignalMonitor
 {
 public:

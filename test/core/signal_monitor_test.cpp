@@ -352,6 +352,24 @@ TEST(SignalMonitor, WorksWithTheOutputEncoderAlone)
   EXPECT_TRUE(std::isnan(monitor.indicators()[ScalarIndicator::KINEMATIC_ERROR]));
 }
 
+/// A UR controller's 125 Hz: lines that its samples cannot show do not take those that they can.
+TEST(SignalMonitor, FindsTheTeethOfTheCircularSplineInACurrentAt125Hz)
+{
+  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=25.0" }));
+  SignalSample sample;
+  bool done = false;
+  for (int i = 1; !done; ++i)
+  {
+    sample.stamp = i * std::int64_t{ 8000000 };
+    sample.output_angle = 105.8 / RATIO * 8e-3 * i;
+    sample.motor_torque = 0.1 + 0.014 * std::cos(2.0 * (RATIO - 1.0) * sample.output_angle);
+    done = monitor.update(sample);
+  }
+  const SignalIndicators& found = monitor.indicators();
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::CIRCULAR_SPLINE_2), 0.014, 1e-4);
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_2), 0.0, 1e-4);
+}
+
 TEST(SignalMonitor, PassesOverSamplesThatSayNothing)
 {
   SignalMonitor monitor(shippedParameters());
