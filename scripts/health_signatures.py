@@ -4,6 +4,7 @@ that is to be trusted on another gear. Written as data of the source and as a ta
 import collections
 import itertools
 import math
+import re
 
 import numpy
 
@@ -227,6 +228,17 @@ def write(bench, source, page):
               for cause, motion, severity, change in zip(*table)]
     source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
     write_table(layout, table, page)
+
+
+def read(source):
+    """(table, errors) of what `write` wrote."""
+    text = source.read_text(encoding="utf-8")
+    values = dict(re.findall(r"double (\w+) = ([^;]+);", text))
+    rows = re.findall(r"\{ (?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (.*) \} \},  // (\w+)", text)
+    causes, severities, changes, motions = zip(*rows)
+    table = Table([cause.lower() for cause in causes], motions, numpy.array(severities, float),
+                  numpy.array([row.split(", ") for row in changes], float))
+    return table, [float(values[name]) for name in ("SIGNATURE_ERROR", "SIGNATURE_LENGTH_ERROR", "LINE_ERROR")]
 
 
 def write_table(layout, table, page):

@@ -9,11 +9,11 @@ namespace hjt
 // clang-format off
 /// Of each number of a signature, and of its length, on another gear in another motion [-].
 inline constexpr double SIGNATURE_ERROR = 0.2;
-inline constexpr double SIGNATURE_LENGTH_ERROR = 0.03;
+inline constexpr double SIGNATURE_LENGTH_ERROR = 0.01;
 /// Share of the lines of a sound drive that a fault of severity 1 changes [-].
 inline constexpr double LINE_ERROR = 0.1;
 /// Of the severity by them, as a share of it [-].
-inline constexpr double SEVERITY_ERROR = 0.56;
+inline constexpr double SEVERITY_ERROR = 0.36;
 
 /// Of the sound gear in the check-up.
 inline constexpr std::array<double, SCALAR_COUNT> SOUND_VALUES{ -0.00194, 0.000162, 2.42e+04, 3.6e+04, 5.42e-05, 0.00874, 0.136, 0.0974, 0.000497, 0, 0, 0, 0 };

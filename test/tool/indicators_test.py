@@ -1,23 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin indicators`."""
 import math
+import pathlib
+import sys
 
 import robot
 import tool
+
+sys.path.insert(0, tool.CHECKOUT + "/scripts")
+import health_signatures  # noqa: E402  (after its folder)
 
 ARCSEC = math.pi / 180.0 / 3600.0
 SMALL_WINDOWS = ["--set", "indicators.window_turns=20.0", "--set", "indicators.baseline_windows=8"]
 
 
-def recording(line_after=None, seconds=30.0, rate=500.0):
-    """CSV of a joint with 5 arcsec at order 2; from `line_after` on also 4 arcsec at the outer race's order."""
+def recording(line_after=None, seconds=30.0, rate=500.0, line=4.0):
+    """CSV of a joint with 5 arcsec at order 2; from `line_after` on also `line` arcsec at the outer race's order."""
     lines = ["t,theta,phi,amps"]
     for row in range(int(seconds * rate)):
         time = row / rate
         motor = 80.0 * time + 10.0 * math.sin(3.0 * time)
         error = 5.0 * math.cos(2.0 * motor)
         if line_after is not None and time > line_after:
-            error += 4.0 * math.cos(10.3207 * motor)
+            error += line * math.cos(10.3207 * motor)
         # A little of what is not in any model, so that healthy windows differ.
         error += 0.5 * math.sin(row * row * 0.37)
         torque = 2.0 + 0.01 * math.cos(row * 1.3)
@@ -54,6 +59,22 @@ class Indicators(tool.ToolTest):
         faulty = self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml")
         self.assertEqual(faulty["windows"][0]["assessment"]["state"], "assessed")
         self.assertEqual(faulty["assessment"]["cause"], "bearing_outer_race")
+
+    def test_the_assessment_has_the_law_that_its_errors_are_fitted_with(self):
+        table, errors = health_signatures.read(
+            pathlib.Path(tool.CHECKOUT) / "src" / "health" / "fitted_signatures.hpp")
+        self.write("healthy.csv", recording())
+        self.succeed("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
+        for line in (0.2, 4.0):
+            self.write("faulty.csv", recording(line_after=0.0, seconds=12.0, line=line))
+            for window in self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline",
+                                            "b.yaml", "--set", "indicators.confirm_windows=1")["windows"]:
+                layout = health_signatures.Layout(window["indicators"])
+                probability, log_odds = health_signatures.posterior(layout, window, table, *errors)
+                found = window["assessment"]
+                self.assertEqual(found["cause"], max(probability, key=probability.get))
+                self.assertAlmostEqual(found["confidence"], probability[found["cause"]], delta=1e-6)
+                self.assertGreaterEqual(found["largest_score"], 0.99999 * log_odds / math.log(1000.0))
 
     def test_what_a_model_shows_too_is_taken_off(self):
         self.write("a.csv", recording(line_after=0.0, seconds=12.0))
