@@ -38,7 +38,7 @@ class Indicators(tool.ToolTest):
     def test_a_line_that_appears_is_found_and_named(self):
         self.write("a.csv", recording(line_after=20.0))
         report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--out", "windows.csv")
-        # Lines begin once the motion is known to be calm: the very first window has too few turns for orders 2 and 1.98.
+        # Lines begin once the motion is known to be calm: the first window has too few turns for orders 2 and 1.98.
         first, last = report["windows"][1], report["windows"][-1]
         self.assertAlmostEqual(first["indicators"]["error_wave_generator_2"] / ARCSEC, 5.0, delta=0.2)
         self.assertLess(first["indicators"]["error_outer"] / ARCSEC, 0.2)
