@@ -79,7 +79,7 @@ FITTED = Trial("fitted", EVEN, [CHECK_UP, STACKING, turn(25), turn(45), turn(90)
 CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, turn(33)], [0.25, 0.6], 15, 3),
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5)]
 JUDGED = [Trial("judged", FRESH, [CHECK_UP, LOADING, SEAM, turn(52)], [0.2, 0.5], 61, 21),
-          Trial("judged", uneven(864209), [CHECK_UP], [0.2, 0.5], 61, 21)]
+          Trial("judged", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
 SERIES_MOTIONS = [CHECK_UP, PICK_AND_PLACE, SEAM, turn(40)]  # of drawn gears, one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)]
 
