@@ -89,7 +89,7 @@ def series(bench, gears):
     temperature = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     runs = []
     for number in range(gears):
-        gear = health_runs.drawn(number)
+        gear = health_runs.of_series(number)
         motion = SERIES_MOTIONS[number % len(SERIES_MOTIONS)]
         runs += bench.judge(bench.sound("series", gear, motion, temperature, SERIES_WINDOWS, 10000 + number), gear,
                             motion)

@@ -34,7 +34,10 @@ STACKING = Motion("stacking", "stacking", 20.0, True, [(-25, 70), (20, 100), (-1
 PICK_AND_PLACE = Motion("pick-and-place", "pick_and_place", 20.0, True, [(-50, 90), (35, 90), (-20, 60), (50, 120)])
 SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 55)])
 LOADING = Motion("loading", "loading", 20.0, True, [(40, 60), (-15, 110), (10, 35), (-45, 80)])
-AT_WORK = [STACKING, PICK_AND_PLACE, SEAM, LOADING]
+SORTING = Motion("sorting", "sorting", 20.0, True, [(-30, 80), (10, 55), (-5, 95), (45, 65)])
+DISPENSING = Motion("dispensing", "dispensing", 20.0, True, [(20, 30), (-20, 50), (25, 40), (-10, 75)])
+TENDING = Motion("tending", "tending", 20.0, True, [(55, 105), (5, 60), (-35, 85), (15, 45)])
+AT_WORK = [STACKING, PICK_AND_PLACE, SEAM, LOADING, SORTING, DISPENSING, TENDING]
 
 # `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
 # runs.
@@ -63,10 +66,15 @@ def uneven(seed):
 
 
 def drawn(number):
-    """A gear of the series: cup, clearance, preload, grease and errors of the circular spline drawn."""
+    """Cup, clearance, preload and grease drawn at random."""
     draw = numpy.random.default_rng(number).uniform
-    gear = even(f"drawn {number}", draw(0.93, 1.07), draw(-1.4e-6, -0.7e-6), draw(450.0, 590.0), draw(300e-6, 380e-6))
-    return Gear(gear.name, False, gear.settings + [
+    return even(f"drawn {number}", draw(0.93, 1.07), draw(-1.4e-6, -0.7e-6), draw(450.0, 590.0), draw(300e-6, 380e-6))
+
+
+def of_series(number):
+    """A drawn gear with errors of the circular spline."""
+    gear, draw = drawn(number), numpy.random.default_rng(5000 + number).uniform
+    return Gear(f"series {number}", False, gear.settings + [
         f"  manufacture.circular_spline_pitch_deviation: {draw(3e-6, 12e-6):.3e}",
         f"  manufacture.circular_spline_pitch_seed: {5000 + number}",
         f"  manufacture.circular_spline_eccentricity: [{draw(-1e-6, 1e-6):.3e}, {draw(-1e-6, 1e-6):.3e}]"])
@@ -75,11 +83,22 @@ def drawn(number):
 # The split. Every tooth of a gear whose teeth differ is solved, which takes longest: it runs the check-up only.
 Trial = collections.namedtuple("Trial", "name gear motions severities tooth seed")
 # A line grows tenfold where its order meets a resonance of the drive, 45 Hz in the shoulder: order 4 at 40°/s.
-FITTED = Trial("fitted", EVEN, [CHECK_UP, STACKING, turn(25), turn(45), turn(90)], [0.15, 0.4, 1.0], 90, 2)
+FITTED = [Trial("fitted", EVEN, [CHECK_UP, STACKING, turn(25), turn(45), turn(90)], [0.15, 0.4, 1.0], 90, 2),
+          Trial("fitted", drawn(700), [CHECK_UP, LOADING], [0.15, 0.4, 1.0], 25, 12),
+          Trial("fitted", drawn(701), [CHECK_UP, SEAM], [0.15, 0.4, 1.0], 130, 13)]
 CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, turn(33)], [0.25, 0.6], 15, 3),
-              Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5)]
-JUDGED = [Trial("judged", FRESH, [CHECK_UP, LOADING, SEAM, turn(52)], [0.2, 0.5], 61, 21),
-          Trial("judged", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
+              Trial("calibrated", FRESH, [CHECK_UP, LOADING, SEAM, turn(52)], [0.2, 0.5], 61, 21),
+              Trial("calibrated", drawn(702), [CHECK_UP, PICK_AND_PLACE], [0.2, 0.5], 75, 31),
+              Trial("calibrated", drawn(703), [CHECK_UP, SEAM], [0.3, 0.8], 110, 32),
+              Trial("calibrated", drawn(704), [CHECK_UP, turn(60)], [0.2, 0.5], 150, 33),
+              Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5),
+              Trial("calibrated", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
+JUDGED = [Trial("judged", drawn(800), [CHECK_UP, SORTING], [0.2, 0.5], 52, 41),
+          Trial("judged", drawn(801), [CHECK_UP, DISPENSING], [0.2, 0.5], 97, 42),
+          Trial("judged", drawn(802), [CHECK_UP, TENDING], [0.2, 0.5], 133, 43),
+          Trial("judged", drawn(803), [CHECK_UP, turn(72)], [0.2, 0.5], 8, 44),
+          Trial("judged", uneven(24601), [CHECK_UP], [0.2, 0.5], 171, 45),
+          Trial("judged", uneven(31415), [CHECK_UP], [0.2, 0.5], 119, 46)]
 SERIES_MOTIONS = [CHECK_UP, PICK_AND_PLACE, SEAM, turn(40)]  # of drawn gears, one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)]
 
@@ -192,12 +211,12 @@ class Bench:
         return self.sweep(f"{trial.name}_{gear.name}_{motion.tag}", gear, motion, temperature, classes, 1, trial.seed,
                           "auto" if gear.alike else "full_ring", others)
 
-    def differences(self):
-        """(motion, sound runs, runs with faults) of FITTED: same noise, same temperatures."""
+    def differences(self, trial):
+        """(motion, sound runs, runs with faults) of a trial: the same temperatures, no noise."""
         grid = f"{{grid: {SAME}}}"
-        same = ["  sensors.noise_seed: 7"]
-        return [(motion, self.sound("same", FITTED.gear, motion, grid, 1, 1, same),
-                 self.faulty(FITTED, motion, grid, same)) for motion in FITTED.motions]
+        noise = [f"  sensors.{sensor}_noise: 0.0" for sensor in ("motor", "output", "torque")]
+        return [(motion, self.sound("same", trial.gear, motion, grid, 1, 1, noise),
+                 self.faulty(trial, motion, grid, noise)) for motion in trial.motions]
 
     def reference(self, gear, motion):
         """File of the healthy reference, from runs of its own."""

@@ -20,14 +20,22 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
               "bearing_ball": {"error_ball": 5e-6, "torque_ball": 1e-2},
               "bearing_cage": {"error_cage_lobes": 1e-5, "torque_cage_lobes": 1e-2},
               "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
-ERRORS = [0.15, 0.2, 0.3, 0.45, 0.6]       # tried, of each number of a signature,
-# of its length, no more: with 0.06 strong faults no longer have their own signature,
-LENGTH_ERRORS = [0.01, 0.02, 0.03]
-LINE_ERRORS = [0.05, 0.1, 0.2, 0.4, 0.8]   # and of the lines of a sound drive
+# Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
+# friction there is, which differs threefold over the temperatures; preload and wear add to it.
+SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis_area"]
+SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
+THRESHOLD = 4.5       # of an indicator's score, as shipped
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
 
 Table = collections.namedtuple("Table", "causes motions severities changes")  # a row each
+# Of the law in fault_signatures.hpp, by its letters: r e l b.
+Errors = collections.namedtuple("Errors", "number length line weight")
+START = Errors(0.12, 0.016, 0.3, 0.35)            # of the search
+
+
+def shares(cause):
+    return SHARES_OF_GREASE if cause == "lubricant_degradation" else SHARES
 
 
 class Layout:
@@ -38,26 +46,32 @@ class Layout:
         self.locked = [name[:-4] for name in lines]
         self.names = [name for name in indicators if not name.endswith(("_cos", "_sin"))]
 
-    def numbers(self, window, sound):
+    def numbers(self, cause, window, sound):
         """Change of a window; a line with a phase: length of its change. Not determined: 0."""
         def change(name):
-            return (window[name] - sound[name]) if None not in (window[name], sound[name]) else 0.0
+            if None in (window[name], sound[name]):
+                return 0.0
+            return (window[name] - sound[name]) / (sound[name] if name in shares(cause) else 1.0)
         return numpy.array([math.hypot(change(name + "_cos"), change(name + "_sin")) if name in self.locked
                             else change(name) for name in self.names])
 
     def terms(self, window):
-        """(number, has a phase, half the square of the sound line's amplitude, residual) of each that was compared."""
+        """(number, has a phase, half the square of the sound line's amplitude, sound value, residual) of each that was
+        compared."""
         residual = window["residual"]
+
+        def sound(part):
+            return window["indicators"][part] - residual[part][0]
         for number, name in enumerate(self.names):
             parts = [name + "_cos", name + "_sin"] if name in self.locked else [name]
             parts = [part for part in parts if residual[part] is not None]
             # Orders 2 and 1.98 are told apart so little in a motion to and fro that they count as one.
             lines = [name.replace(one, other) for one in NEIGHBOURS for other in NEIGHBOURS if name.endswith(one)]
-            sound = [window["indicators"][part] - residual[part][0]
-                     for line in lines or [name] for part in (line + "_cos", line + "_sin")
-                     if name in self.locked and residual[part] is not None]
+            amplitudes = [sound(part) for line in lines or [name] for part in (line + "_cos", line + "_sin")
+                          if name in self.locked and residual[part] is not None]
             for part in parts:
-                yield number, name in self.locked, 0.5 * sum(value ** 2 for value in sound), residual[part]
+                yield number, name in self.locked, 0.5 * sum(value ** 2 for value in amplitudes), sound(part), \
+                    residual[part]
 
 
 def windows_of(bench, bags):
@@ -67,28 +81,30 @@ def windows_of(bench, bags):
 
 
 def changes(bench):
-    """(layout, sound values of the scalars in the check-up, changes by cause, motion and severity)."""
+    """(layout, sound values of the scalars of the first gear in the check-up, changes by cause, gear, motion and
+    severity)."""
     found = collections.defaultdict(list)
     layout, values = None, None
-    for motion, sound, faulty in bench.differences():
-        windows = windows_of(bench, [*sound, *faulty])
-        same = {row["set.input.temperature"]: windows[str(bag)] for bag, row in sound}
-        layout = layout or Layout(next(iter(same.values())))
-        if values is None:
-            values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
-        for bag, row in faulty:
-            if str(bag) in windows:
-                found[row["class"], motion.tag, float(row["fault_severity"])].append(
-                    layout.numbers(windows[str(bag)], same[row["set.input.temperature"]]))
+    for trial in FITTED:
+        for motion, sound, faulty in bench.differences(trial):
+            windows = windows_of(bench, [*sound, *faulty])
+            same = {row["set.input.temperature"]: windows[str(bag)] for bag, row in sound}
+            layout = layout or Layout(next(iter(same.values())))
+            if values is None:
+                values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
+            for bag, row in faulty:
+                if str(bag) in windows:
+                    found[row["class"], trial.gear.name, motion.tag, float(row["fault_severity"])].append(
+                        layout.numbers(row["class"], windows[str(bag)], same[row["set.input.temperature"]]))
     return layout, values, {key: numpy.mean(own, axis=0) for key, own in found.items()}
 
 
 def table_of(layout, kinds, found):
     rows = []
-    for kind in kinds:
-        for motion in FITTED.motions:
-            own = {severity: change for (cause, tag, severity), change in found.items()
-                   if (cause, tag) == (kind["kind"], motion.tag)}
+    for kind, trial in itertools.product(kinds, FITTED):
+        for motion in trial.motions:
+            own = {severity: change for (cause, gear, tag, severity), change in found.items()
+                   if (cause, gear, tag) == (kind["kind"], trial.gear.name, motion.tag)}
             if not own:
                 continue
             known = [0.0, *sorted(own)]
@@ -104,40 +120,56 @@ def table_of(layout, kinds, found):
                  numpy.array([row[3] for row in rows]))
 
 
-def log_likelihoods(layout, window, table, error, length_error, line_error):
-    """Of a sound drive, of every row of the table and of what is in none; the law is in fault_signatures.hpp."""
-    number, phase, line, residual = zip(*layout.terms(window))
-    number, phase, line = list(number), numpy.array(phase), numpy.array(line)
-    difference, own, *common = numpy.array(residual).T
-    common = numpy.array(common).T
-    change = numpy.vstack([numpy.zeros((1, len(number))), table.changes[:, number],
-                           numpy.zeros((len(UNKNOWN_STRENGTHS), len(number)))])
-    severity = numpy.concatenate([[0.0], table.severities, numpy.zeros(len(UNKNOWN_STRENGTHS))])
-    strength = numpy.sum(numpy.where(phase, 0.5, 1.0) * change ** 2 / own, axis=1) * length_error ** 2
-    strength[-len(UNKNOWN_STRENGTHS):] = numpy.square(UNKNOWN_STRENGTHS)
-    variance = own * (1.0 + strength[:, None]) + numpy.where(phase, 0.5, error ** 2) * change ** 2
-    variance += (line_error * severity[:, None]) ** 2 * line
-    left = difference - numpy.where(phase, 0.0, change)
-    inner = numpy.eye(common.shape[1]) + numpy.einsum("ia,hi,ib->hab", common, 1.0 / variance, common)
-    projected = (left / variance) @ common
-    square = numpy.sum(left ** 2 / variance, axis=1)
-    square -= numpy.einsum("ha,ha->h", projected, numpy.linalg.solve(inner, projected[..., None])[..., 0])
-    logarithm = numpy.sum(numpy.log(variance / own), axis=1) + numpy.linalg.slogdet(inner)[1]
-    freedom = window["freedom"]
-    return -0.5 * (logarithm + (freedom + len(number)) * numpy.log1p(numpy.maximum(square, 0.0) / freedom))
+class Hypotheses:
+    """What a window says of a sound drive, of every row of the table and of what is in none; the law is in
+    fault_signatures.hpp."""
 
+    def __init__(self, layout, window, table):
+        number, phase, line, sound, residual = zip(*layout.terms(window))
+        number, self.phase, self.line = list(number), numpy.array(phase), numpy.array(line)
+        difference, self.own, *common = numpy.array(residual).T
+        self.common = numpy.array(common).T
+        self.freedom = window["freedom"]
+        self.table = table
+        self.causes = numpy.array(table.causes)
+        share = {cause: [layout.names[i] in shares(cause) for i in number] for cause in set(table.causes)}
+        change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], sound, 1.0)
+        nothing = numpy.zeros((1, len(number)))
+        self.change = numpy.vstack([nothing, change, numpy.repeat(nothing, len(UNKNOWN_STRENGTHS), axis=0)])
+        self.severity = numpy.concatenate([[0.0], table.severities, numpy.zeros(len(UNKNOWN_STRENGTHS))])
+        self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
+        self.left = difference - numpy.where(phase, 0.0, self.change)
 
-def posterior(layout, window, table, *errors):
-    """(probability by cause, log odds against a sound drive)."""
-    found = log_likelihoods(layout, window, table, *errors)
-    sound, rows, unknown = found[0], found[1:-len(UNKNOWN_STRENGTHS)], found[-len(UNKNOWN_STRENGTHS):]
-    largest = found.max()
-    means = {cause: numpy.mean(numpy.exp(rows[[own == cause for own in table.causes]] - largest))
-             for cause in dict.fromkeys(table.causes)}
-    odds = math.log(max(sum(means.values()) / len(means), 1e-300)) + largest - sound
-    means["none"] = numpy.mean(numpy.exp(unknown - largest))
-    total = sum(means.values())
-    return {cause: mean / total for cause, mean in means.items()}, odds
+    def log_likelihoods(self, errors):
+        strength = self.square * errors.length ** 2
+        strength[-len(UNKNOWN_STRENGTHS):] = numpy.square(UNKNOWN_STRENGTHS)
+        variance = self.own * (1.0 + strength[:, None])
+        variance += numpy.where(self.phase, 0.5, errors.number ** 2) * self.change ** 2
+        variance += (errors.line * self.severity[:, None]) ** 2 * self.line
+        weighted = self.common / variance[:, :, None]
+        inner = numpy.eye(self.common.shape[1]) + numpy.swapaxes(weighted, 1, 2) @ self.common
+        projected = numpy.einsum("hia,hi->ha", weighted, self.left)
+        square = numpy.sum(self.left ** 2 / variance, axis=1)
+        square -= numpy.einsum("ha,ha->h", projected, numpy.linalg.solve(inner, projected[..., None])[..., 0])
+        logarithm = numpy.sum(numpy.log(variance / self.own), axis=1) + numpy.linalg.slogdet(inner)[1]
+        return -0.5 * (logarithm + (self.freedom + len(self.phase)) *
+                       numpy.log1p(numpy.maximum(square, 0.0) / self.freedom))
+
+    def posterior(self, errors):
+        """(probability by cause, severity by cause, log odds against a sound drive)."""
+        found = self.log_likelihoods(errors)
+        rows = found[1:-len(UNKNOWN_STRENGTHS)]
+        names = list(dict.fromkeys(self.table.causes))
+        odds = math.log(max(numpy.mean([numpy.mean(numpy.exp(rows[self.causes == cause] - rows.max()))
+                                        for cause in names]), 1e-300)) + rows.max() - found[0]
+        weights = numpy.exp(errors.weight * (found - found.max()))
+        faults = weights[1:-len(UNKNOWN_STRENGTHS)]
+        means = {cause: numpy.mean(faults[self.causes == cause]) for cause in names}
+        severity = {cause: numpy.average(self.table.severities[self.causes == cause],
+                                         weights=faults[self.causes == cause] + 1e-300) for cause in names}
+        means["none"] = numpy.mean(weights[-len(UNKNOWN_STRENGTHS):])
+        total = sum(means.values())
+        return {cause: mean / total for cause, mean in means.items()}, severity, odds
 
 
 def calibration_windows(bench):
@@ -155,41 +187,54 @@ def calibration_windows(bench):
     return found
 
 
-def is_alarm(window, odds):
-    return window["assessment"]["largest_score"] > 1.0 or odds > math.log(1000.0)
+Alarm = collections.namedtuple("Alarm", "kind severity hypotheses")
 
 
-def trust(layout, windows, table):
-    """(error, length error, line error) with the largest mean log probability of the cause, over the windows that
-    raise an alarm."""
-    best = None
-    for errors in itertools.product(ERRORS, LENGTH_ERRORS, LINE_ERRORS):
-        found = [(kind, window, *posterior(layout, window, table, *errors)) for kind, _, window in windows]
-        alarms = [(kind, probability) for kind, window, probability, odds in found
-                  if kind != "healthy" and is_alarm(window, odds)]
-        score = numpy.mean([math.log(max(probability[kind], 1e-3)) for kind, probability in alarms])
-        right = sum(max(probability, key=probability.get) == kind for kind, probability in alarms)
-        print(f"evaluate_health: errors {errors}: mean log probability {score:.3f} of {len(alarms)} alarms, {right} "
-              f"right; log odds of sound windows up to "
-              f"{max(odds for kind, _, _, odds in found if kind == 'healthy'):.1f}")
-        if best is None or score > best[0]:
-            best = score, errors
-    return best[1]
+def alarms_of(layout, windows, table):
+    """Of the faulty windows: those with an indicator beyond the threshold, or the odds of a fault at START."""
+    found = [(Alarm(kind, severity, Hypotheses(layout, window, table)), window)
+             for kind, severity, window in windows if kind != "healthy"]
+    return [alarm for alarm, window in found
+            if any(abs(score) > THRESHOLD for score in window["scores"].values() if score)
+            or alarm.hypotheses.posterior(START)[2] > math.log(1000.0)]
 
 
-def severity_error(layout, windows, table, errors):
+def loss(alarms, errors):
+    """Mean of minus the logarithm of the true cause's probability."""
+    return -numpy.mean([math.log(max(alarm.hypotheses.posterior(errors)[0][alarm.kind], 1e-3)) for alarm in alarms])
+
+
+def fitted_errors(alarms):
+    """Of least loss: one after the other, larger or smaller by a factor as long as that helps."""
+    errors, least = START, loss(alarms, START)
+    for factor in (1.6, 1.25):
+        for name, step in itertools.product(Errors._fields, (factor, 1.0 / factor)):
+            while True:
+                tried = errors._replace(**{name: float(f"{getattr(errors, name) * step:.3g}")})
+                found = loss(alarms, tried)
+                if found > least - 1e-3:
+                    break
+                errors, least = tried, found
+    return errors
+
+
+def report(alarms, errors):
+    found = [alarm.hypotheses.posterior(errors)[0] for alarm in alarms]
+    best = [max(probability, key=probability.get) for probability in found]
+    confidence = numpy.mean([probability[cause] for probability, cause in zip(found, best)])
+    right = sum(alarm.kind == cause for alarm, cause in zip(alarms, best))
+    print(f"evaluate_health: {errors}: mean log probability {-loss(alarms, errors):.3f}, cause right in {right} of "
+          f"{len(alarms)} alarms, mean confidence {confidence:.3f}")
+
+
+def severity_error(alarms, errors):
     """Of the estimate, as a share of it, rms over the alarms with the right cause."""
-    shares = []
-    for kind, severity, window in windows:
-        if kind == "healthy":
-            continue
-        probability, odds = posterior(layout, window, table, *errors)
-        if is_alarm(window, odds) and max(probability, key=probability.get) == kind:
-            own = [cause == kind for cause in table.causes]
-            found = log_likelihoods(layout, window, table, *errors)[1:-len(UNKNOWN_STRENGTHS)][own]
-            weights = numpy.exp(found - found.max())
-            shares.append(1.0 - severity / numpy.average(table.severities[own], weights=weights))
-    return math.sqrt(numpy.mean(numpy.square(shares)))
+    shares_off = []
+    for alarm in alarms:
+        probability, severity, _ = alarm.hypotheses.posterior(errors)
+        if max(probability, key=probability.get) == alarm.kind:
+            shares_off.append(1.0 - alarm.severity / severity[alarm.kind])
+    return math.sqrt(numpy.mean(numpy.square(shares_off)))
 
 
 def cause_name(cause):
@@ -206,28 +251,30 @@ def numbers_text(numbers):
 def write(bench, source, page):
     layout, sound, found = changes(bench)
     table = table_of(layout, bench.kinds, found)
-    windows = calibration_windows(bench)
-    errors = trust(layout, windows, table)
-    of_severity = severity_error(layout, windows, table, errors)
+    alarms = alarms_of(layout, calibration_windows(bench), table)
+    errors = fitted_errors(alarms)
+    report(alarms, errors)
     scalars = [name for name in layout.names if not name.startswith(("error_", "torque_", "ripple_"))]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
              "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
              "// clang-format off",
              "/// Of each number of a signature, and of its length, on another gear in another motion [-].",
-             f"inline constexpr double SIGNATURE_ERROR = {errors[0]};",
-             f"inline constexpr double SIGNATURE_LENGTH_ERROR = {errors[1]};",
+             f"inline constexpr double SIGNATURE_ERROR = {errors.number};",
+             f"inline constexpr double SIGNATURE_LENGTH_ERROR = {errors.length};",
              "/// Share of the lines of a sound drive that a fault of severity 1 changes [-].",
-             f"inline constexpr double LINE_ERROR = {errors[2]};",
+             f"inline constexpr double LINE_ERROR = {errors.line};",
+             "/// Of the logarithm of a likelihood [-].",
+             f"inline constexpr double EVIDENCE_WEIGHT = {errors.weight};",
              "/// Of the severity by them, as a share of it [-].",
-             f"inline constexpr double SEVERITY_ERROR = {of_severity:.2f};", "",
-             "/// Of the sound gear in the check-up.",
+             f"inline constexpr double SEVERITY_ERROR = {severity_error(alarms, errors):.2f};", "",
+             "/// Of the shipped gear in the check-up.",
              "inline constexpr std::array<double, SCALAR_COUNT> SOUND_VALUES{ "
              f"{numbers_text(sound[:len(scalars)])} }};", "",
              "inline constexpr Signature FITTED_SIGNATURES[] = {"]
     lines += [f"{{ {cause_name(cause)}, {severity}, {{ {numbers_text(change)} }} }},  // {motion}"
               for cause, motion, severity, change in zip(*table)]
     source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
-    write_table(layout, table, page)
+    write_table(layout, sound, table, page)
 
 
 def read(source):
@@ -238,11 +285,12 @@ def read(source):
     causes, severities, changes, motions = zip(*rows)
     table = Table([cause.lower() for cause in causes], motions, numpy.array(severities, float),
                   numpy.array([row.split(", ") for row in changes], float))
-    return table, [float(values[name]) for name in ("SIGNATURE_ERROR", "SIGNATURE_LENGTH_ERROR", "LINE_ERROR")]
+    return table, Errors(*(float(values[name]) for name in ("SIGNATURE_ERROR", "SIGNATURE_LENGTH_ERROR", "LINE_ERROR",
+                                                            "EVIDENCE_WEIGHT")))
 
 
-def write_table(layout, table, page):
-    """Severity 0.4, in the check-up: the numbers in which the kinds differ most."""
+def write_table(layout, sound, table, page):
+    """Severity 0.4, first gear in the check-up: the numbers in which the kinds differ most."""
     shown = [("torsional_stiffness", 1e-3, "K1 [kN·m/rad]"), ("second_stiffness", 1e-3, "K2 [kN·m/rad]"),
              ("lost_motion", 206265.0, "lost motion [″]"),
              ("hysteresis_area", 1e3, "loop [mJ]"), ("running_torque", 1e3, "running torque [mN·m]"),
@@ -250,11 +298,14 @@ def write_table(layout, table, page):
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
              ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
              ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
-    lines = split_table(("signatures fitted to", [FITTED]), ("their errors fitted to", CALIBRATED))
+    lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", CALIBRATED))
     lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
+    shown_causes = set()
     for cause, motion, severity, change in zip(*table):
-        if motion == FITTED.motions[0].tag and severity == 0.4:
-            by_name = dict(zip(layout.names, change))
+        if motion == "check_up" and severity == 0.4 and cause not in shown_causes:
+            shown_causes.add(cause)
+            by_name = {name: number * (value if name in shares(cause) else 1.0)
+                       for name, number, value in zip(layout.names, change, sound)}
             lines.append(f"| `{cause}` | " + " | ".join(f"{scale * by_name[name]:.2g}" for name, scale, _ in shown)
                          + " |")
     page_section.write(page, "signatures", lines)

@@ -308,7 +308,7 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
     const double widening = 1.0 + 1.0 / n + (reference.fitted ? leverage : 0.0);
     const double expected = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
     least = least == 0.0 ? freedom : std::min(least, freedom);
-    residual_.expected[i] = expected;
+    residual_.sound[i] = expected + indicators.of_model[i];
     residual_.difference[i] = indicators.values[i] - expected;
     deviations.plain[i] = deviation(residual_.difference[i], expected,
                                     std::sqrt(variance(i, bin, indicators, reference.variance, widening)), freedom);

@@ -27,6 +27,7 @@ struct Term
   Causes common;
   std::size_t number;  // of the signature
   bool has_phase;      // one of two parts of a line
+  double sound;        // what a share is taken of
   double line_square;  // half the square of the sound line's amplitude, 0 of what has no phase
 };
 
@@ -39,8 +40,8 @@ double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_
   double square = 0.0;
   for (const std::size_t own : is_neighbour ? NEIGHBOURS : std::array{ line, line })
   {
-    const double cosine = residual.expected[cosineIndex(signal, own)];
-    const double sine = residual.expected[sineIndex(signal, own)];
+    const double cosine = residual.sound[cosineIndex(signal, own)];
+    const double sine = residual.sound[sineIndex(signal, own)];
     square += 0.5 * (cosine * cosine + sine * sine);
   }
   return is_neighbour ? square : 0.5 * square;
@@ -86,7 +87,7 @@ public:
       double square = 0.0;
       for (const Term& term : *this)
       {
-        const double change = signature->change[term.number];
+        const double change = changeBy(*signature, term);
         square += (term.has_phase ? 0.5 : 1.0) * change * change / term.own;
       }
       widening = 1.0 + SIGNATURE_LENGTH_ERROR * SIGNATURE_LENGTH_ERROR * square;
@@ -99,7 +100,7 @@ public:
     double product = 1.0;
     for (const Term& term : *this)
     {
-      const double change = signature != nullptr ? signature->change[term.number] : 0.0;
+      const double change = signature != nullptr ? changeBy(*signature, term) : 0.0;
       const double mean = term.has_phase ? 0.0 : change;
       const double share = term.has_phase ? 0.5 : SIGNATURE_ERROR * SIGNATURE_ERROR;
       const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
@@ -125,6 +126,14 @@ public:
   const Term* end() const noexcept { return terms_.data() + count_; }
 
 private:
+  static double changeBy(const Signature& signature, const Term& term) noexcept
+  {
+    const double change = signature.change[term.number];
+    const bool is_share =
+        term.number < SCALAR_COUNT && isShare(signature.cause, static_cast<ScalarIndicator>(term.number));
+    return is_share ? change * term.sound : change;
+  }
+
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
            std::optional<double> line_square = {}) noexcept
   {
@@ -135,6 +144,7 @@ private:
                            Eigen::Map<const Causes>(residual.common[indicator].data()),
                            number,
                            line_square.has_value(),
+                           residual.sound[indicator],
                            line_square.value_or(0.0) };
     }
   }
@@ -147,15 +157,18 @@ private:
 /// Likelihoods of one cause, over its rows.
 struct Sum
 {
-  void add(double likelihood, double severity) noexcept
+  void add(double logarithm, double severity) noexcept
   {
+    const double weight = std::exp(EVIDENCE_WEIGHT * logarithm);
     ++rows;
-    total += likelihood;
-    first += likelihood * severity;
-    second += likelihood * severity * severity;
+    likelihood += std::exp(logarithm);
+    total += weight;
+    first += weight * severity;
+    second += weight * severity * severity;
   }
   double rows{};
-  double total{};
+  double likelihood{};
+  double total{};  // by the weight of the evidence
   double first{};   // of the severity
   double second{};  // of its square
 };
@@ -183,14 +196,15 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
   for (std::size_t i = 0; i < likelihoods.size(); ++i)
   {
     const Signature& signature = FITTED_SIGNATURES[i];
-    sums[static_cast<std::size_t>(signature.cause)].add(std::exp(likelihoods[i] - largest), signature.severity);
+    sums[static_cast<std::size_t>(signature.cause)].add(likelihoods[i] - largest, signature.severity);
   }
   for (const double likelihood : unknown)
   {
-    sums[static_cast<std::size_t>(Cause::NONE)].add(std::exp(likelihood - largest), 0.0);
+    sums[static_cast<std::size_t>(Cause::NONE)].add(likelihood - largest, 0.0);
   }
   CausePosterior posterior;
   double all = 0.0;
+  double faults = 0.0;
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
     const Sum& sum = sums[cause];
@@ -198,14 +212,14 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
     {
       posterior.probability[cause] = sum.total / sum.rows;
       all += posterior.probability[cause];
+      faults += cause != static_cast<std::size_t>(Cause::NONE) ? sum.likelihood / sum.rows : 0.0;
       posterior.severity[cause] = sum.first / sum.total;
       const double mean = posterior.severity[cause];
       const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
       posterior.severity_deviation[cause] = std::sqrt(square + SEVERITY_ERROR * SEVERITY_ERROR * mean * mean);
     }
   }
-  const double known = all - posterior.probability[static_cast<std::size_t>(Cause::NONE)];
-  posterior.log_odds = std::log(known / static_cast<double>(CAUSE_COUNT - 1)) + largest - sound;
+  posterior.log_odds = std::log(faults / static_cast<double>(CAUSE_COUNT - 1)) + largest - sound;
   for (double& probability : posterior.probability)
   {
     probability /= all;

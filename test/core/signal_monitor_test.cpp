@@ -599,6 +599,7 @@ protected:
     for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
     {
       put(i, change[i], spread_[i]);
+      window.sound[i] = 1.0;  // shares of it are in its unit
     }
     for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
     {

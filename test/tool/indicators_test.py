@@ -70,7 +70,7 @@ class Indicators(tool.ToolTest):
             for window in self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline",
                                             "b.yaml", "--set", "indicators.confirm_windows=1")["windows"]:
                 layout = health_signatures.Layout(window["indicators"])
-                probability, log_odds = health_signatures.posterior(layout, window, table, *errors)
+                probability, _, log_odds = health_signatures.Hypotheses(layout, window, table).posterior(errors)
                 found = window["assessment"]
                 self.assertEqual(found["cause"], max(probability, key=probability.get))
                 self.assertAlmostEqual(found["confidence"], probability[found["cause"]], delta=1e-6)

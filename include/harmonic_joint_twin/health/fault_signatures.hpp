@@ -74,7 +74,27 @@ FeatureScores featureScores(const Deviations& deviations) noexcept;
 /// stays the amplitude is the length of its change: the phase depends on the fault's place.
 constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * LINE_COUNT;
 
-/// What a fault of one severity changes in the indicators of one motion.
+/// Whether a signature gives a change as a share of the sound value: stiffness and play go with the size of the cup,
+/// and thicker grease multiplies the friction there is.
+constexpr bool isShare(Cause cause, ScalarIndicator indicator)
+{
+  switch (indicator)
+  {
+    case ScalarIndicator::TORSIONAL_STIFFNESS:
+    case ScalarIndicator::SECOND_STIFFNESS:
+    case ScalarIndicator::LOST_MOTION:
+    case ScalarIndicator::HYSTERESIS_AREA:
+      return true;
+    case ScalarIndicator::RUNNING_TORQUE:
+    case ScalarIndicator::COULOMB_TORQUE:
+    case ScalarIndicator::VISCOUS_FRICTION:
+      return cause == causeOf(FaultKind::LUBRICANT_DEGRADATION);
+    default:
+      return false;
+  }
+}
+
+/// What a fault of one severity changes in the indicators of one gear in one motion.
 struct Signature
 {
   /// More or fewer numbers than there are do not compile.
@@ -90,7 +110,7 @@ struct Signature
 
   Cause cause;
   double severity;                              ///< 0 ... 1 [-]
-  std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators
+  std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
 };
 
 /// Of the twin's own runs, written by `scripts/evaluate_health --fit`.
@@ -119,13 +139,16 @@ struct CausePosterior
 
 /// Likelihood of the window's differences d from the reference under every signature.
 ///
-/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h),   P(h) the same for every cause, within it for every row
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it for every
+///        row
 ///        D_h,ii = D_ii (1 + (e S)^2) + (r mu_i)^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
 /// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
 ///        D, F, v  WindowResidual
 ///        r, e     error of a signature in proportion to each number, and to its length: other gears, motions, places
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
+///        b        weight of the evidence: what a signature is off by is not independent from number to number
+/// The odds are of b = 1.
 /// No fault: mu = 0. Something else: mu = 0, S = 3, 10, 30, 100.
 /// Does not allocate.
 CausePosterior causePosterior(const WindowResidual& residual) noexcept;
