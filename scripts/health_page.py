@@ -23,7 +23,6 @@ SURE = 0.3            # severity from which on the cause should be right
 SERIES_WINDOWS = 120  # of each drawn gear, beside those of its reference
 SET = 0.9             # probability that the causes of a set have together
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
-COLOURS = ["tab:blue", "tab:orange", "tab:green", "tab:red"]  # of the motions
 
 
 def collect(bench, trials, sound_windows):
@@ -185,7 +184,7 @@ def draw_scores(kinds, sound, faulty, path):
     """Score of every window over the threshold, by kind and severity; sound ones on top."""
     names = ["sound", *[kind["kind"] for kind in kinds]]
     severities = severities_of(faulty)
-    colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), COLOURS))
+    colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), matplotlib.colormaps["tab10"].colors))
     figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
     for run in [*sound, *faulty]:
         row = names.index("sound" if run.kind == "healthy" else run.kind)

@@ -571,6 +571,23 @@ TEST(Reference, OfOneTemperatureCallsNothingAFaultAtAnother)
   EXPECT_GT(scoreAt(25.0, 0.002, 0.05), 1.0);
 }
 
+TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)
+{
+  Assessor assessor(shippedParameters());
+  SignalIndicators model;
+  model.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = 25000.0;
+  for (int window = 0; window <= LEARNING; ++window)
+  {
+    SignalIndicators measured = model;
+    measured.point = { 100.0, 1.0, 30.0, 25.0 };
+    measured.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = window < LEARNING ? 24000.0 : 21600.0;
+    assessor.update(difference(measured, model));
+  }
+  const WindowResidual& residual = assessor.baseline().residual();
+  EXPECT_DOUBLE_EQ(residual.sound[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], 24000.0);
+  EXPECT_DOUBLE_EQ(residual.difference[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], -2400.0);
+}
+
 /// A window that differs from its reference by noise, and by a signature where one is given.
 class AgainstSignatures : public testing::Test
 {
