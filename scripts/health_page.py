@@ -200,7 +200,7 @@ def draw_scores(kinds, sound, faulty, path):
     axis.set_xlabel("score of the window over the threshold; from top to bottom severity "
                     + ", ".join(f"{severity:g}" for severity in severities))
     axis.grid(alpha=0.3, axis="x")
-    axis.legend(frameon=False, loc="lower right")
+    axis.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(colours))
     figure.savefig(path, dpi=90)
     plt.close(figure)
 

@@ -168,7 +168,7 @@ struct Sum
   }
   double rows{};
   double likelihood{};
-  double total{};  // by the weight of the evidence
+  double total{};   // by the weight of the evidence
   double first{};   // of the severity
   double second{};  // of its square
 };

@@ -87,7 +87,8 @@ std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double
   std::vector<Cause> causes;
   for (const Signature& signature : faultSignatures())
   {
-    const double least = share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(SOUND_VALUES[indexOf(indicator)]));
+    const double least =
+        share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(SOUND_VALUES[indexOf(indicator)]));
     if (signature.severity == 1.0 && sign * signature.change[indexOf(indicator)] >= least &&
         std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {

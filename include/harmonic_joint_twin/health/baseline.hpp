@@ -101,9 +101,9 @@ struct WindowDeviations
 /// What a window differs from its reference by, and what sound windows differ by: covariance D + F F'.
 struct WindowResidual
 {
-  std::array<double, INDICATOR_COUNT> sound{};  ///< reference with what was subtracted, units of the indicators
-  std::array<double, INDICATOR_COUNT> difference{};                         ///< from it
-  std::array<double, INDICATOR_COUNT> own{};                                ///< diagonal of D; 0: not compared
+  std::array<double, INDICATOR_COUNT> sound{};       ///< reference with what was subtracted, units of the indicators
+  std::array<double, INDICATOR_COUNT> difference{};  ///< from it
+  std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
   double freedom{};                                                         ///< v: of the reference's spreads [-]
 };
