@@ -34,6 +34,13 @@ Errors = collections.namedtuple("Errors", "number length line weight")
 START = Errors(0.12, 0.016, 0.3, 0.35)            # of the search
 
 
+def amplitude_change(sound, change):
+    """As amplitudeChange in baseline.hpp."""
+    size = numpy.where(sound > 0.0, sound, 1.0)
+    power = numpy.maximum(1.0 + change / size, 0.0) ** (2.0 / 3.0)
+    return numpy.where(sound > 0.0, 1.5 * size * (power - 1.0), change)
+
+
 def shares(cause):
     return SHARES_OF_GREASE if cause == "lubricant_degradation" else SHARES
 
@@ -45,6 +52,7 @@ class Layout:
         lines = [name for name in indicators if name.endswith("_cos")]
         self.locked = [name[:-4] for name in lines]
         self.names = [name for name in indicators if not name.endswith(("_cos", "_sin"))]
+        self.lines = {name for name in self.names if name.startswith(("error_", "torque_", "ripple_"))}
 
     def numbers(self, cause, window, sound):
         """Change of a window; a line with a phase: length of its change. Not determined: 0."""
@@ -56,22 +64,17 @@ class Layout:
                             else change(name) for name in self.names])
 
     def terms(self, window):
-        """(number, has a phase, half the square of the sound line's amplitude, sound value, residual) of each that was
-        compared."""
+        """(number, has a phase, half the square of the sound line's amplitude, residual) of each that was compared."""
         residual = window["residual"]
-
-        def sound(part):
-            return window["indicators"][part] - residual[part][0]
         for number, name in enumerate(self.names):
             parts = [name + "_cos", name + "_sin"] if name in self.locked else [name]
             parts = [part for part in parts if residual[part] is not None]
             # Orders 2 and 1.98 are told apart so little in a motion to and fro that they count as one.
             lines = [name.replace(one, other) for one in NEIGHBOURS for other in NEIGHBOURS if name.endswith(one)]
-            amplitudes = [sound(part) for line in lines or [name] for part in (line + "_cos", line + "_sin")
+            amplitudes = [residual[part][0] for line in lines or [name] for part in (line + "_cos", line + "_sin")
                           if name in self.locked and residual[part] is not None]
             for part in parts:
-                yield number, name in self.locked, 0.5 * sum(value ** 2 for value in amplitudes), sound(part), \
-                    residual[part]
+                yield number, name in self.locked, 0.5 * sum(value ** 2 for value in amplitudes), residual[part]
 
 
 def windows_of(bench, bags):
@@ -125,15 +128,17 @@ class Hypotheses:
     fault_signatures.hpp."""
 
     def __init__(self, layout, window, table):
-        number, phase, line, sound, residual = zip(*layout.terms(window))
+        number, phase, line, residual = zip(*layout.terms(window))
         number, self.phase, self.line = list(number), numpy.array(phase), numpy.array(line)
-        difference, self.own, *common = numpy.array(residual).T
+        sound, difference, self.own, *common = numpy.array(residual).T
         self.common = numpy.array(common).T
         self.freedom = window["freedom"]
         self.table = table
         self.causes = numpy.array(table.causes)
         share = {cause: [layout.names[i] in shares(cause) for i in number] for cause in set(table.causes)}
         change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], sound, 1.0)
+        free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
+        change = numpy.where(free, amplitude_change(sound, change), change)
         nothing = numpy.zeros((1, len(number)))
         self.change = numpy.vstack([nothing, change, numpy.repeat(nothing, len(UNKNOWN_STRENGTHS), axis=0)])
         self.severity = numpy.concatenate([[0.0], table.severities, numpy.zeros(len(UNKNOWN_STRENGTHS))])
@@ -254,7 +259,7 @@ def write(bench, source, page):
     alarms = alarms_of(layout, calibration_windows(bench), table)
     errors = fitted_errors(alarms)
     report(alarms, errors)
-    scalars = [name for name in layout.names if not name.startswith(("error_", "torque_", "ripple_"))]
+    scalars = [name for name in layout.names if name not in layout.lines]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
              "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
              "// clang-format off",

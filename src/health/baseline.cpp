@@ -57,6 +57,16 @@ std::size_t sizeOf(std::size_t indicator) noexcept
 }
 }  // namespace
 
+double amplitudeChange(double sound, double change) noexcept
+{
+  if (sound <= 0.0)
+  {
+    return change;
+  }
+  const double root = std::cbrt(std::max(1.0 + change / sound, 0.0));
+  return 1.5 * sound * (root * root - 1.0);
+}
+
 double loadStep(const Parameters& parameters) noexcept
 {
   return LOAD_STEP * parameters.life.rated_torque;
@@ -310,6 +320,12 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
     least = least == 0.0 ? freedom : std::min(least, freedom);
     residual_.sound[i] = expected + indicators.of_model[i];
     residual_.difference[i] = indicators.values[i] - expected;
+    if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
+    {
+      // The mean of the power lies below the power of the mean.
+      residual_.difference[i] =
+          amplitudeChange(sound, residual_.difference[i]) + std::min(reference.variance / sound, sound) / 6.0;
+    }
     deviations.plain[i] = deviation(residual_.difference[i], expected,
                                     std::sqrt(variance(i, bin, indicators, reference.variance, widening)), freedom);
     const Causes common = Eigen::Map<const Causes>(reference.common.data());

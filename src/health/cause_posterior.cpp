@@ -80,15 +80,17 @@ public:
   /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`.
   double logLikelihood(const Signature* signature, double strength) const noexcept
   {
+    std::array<double, INDICATOR_COUNT> changes{};  // by the signature
     double widening = 1.0 + strength * strength;
     double of_lines = 0.0;
     if (signature != nullptr)
     {
       double square = 0.0;
-      for (const Term& term : *this)
+      for (std::size_t i = 0; i < count_; ++i)
       {
-        const double change = changeBy(*signature, term);
-        square += (term.has_phase ? 0.5 : 1.0) * change * change / term.own;
+        const Term& term = terms_[i];
+        changes[i] = changeBy(*signature, term);
+        square += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
       }
       widening = 1.0 + SIGNATURE_LENGTH_ERROR * SIGNATURE_LENGTH_ERROR * square;
       of_lines = LINE_ERROR * LINE_ERROR * signature->severity * signature->severity;
@@ -98,9 +100,10 @@ public:
     double square = 0.0;
     double log_determinant = 0.0;
     double product = 1.0;
-    for (const Term& term : *this)
+    for (std::size_t i = 0; i < count_; ++i)
     {
-      const double change = signature != nullptr ? changeBy(*signature, term) : 0.0;
+      const Term& term = terms_[i];
+      const double change = changes[i];
       const double mean = term.has_phase ? 0.0 : change;
       const double share = term.has_phase ? 0.5 : SIGNATURE_ERROR * SIGNATURE_ERROR;
       const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
@@ -122,16 +125,15 @@ public:
            (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
   }
 
-  const Term* begin() const noexcept { return terms_.data(); }
-  const Term* end() const noexcept { return terms_.data() + count_; }
-
 private:
   static double changeBy(const Signature& signature, const Term& term) noexcept
   {
     const double change = signature.change[term.number];
-    const bool is_share =
-        term.number < SCALAR_COUNT && isShare(signature.cause, static_cast<ScalarIndicator>(term.number));
-    return is_share ? change * term.sound : change;
+    if (term.number >= SCALAR_COUNT)
+    {
+      return term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
+    }
+    return isShare(signature.cause, static_cast<ScalarIndicator>(term.number)) ? change * term.sound : change;
   }
 
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,

@@ -8,14 +8,14 @@ namespace hjt
 {
 // clang-format off
 /// Of each number of a signature, and of its length, on another gear in another motion [-].
-inline constexpr double SIGNATURE_ERROR = 0.15;
-inline constexpr double SIGNATURE_LENGTH_ERROR = 0.041;
+inline constexpr double SIGNATURE_ERROR = 0.12;
+inline constexpr double SIGNATURE_LENGTH_ERROR = 0.016;
 /// Share of the lines of a sound drive that a fault of severity 1 changes [-].
 inline constexpr double LINE_ERROR = 0.48;
 /// Of the logarithm of a likelihood [-].
-inline constexpr double EVIDENCE_WEIGHT = 0.28;
+inline constexpr double EVIDENCE_WEIGHT = 0.274;
 /// Of the severity by them, as a share of it [-].
-inline constexpr double SEVERITY_ERROR = 0.41;
+inline constexpr double SEVERITY_ERROR = 0.38;
 
 /// Of the shipped gear in the check-up.
 inline constexpr std::array<double, SCALAR_COUNT> SOUND_VALUES{ -0.00196, 0.000131, 2.42e+04, 3.6e+04, 5.43e-05, 0.00873, 0.136, 0.0973, 0.000496, 0, 0, 0, 0 };

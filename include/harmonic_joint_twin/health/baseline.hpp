@@ -98,11 +98,18 @@ struct WindowDeviations
   Deviations conditional;  ///< each given all others: what the common causes explain is none
 };
 
+/// What an amplitude changes by, as a nearly normal number. An amplitude of noise alone is Rayleigh's, whose tail is
+/// far longer than the normal one; that of its power 2/3 is not (Wilson and Hilferty 1931).
+///
+/// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  x where m is none
+/// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
+double amplitudeChange(double sound, double change) noexcept;
+
 /// What a window differs from its reference by, and what sound windows differ by: covariance D + F F'.
 struct WindowResidual
 {
   std::array<double, INDICATOR_COUNT> sound{};       ///< reference with what was subtracted, units of the indicators
-  std::array<double, INDICATOR_COUNT> difference{};  ///< from it
+  std::array<double, INDICATOR_COUNT> difference{};  ///< from it; of what isFreeAmplitude by amplitudeChange
   std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
   double freedom{};                                                         ///< v: of the reference's spreads [-]

@@ -63,6 +63,13 @@ constexpr std::size_t sineIndex(LineSignal signal, std::size_t line)
   return cosineIndex(signal, line) + 1;
 }
 
+/// Whether it is the amplitude of a line whose phase is free.
+constexpr bool isFreeAmplitude(std::size_t indicator)
+{
+  return indicator >= SCALAR_COUNT && (indicator - SCALAR_COUNT) % LINE_BLOCK >= PHASE_LOCKED &&
+         (indicator - SCALAR_COUNT) % LINE_BLOCK < LINE_COUNT;
+}
+
 /// Snake case, as in Indicators.msg: "torsional_stiffness", "error_wave_generator_2", "torque_wave_generator_2_cos".
 /// Lives as long as the program.
 const char* indicatorName(std::size_t indicator) noexcept;

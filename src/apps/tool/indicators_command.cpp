@@ -139,14 +139,14 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-/// Difference from the reference, own variance, what goes with each common cause; null: not compared.
+/// Sound value, difference from it, own variance, what goes with each common cause; null: not compared.
 Json residualJson(const WindowResult& window)
 {
   return byIndicator(
       [&](std::size_t i)
       {
         const WindowResidual& residual = window.residual;
-        std::vector<double> numbers{ residual.difference[i], residual.own[i] };
+        std::vector<double> numbers{ residual.sound[i], residual.difference[i], residual.own[i] };
         numbers.insert(numbers.end(), residual.common[i].begin(), residual.common[i].end());
         return residual.own[i] > 0.0 ? Json(numbers) : Json();
       });
