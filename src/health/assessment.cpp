@@ -31,11 +31,11 @@ void Assessor::reset() noexcept
   better_ = 0;
 }
 
-const Assessment& Assessor::update(const SignalIndicators& indicators) noexcept
+const Assessment& Assessor::update(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;
   assessment_.windows = indicators.windows;
-  switch (baseline_.update(indicators, deviations_))
+  switch (baseline_.update(indicators, model, deviations_))
   {
     case BaselineState::LEARNING:
       assessment_.state = AssessmentState::LEARNING;

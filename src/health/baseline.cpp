@@ -200,7 +200,8 @@ void fitReference(ReferenceBin& bin) noexcept
   }
 }
 
-BaselineState Baseline::update(const SignalIndicators& indicators, WindowDeviations& deviations) noexcept
+BaselineState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
+                               WindowDeviations& deviations) noexcept
 {
   deviations = {};
   ReferenceBin* bin = find(binOf(indicators.point, load_step_));
@@ -213,7 +214,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, WindowDeviati
     learn(*bin, indicators);
     return BaselineState::LEARNING;
   }
-  compare(*bin, indicators, deviations);
+  compare(*bin, indicators, model, deviations);
   return BaselineState::COMPARED;
 }
 
@@ -289,7 +290,7 @@ Deviation Baseline::deviation(double difference, double expected, double spread,
   return deviation;
 }
 
-void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicators,
+void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
                        WindowDeviations& deviations) noexcept
 {
   // Woodbury's identity: C^-1 = D^-1 - D^-1 F (1 + F' D^-1 F)^-1 F' D^-1, F with a row for each indicator.
@@ -318,7 +319,7 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
     const double widening = 1.0 + 1.0 / n + (reference.fitted ? leverage : 0.0);
     const double expected = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
     least = least == 0.0 ? freedom : std::min(least, freedom);
-    residual_.sound[i] = expected + indicators.of_model[i];
+    residual_.sound[i] = expected + (model != nullptr ? model->values[i] : 0.0);
     residual_.difference[i] = indicators.values[i] - expected;
     if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
     {

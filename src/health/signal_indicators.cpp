@@ -72,7 +72,6 @@ double SignalIndicators::phase(LineSignal signal, Line line) const noexcept
 SignalIndicators difference(const SignalIndicators& measured, const SignalIndicators& model) noexcept
 {
   SignalIndicators result = measured;
-  result.of_model = model.values;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     result.values[i] -= model.values[i];

@@ -581,7 +581,7 @@ TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)
     SignalIndicators measured = model;
     measured.point = { 100.0, 1.0, 30.0, 25.0 };
     measured.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = window < LEARNING ? 24000.0 : 21600.0;
-    assessor.update(difference(measured, model));
+    assessor.update(difference(measured, model), &model);
   }
   const WindowResidual& residual = assessor.baseline().residual();
   EXPECT_DOUBLE_EQ(residual.sound[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], 24000.0);

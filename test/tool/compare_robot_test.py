@@ -56,9 +56,9 @@ class HiddenFault(tool.ToolTest):
 
     def test_a_spalled_race_is_named_by_its_line(self):
         duty = [{"name": "turning", "speed": {"constant": 0.2618}, "bandwidth": 8.0, "load": {"constant": 60.0}}]
-        windows = ["--set", "indicators.window_turns=25.0", "--set", "indicators.baseline_windows=16"]
+        windows = ["--set", "indicators.window_turns=25.0", "--set", "indicators.baseline_windows=24"]
         # The load is not in the telemetry, nor is it given to the twin.
-        self.compare(self.robot("sound", duration=105.0, duty=duty, weight=0.0), "r0", *windows)
+        self.compare(self.robot("sound", duration=155.0, duty=duty, weight=0.0), "r0", *windows)
         spall = self.robot("spall", ("bearing_outer_race", 0), duration=20.0, duty=duty, weight=0.0)
         report = self.compare(spall, "r1", *windows, "--reference", "r0")
         self.assertEqual(self.causes(report, "Signals by windows"), ["bearing_outer_race"])

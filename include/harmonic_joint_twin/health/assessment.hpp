@@ -83,8 +83,8 @@ public:
   void reset() noexcept;
   void setReference(std::vector<ReferenceBin> bins) { baseline_.setReference(std::move(bins)); }
 
-  /// A window was completed.
-  const Assessment& update(const SignalIndicators& indicators) noexcept;
+  /// A window was completed. `model`: indicators of a model that were subtracted from it.
+  const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
   const Assessment& assessment() const noexcept { return assessment_; }
   const Baseline& baseline() const noexcept { return baseline_; }

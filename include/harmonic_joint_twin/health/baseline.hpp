@@ -150,7 +150,9 @@ public:
 
   void reset() noexcept;  ///< forgets what was learned, not what was given
 
-  BaselineState update(const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
+  /// `model`: indicators of a model that were subtracted from these; nullptr: none were.
+  BaselineState update(const SignalIndicators& indicators, const SignalIndicators* model,
+                       WindowDeviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
   const WindowResidual& residual() const noexcept { return residual_; }  ///< of the last window
@@ -165,7 +167,8 @@ private:
   double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators, double left,
                   double widening) const noexcept;
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
-  void compare(const ReferenceBin& bin, const SignalIndicators& indicators, WindowDeviations& deviations) noexcept;
+  void compare(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
+               WindowDeviations& deviations) noexcept;
 
   const int windows_;
   const double least_spread_;

@@ -99,7 +99,6 @@ struct SignalIndicators
   OperatingPoint point;
   std::array<double, INDICATOR_COUNT> values{};
   std::array<double, INDICATOR_COUNT> uncertainty{};  ///< standard error by the fit, 0: not known; units as values
-  std::array<double, INDICATOR_COUNT> of_model{};     ///< subtracted from values; units as these
 };
 
 /// What `measured` differs by from the indicators of a model run alike; amplitudes of phase-locked lines become those

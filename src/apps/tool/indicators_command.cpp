@@ -225,9 +225,9 @@ void printSummary(const std::vector<WindowResult>& windows)
   printReport(false, lines);
 }
 
-/// All windows of a recording, less those of the model if there is one.
+/// All windows of a recording, less those of the model if there is one, which come into `model`.
 std::vector<SignalIndicators> readRecording(const std::string& path, const IndicatorsOptions& options,
-                                            const Parameters& parameters)
+                                            const Parameters& parameters, std::vector<SignalIndicators>& model)
 {
   std::uint64_t refused = 0;
   std::vector<SignalIndicators> measured =
@@ -240,7 +240,7 @@ std::vector<SignalIndicators> readRecording(const std::string& path, const Indic
     model_source.states_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
     model_source.load_topic = options.joint_namespace + "/" + topics::LOAD;
     std::uint64_t model_refused = 0;
-    const std::vector<SignalIndicators> model = readWindows(options.model, model_source, parameters, model_refused);
+    model = readWindows(options.model, model_source, parameters, model_refused);
     measured.resize(std::min(measured.size(), model.size()));
     for (std::size_t i = 0; i < measured.size(); ++i)
     {
@@ -272,15 +272,16 @@ int run(const IndicatorsOptions& given)
     {
       assessor.reset();  // each is judged for itself
     }
-    const std::vector<SignalIndicators> measured = readRecording(recording, options, parameters);
+    std::vector<SignalIndicators> model;
+    const std::vector<SignalIndicators> measured = readRecording(recording, options, parameters, model);
     if (measured.empty())
     {
       std::cerr << "joint_twin: " << recording << " holds no whole window of steady motion\n";
     }
-    for (const SignalIndicators& indicators : measured)
+    for (std::size_t i = 0; i < measured.size(); ++i)
     {
-      const Assessment assessment = assessor.update(indicators);
-      windows.push_back({ recording, indicators, assessor.deviations(), assessor.baseline().residual(), assessment });
+      const Assessment assessment = assessor.update(measured[i], model.empty() ? nullptr : &model[i]);
+      windows.push_back({ recording, measured[i], assessor.deviations(), assessor.baseline().residual(), assessment });
     }
   }
   if (windows.empty())
