@@ -184,7 +184,7 @@ def draw_scores(kinds, sound, faulty, path):
     """Score of every window over the threshold, by kind and severity; sound ones on top."""
     names = ["sound", *[kind["kind"] for kind in kinds]]
     severities = severities_of(faulty)
-    colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), matplotlib.colormaps["tab10"].colors))
+    colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), plt.get_cmap("tab10").colors))
     figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
     for run in [*sound, *faulty]:
         row = names.index("sound" if run.kind == "healthy" else run.kind)
@@ -230,8 +230,8 @@ def report(bench, trials, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
     return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
-            f"{GREASE[1]:g} °C. {len(missing)} more were not judged: fewer than eight windows of the reference lie at "
-            "their operating point.", "", *health_runs.split_table(("judged by", trials)), "",
+            f"{GREASE[1]:g} °C. {len(missing)} more were not judged, whose operating point has "
+            "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
             "### Sound drives", "", *sound_table(sound), "",
             "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
             "![Score of every window over the threshold](images/health/seen.png)", "",

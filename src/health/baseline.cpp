@@ -359,7 +359,8 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
       const double precision = (1.0 - row.dot(inner * row) / own) / own;             // of C^-1
       const double spread = 1.0 / std::sqrt(precision);
       const double unexpected = weighted / precision;
-      deviations.conditional[i] = deviation(unexpected, indicators.values[i] - unexpected, spread, residual_.freedom);
+      const double expected = deviations.plain[i].expected + (residual_.difference[i] - unexpected);
+      deviations.conditional[i] = deviation(unexpected, expected, spread, residual_.freedom);
     }
   }
 }
