@@ -14,40 +14,57 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, GREASE, JUDGED, QUICK, SERIES_MOTIONS
+from health_runs import CHECK_UP, GREASE, JUDGED, QUICK, SERIES_FIRST, SERIES_MOTIONS, SOUND_WINDOWS
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 SURE = 0.3            # severity from which on the cause should be right
-SERIES_WINDOWS = 120  # of each drawn gear, beside those of its reference
+SOUND_CHECK_UPS = 40  # of each gear
+SOUND_RUNS = 4        # along each path at work
+SERIES_RUNS = 12      # of a drawn gear
 SET = 0.9             # probability that the causes of a set have together
+BLOCK = 10            # windows that a verdict at work is made of the mean of
+LEAST_WINDOWS = 3     # of them before the verdict may change
+TAIL = 0.6            # score over the threshold from which on the tail is taken
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 
 
-def collect(bench, trials, sound_windows):
+def collect(bench, trials):
     """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion."""
     drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     sound, faulty = [], []
     for trial, motion in ((trial, motion) for trial in trials for motion in trial.motions):
-        bags = bench.sound("sound", trial.gear, motion, drawn, sound_windows, 4)
-        sound += bench.judge(bags, trial.gear, motion)
+        sound += sound_runs(bench, "sound", trial.gear, motion, 4, SOUND_RUNS)
         faulty += bench.judge(bench.faulty(trial, motion, drawn), trial.gear, motion)
-    missing = [run for run in [*sound, *faulty] if run.window is None]
-    return [run for run in sound if run.window], [run for run in faulty if run.window], missing
+    missing = [run for run in [*sound, *faulty] if not run.windows]
+    return [run for run in sound if run.windows], [run for run in faulty if run.windows], missing
 
 
-def beyond(run):
-    return run.window.largest > 1.0
+def sound_runs(bench, purpose, gear, motion, seed, runs):
+    drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
+    once = motion.windows == 1
+    motion = motion if once else health_runs.at_work(motion, SOUND_WINDOWS)
+    bags = bench.sound(purpose, gear, motion, drawn, SOUND_CHECK_UPS if once else runs, seed)
+    return bench.judge(bags, gear, motion)
+
+
+def last(run):
+    return run.windows[-1]
+
+
+def alarmed(run):
+    """At its end: faults are there from the start of a run on."""
+    return last(run).level != "OK"
 
 
 def right(run):
-    return run.window.cause == run.kind
+    return last(run).cause == run.kind
 
 
 def in_set(run):
     """Right, or among the causes that have SET of the probability together."""
-    return right(run) or run.kind in run.window.alternatives
+    return right(run) or run.kind in last(run).alternatives
 
 
 def share(flags):
@@ -62,48 +79,74 @@ def poisson_bound(count):
     return 0.5 * degrees * (1.0 - 2.0 / (9.0 * degrees) + 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
 
 
-def alarms(runs):
-    """(hours, windows beyond the threshold, two in a row of one gear, 95 % bound of the latter in 1000 h, the same if
-    windows are independent)."""
-    hours = sum(run.motion.window for run in runs) / 3600.0
-    count = sum(map(beyond, runs))
-    pairs = sum(beyond(one) and beyond(other) and one.gear is other.gear for one, other in zip(runs, runs[1:]))
-    share_bound = poisson_bound(count) / len(runs)
-    return hours, count, pairs, 1000.0 * poisson_bound(pairs) / hours, 1000.0 * share_bound ** 2 * len(runs) / hours
+def alarms(run):
+    """Times that the level left OK."""
+    levels = ["OK", *(window.level for window in run.windows)]
+    return sum(one == "OK" and other != "OK" for one, other in zip(levels, levels[1:]))
 
 
-def sound_table(sound):
-    lines = ["| gear, motion | windows | hours | beyond the threshold | two in a row | 95 % bound of alarms in 1000 h "
-             "| the same, windows independent |", "|---|---|---|---|---|---|---|"]
-    groups = [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
-              itertools.groupby(sound, key=lambda run: (run.gear.name, run.motion.name))]
-    for name, own in [*groups, ("all", sound)]:
-        hours, count, pairs, bound, independent = alarms(own)
-        lines.append(f"| {name} | {len(own)} | {hours:.2f} | {count} | {pairs} | {bound:.0f} | {independent:.1f} |")
+def largest_of_blocks(runs):
+    """Largest score over the threshold of every BLOCK windows that follow each other, once a verdict may change."""
+    scores = [[window.largest for window in run.windows if window.averaged >= LEAST_WINDOWS] for run in runs]
+    return [max(own[first:first + BLOCK]) for own in scores for first in range(0, len(own), BLOCK)]
+
+
+def tail(blocks, hours):
+    """Blocks beyond the threshold expected in 1000 h, with 95 % bound, if scores beyond TAIL are exponential."""
+    beyond = [score - TAIL for score in blocks if score > TAIL]
+    if not beyond:
+        return 0.0, 1000.0 * poisson_bound(0) / hours
+    degrees = 2 * len(beyond)  # 2 n mean / true mean: chi square of so many, here its 5 % quantile
+    low = degrees * (1.0 - 2.0 / (9.0 * degrees) - 1.6449 * math.sqrt(2.0 / (9.0 * degrees))) ** 3
+    mean = numpy.mean(beyond)
+    return (1000.0 * len(beyond) / hours * math.exp(-(1.0 - TAIL) / mean),
+            1000.0 * poisson_bound(len(beyond)) / hours * math.exp(-(1.0 - TAIL) / (mean * degrees / low)))
+
+
+SOUND_COLUMNS = ["runs", "windows", "not judged", "hours", "alarms", "95 % bound of alarms in 1000 h", "largest score",
+                 "scores beyond 1 in 1000 h by the tail", "95 % bound of them"]
+
+
+def sound_row(runs):
+    """Of SOUND_COLUMNS; windows that were not judged lie at an operating point with no reference."""
+    judged = [run for run in runs if run.windows]
+    windows = sum(len(run.windows) for run in judged)
+    missing = sum(run.motion.windows for run in runs) - windows
+    hours = sum(len(run.windows) * run.motion.window for run in judged) / 3600.0
+    found = sum(map(alarms, judged))
+    blocks = largest_of_blocks(judged)
+    expected, bound = tail(blocks, hours)
+    return (f"{len(judged)} | {windows} | {missing} | {hours:.1f} | {found} | "
+            f"{1000.0 * poisson_bound(found) / hours:.3g} | {max(blocks):.2f} | {expected:.2g} | {bound:.2g}")
+
+
+def sound_table(groups):
+    """Of (name, runs); the last row is of all."""
+    lines = ["| | " + " | ".join(SOUND_COLUMNS) + " |", "|---|" + "---|" * len(SOUND_COLUMNS)]
+    for name, runs in [*groups, ("all", [run for _, runs in groups for run in runs])]:
+        lines.append(f"| {name} | {sound_row(runs)} |")
+    return lines
+
+
+def check_up_table(sound):
+    lines = ["| gear | check-ups | alarms | 95 % bound of their share |", "|---|---|---|---|"]
+    own = [run for run in sound if run.motion == CHECK_UP]
+    for name in [*dict.fromkeys(run.gear.name for run in own), "all"]:
+        runs = [run for run in own if name in (run.gear.name, "all")]
+        found = sum(map(alarmed, runs))
+        lines.append(f"| {name} | {len(runs)} | {found} | {100.0 * poisson_bound(found) / len(runs):.2g} % |")
     return lines
 
 
 def series(bench, gears):
-    """Table of sound runs of many drawn gears, each compared with the reference of its own."""
-    temperature = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
-    runs = []
+    """Table of work of many drawn gears without a fault, each compared with the reference of its own."""
+    groups = {motion.name: [] for motion in SERIES_MOTIONS}
     for number in range(gears):
-        gear = health_runs.of_series(number)
         motion = SERIES_MOTIONS[number % len(SERIES_MOTIONS)]
-        runs += bench.judge(bench.sound("series", gear, motion, temperature, SERIES_WINDOWS, 10000 + number), gear,
-                            motion)
-    lines = ["| motion | gears | windows | not judged | hours | beyond the threshold | gears with one | two in a row "
-             "| 95 % bound of alarms in 1000 h | the same, windows independent |", "|---|" + "---|" * 9]
-    judged = [run for run in runs if run.window]
-    for name in [*(motion.name for motion in SERIES_MOTIONS), "all"]:
-        own = [run for run in judged if name in (run.motion.name, "all")]
-        if own:
-            missing = sum(name in (run.motion.name, "all") for run in runs) - len(own)
-            hours, count, pairs, bound, independent = alarms(own)
-            with_one = len({run.gear.name for run in own if beyond(run)})
-            lines.append(f"| {name} | {len({run.gear.name for run in own})} | {len(own)} | {missing} | {hours:.1f} | "
-                         f"{count} | {with_one} | {pairs} | {bound:.3g} | {independent:.3g} |")
-    return lines
+        groups[motion.name] += sound_runs(bench, "series", health_runs.of_series(SERIES_FIRST + number), motion,
+                                          10000 + number, SERIES_RUNS)
+    counts = {name: len({run.gear.name for run in runs}) for name, runs in groups.items()}
+    return sound_table([(f"{name}, {counts[name]} gears", runs) for name, runs in groups.items() if runs])
 
 
 def detectabilities(page):
@@ -127,7 +170,7 @@ def fault_table(kinds, faulty, bound):
     for name in [*names, "all"]:
         cells = []  # of the check-up, then at work
         for at_work, column in ((False, 1), (True, 4)):
-            cells += [share(beyond(run) for run in faulty if name in (run.kind, "all") and run.severity == severity
+            cells += [share(alarmed(run) for run in faulty if name in (run.kind, "all") and run.severity == severity
                             and (run.motion != CHECK_UP) == at_work) for severity in severities]
             cells.append(bound[name][column] if name in bound else "")
         lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
@@ -138,14 +181,14 @@ def cause_table(kinds, faulty):
     lines = [f"| kind | cause right, of alarms, severity {SURE} on | or in the set | named instead | severity: "
              "estimate less true, mean ± spread | its stated deviation |", "|---|---|---|---|---|---|"]
     for name in [*[kind["kind"] for kind in kinds], "all"]:
-        own = [run for run in faulty if name in (run.kind, "all") and run.severity >= SURE and beyond(run)]
+        own = [run for run in faulty if name in (run.kind, "all") and run.severity >= SURE and alarmed(run)]
         if not own:
             lines.append(f"| `{name}` | - | - | | | |")
             continue
-        wrong = [run.window.cause for run in own if not right(run)]
+        wrong = [last(run).cause for run in own if not right(run)]
         instead = ", ".join(f"`{cause}` {wrong.count(cause)}" for cause in dict.fromkeys(wrong) if name != "all")
-        errors = [run.window.severity - run.severity for run in own if right(run)]
-        stated = [run.window.deviation for run in own if right(run)]
+        errors = [last(run).severity - run.severity for run in own if right(run)]
+        stated = [last(run).deviation for run in own if right(run)]
         sizes = f"{numpy.mean(errors):+.2f} ± {numpy.std(errors):.2f} | {numpy.mean(stated):.2f}" if errors else "|"
         lines.append(f"| {name if name == 'all' else f'`{name}`'} | {share(map(right, own))} "
                      f"| {share(map(in_set, own))} | {instead} | {sizes} |")
@@ -154,14 +197,14 @@ def cause_table(kinds, faulty):
 
 def reliability(faulty):
     """(mean confidence, share right, number) by class of confidence, and the mean distance of the first two."""
-    alarms = [run for run in faulty if beyond(run)]
+    found = list(filter(alarmed, faulty))
     rows = []
     for low, high in zip(BINS, BINS[1:]):
-        own = [run for run in alarms if low < run.window.confidence <= high]
+        own = [run for run in found if low < last(run).confidence <= high]
         if own:
-            rows.append((numpy.mean([run.window.confidence for run in own]), numpy.mean([right(run) for run in own]),
+            rows.append((numpy.mean([last(run).confidence for run in own]), numpy.mean([right(run) for run in own]),
                          len(own)))
-    return rows, sum(abs(stated - found) * count for stated, found, count in rows) / max(len(alarms), 1)
+    return rows, sum(abs(stated - share) * count for stated, share, count in rows) / max(len(found), 1)
 
 
 def draw_reliability(rows, path):
@@ -181,7 +224,7 @@ def draw_reliability(rows, path):
 
 
 def draw_scores(kinds, sound, faulty, path):
-    """Score of every window over the threshold, by kind and severity; sound ones on top."""
+    """Score of every run's end over the threshold, by kind and severity; sound ones on top."""
     names = ["sound", *[kind["kind"] for kind in kinds]]
     severities = severities_of(faulty)
     colours = dict(zip(dict.fromkeys(run.motion.name for run in sound), plt.get_cmap("tab10").colors))
@@ -189,7 +232,7 @@ def draw_scores(kinds, sound, faulty, path):
     for run in [*sound, *faulty]:
         row = names.index("sound" if run.kind == "healthy" else run.kind)
         shift = 0.0 if run.kind == "healthy" else 0.28 * (severities.index(run.severity) - (len(severities) - 1) / 2)
-        axis.plot(max(run.window.largest, 0.02), row + shift, "o" if run.motion == CHECK_UP else "x",
+        axis.plot(max(last(run).largest, 0.02), row + shift, "o" if run.motion == CHECK_UP else "x",
                   color=colours[run.motion.name], markersize=4, alpha=0.7)
     for name, colour in colours.items():
         axis.plot([], [], "o" if name == CHECK_UP.name else "x", color=colour, label=name)
@@ -197,7 +240,7 @@ def draw_scores(kinds, sound, faulty, path):
     axis.set_xscale("log")
     axis.set_yticks(range(len(names)), names)
     axis.invert_yaxis()
-    axis.set_xlabel("score of the window over the threshold; from top to bottom severity "
+    axis.set_xlabel("score over the threshold; from top to bottom severity "
                     + ", ".join(f"{severity:g}" for severity in severities))
     axis.grid(alpha=0.3, axis="x")
     axis.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(colours))
@@ -210,8 +253,8 @@ def draw_confusion(kinds, faulty, path):
     causes = names + ["circular_spline_tooth", "none"]
     matrix = numpy.zeros((len(names), len(causes)))
     for run in faulty:
-        if beyond(run):
-            matrix[names.index(run.kind), causes.index(run.window.cause)] += 1
+        if alarmed(run):
+            matrix[names.index(run.kind), causes.index(last(run).cause)] += 1
     figure, axis = plt.subplots(figsize=(9, 7), constrained_layout=True)
     axis.imshow(matrix / numpy.maximum(matrix.sum(axis=1, keepdims=True), 1), cmap="Blues", vmin=0, vmax=1)
     for (row, column), count in numpy.ndenumerate(matrix):
@@ -229,12 +272,15 @@ def draw_confusion(kinds, faulty, path):
 def report(bench, trials, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
-    return [f"{len(sound)} sound and {len(faulty)} faulty windows, a run each; grease anywhere in {GREASE[0]:g} to "
+    work = [run for run in sound if run.motion != CHECK_UP]
+    groups = [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
+              itertools.groupby(work, key=lambda run: (run.gear.name, run.motion.name))]
+    return [f"{len(sound)} sound and {len(faulty)} faulty runs; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged, whose operating point has "
             "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
-            "### Sound drives", "", *sound_table(sound), "",
+            "### Sound drives", "", *check_up_table(sound), "", *sound_table(groups), "",
             "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
-            "![Score of every window over the threshold](images/health/seen.png)", "",
+            "![Score of every run over the threshold](images/health/seen.png)", "",
             "### Cause and severity", "", *cause_table(bench.kinds, faulty), "",
             "![Fault against the assessed cause](images/health/confusion.png)", "",
             f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
@@ -252,7 +298,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
-                        "page's table of them, and nothing else; half a minute each on two cores")
+                        "page's table of them, and nothing else; three minutes each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
@@ -263,7 +309,7 @@ def main():
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
     if options.quick:
-        print("\n".join(report(bench, QUICK, *collect(bench, QUICK, 40), page)))
+        print("\n".join(report(bench, QUICK, *collect(bench, QUICK), page)))
         return
     if options.series:
         page_section.write(page, "series", series(bench, options.series))
@@ -271,7 +317,7 @@ def main():
     images = options.docs / "images" / "health"
     if options.figures:
         fault_figures.draw_all(options.tool, options.work, bench.kinds, images)
-    sound, faulty, missing = collect(bench, JUDGED, 40)
+    sound, faulty, missing = collect(bench, JUDGED)
     draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")

@@ -6,6 +6,7 @@ Runs are made by `joint_twin sweep`, in bags that hold the windows' indicators o
 made again."""
 import collections
 import csv
+import itertools
 import json
 import math
 import subprocess
@@ -19,7 +20,9 @@ ACCELERATION = 300.0      # of a motion at work [deg/s^2]
 
 # `payload`: with the weight and inertia of anything from none to one of some 2.5 kg at the end of a straight arm.
 # `steady`: speed of a turn under a constant load, without weight [deg/s].
-Motion = collections.namedtuple("Motion", "name tag window payload moves steady", defaults=[None, None])
+# `windows`: of a run. A run of one window begins with the motion, a longer one is of work that goes on: pauses,
+# angles and first move are drawn at random.
+Motion = collections.namedtuple("Motion", "name tag window payload moves steady windows", defaults=[None, None, 1])
 CHECK_UP = Motion("check-up", "check_up", 29.0, False)
 
 
@@ -38,6 +41,16 @@ SORTING = Motion("sorting", "sorting", 20.0, True, [(-30, 80), (10, 55), (-5, 95
 DISPENSING = Motion("dispensing", "dispensing", 20.0, True, [(20, 30), (-20, 50), (25, 40), (-10, 75)])
 TENDING = Motion("tending", "tending", 20.0, True, [(55, 105), (5, 60), (-35, 85), (15, 45)])
 AT_WORK = [STACKING, PICK_AND_PLACE, SEAM, LOADING, SORTING, DISPENSING, TENDING]
+
+WORK_WINDOWS = 12         # of a run at work with a fault
+SOUND_WINDOWS = 30        # of one without
+REFERENCE_WINDOWS = 6
+PATHS = 4                 # drawn for the runs of one kind at work
+
+
+def at_work(motion, windows=WORK_WINDOWS):
+    return motion._replace(windows=windows)
+
 
 # `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
 # runs.
@@ -93,22 +106,26 @@ CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, turn(33)], [0.25, 
               Trial("calibrated", drawn(704), [CHECK_UP, turn(60)], [0.2, 0.5], 150, 33),
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5),
               Trial("calibrated", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
-JUDGED = [Trial("judged", drawn(800), [CHECK_UP, SORTING], [0.2, 0.5], 52, 41),
-          Trial("judged", drawn(801), [CHECK_UP, DISPENSING], [0.2, 0.5], 97, 42),
-          Trial("judged", drawn(802), [CHECK_UP, TENDING], [0.2, 0.5], 133, 43),
-          Trial("judged", drawn(803), [CHECK_UP, turn(72)], [0.2, 0.5], 8, 44),
-          Trial("judged", uneven(24601), [CHECK_UP], [0.2, 0.5], 171, 45),
-          Trial("judged", uneven(31415), [CHECK_UP], [0.2, 0.5], 119, 46)]
-SERIES_MOTIONS = [CHECK_UP, PICK_AND_PLACE, SEAM, turn(40)]  # of drawn gears, one each in turn
-QUICK = [Trial("quick", TIGHT, [CHECK_UP, PICK_AND_PLACE], [0.5], 60, 5)]
+JUDGED = [Trial("judged", drawn(820), [CHECK_UP, at_work(SORTING)], [0.2, 0.5], 52, 51),
+          Trial("judged", drawn(821), [CHECK_UP, at_work(DISPENSING)], [0.2, 0.5], 97, 52),
+          Trial("judged", drawn(822), [CHECK_UP, at_work(PICK_AND_PLACE)], [0.2, 0.5], 133, 53),
+          Trial("judged", drawn(823), [CHECK_UP, at_work(turn(65))], [0.2, 0.5], 8, 54),
+          Trial("judged", uneven(1618), [CHECK_UP], [0.2, 0.5], 171, 55),
+          Trial("judged", uneven(14142), [CHECK_UP], [0.2, 0.5], 119, 56)]
+SERIES_FIRST = 100  # gears of lower numbers were looked at while the assessment was made
+SERIES_MOTIONS = [at_work(motion) for motion in (PICK_AND_PLACE, SEAM, TENDING, SORTING)]  # one each in turn
+QUICK = [Trial("quick", TIGHT, [CHECK_UP, at_work(PICK_AND_PLACE)], [0.5], 60, 5)]
 
 GREASE = (10.0, 50.0)     # [degC]
 # Of the reference, away from the edges of its classes [degC].
 COMMISSIONING = [10.0 * step + offset for step in range(1, 5) for offset in (1.0, 3.0, 5.0, 7.0, 9.0)]
 SAME = [20.0, 40.0]       # of the runs that the signatures are differences of [degC]
 
-Window = collections.namedtuple("Window", "largest cause confidence alternatives severity deviation")
-Run = collections.namedtuple("Run", "gear motion kind severity window")
+# A check-up is judged by itself, at work the last windows together, so that a day of alarms is no day of false ones.
+ONCE = ["--set", "indicators.evidence_windows=1", "--set", "indicators.false_alarm_rate=1e-3"]
+
+Window = collections.namedtuple("Window", "averaged largest level cause confidence alternatives severity deviation")
+Run = collections.namedtuple("Run", "gear motion kind severity windows")  # those that were compared
 
 
 def place_of(kind, tooth):
@@ -128,21 +145,25 @@ def split_table(*rows):
     return lines
 
 
-def speed_rows(moves, end):
-    """Corners of the trapezoids of a loop that ends before `end`: time [s], speed of the joint [rad/s]."""
+def speed_rows(moves, end, draw=None):
+    """Corners of the trapezoids of a loop that ends before `end`: time [s], speed of the joint [rad/s]. With `draw` the
+    loop begins anywhere, angles vary by 3° and a pause follows each move, as where parts lie and what is waited for
+    differ."""
     time, position, rows = 0.5, 0.0, [(0.0, 0.0), (0.5, 0.0)]
-    while True:
-        for target, speed in moves:
-            distance = abs(target - position)
-            peak = min(speed, math.sqrt(distance * ACCELERATION))
-            rise, hold = peak / ACCELERATION, distance / peak - peak / ACCELERATION
-            if time + 2.0 * rise + hold > end:
-                return rows
-            signed = math.radians(math.copysign(peak, target - position))
-            rows += [(time + rise, signed), (time + rise + hold + 1e-4, signed), (time + 2.0 * rise + hold + 2e-4, 0.0)]
-            time += 2.0 * rise + hold + 0.01
-            rows.append((time, 0.0))
-            position = target
+    first = 0 if draw is None else int(draw.integers(len(moves)))
+    for target, speed in itertools.islice(itertools.cycle(moves), first, None):
+        target += 0.0 if draw is None else draw.uniform(-3.0, 3.0)
+        distance = abs(target - position)
+        peak = min(speed, math.sqrt(distance * ACCELERATION))
+        rise, hold = peak / ACCELERATION, distance / peak - peak / ACCELERATION
+        if time + 2.0 * rise + hold > end:
+            break
+        signed = math.radians(math.copysign(peak, target - position))
+        rows += [(time + rise, signed), (time + rise + hold + 1e-4, signed), (time + 2.0 * rise + hold + 2e-4, 0.0)]
+        time += 2.0 * rise + hold + (0.01 if draw is None else draw.uniform(0.05, 0.6))
+        rows.append((time, 0.0))
+        position = target
+    return rows
 
 
 class Bench:
@@ -155,32 +176,46 @@ class Bench:
         self.kinds = json.loads(listed)
         subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", "shoulder", "--force", "--out",
                         work / "check_up.csv"], check=True, stdout=subprocess.DEVNULL)
-        for motion in AT_WORK:
-            (work / f"{motion.tag}.csv").write_text("time,shoulder_velocity\n" + "".join(
-                f"{time:.6f},{speed:.9f}\n" for time, speed in speed_rows(motion.moves, motion.window)))
 
-    def sweep(self, name, gear, motion, temperature, classes, repeats=1, seed=1, scene="auto", others=()):
+    def speeds(self, name, motion, seed, paths):
+        """Of the duties of a sweep."""
+        if motion.steady:
+            return [f"{{constant: {math.radians(motion.steady):.6f}}}"]
+        if not motion.moves:
+            return [f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"]
+        end = motion.windows * motion.window
+        speeds = []
+        for path in range(paths):
+            draw = numpy.random.default_rng([seed, path]) if motion.windows > 1 else None
+            file = f"{name}_{path}.csv"
+            (self.work / file).write_text("time,shoulder_velocity\n" + "".join(
+                f"{time:.6f},{speed:.9f}\n" for time, speed in speed_rows(motion.moves, end, draw)))
+            speeds.append(f"{{csv: {{file: {file}, column: shoulder_velocity}}}}")
+        return speeds
+
+    def sweep(self, name, gear, motion, temperature, classes, repeats=1, seed=1, scene="auto", others=(), paths=1):
         """Bags of the runs that went well, each with its row of the index."""
         name = name.replace(" ", "_")
-        lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.window + 0.3:.3f}",
+        lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.windows * motion.window + 1.3:.3f}",
                  "overlays: [joints/shoulder.yaml, real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
                  f"  input.temperature: {temperature}", "  indicators.window_turns: 100000.0",
-                 f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 10.0",
-                 "  publish.joint_states_rate: 0.001", "  publish.encoders_rate: 0.001",
-                 "  publish.contact_forces_rate: 0.001", "  publish.health_rate: 0.001", *gear.settings, *others]
+                 f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 1.0",
+                 *(f"  publish.{topic}_rate: 0.001" for topic in
+                   ("joint_states", "encoders", "contact_forces", "health", "stress")), *gear.settings, *others]
         if motion.payload and not others:
             lines += ["  output.gravity_torque: {uniform: [53.4, 73.4]}",
                       "  output.load_inertia: {uniform: [3.3, 5.0]}"]
-        speed = f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"
         mean = 0.0
         if motion.steady:
             lines.append("  output.gravity_torque: 0.0")
-            speed = f"{{constant: {math.radians(motion.steady):.6f}}}"
             mean = LOAD
         load = mean if others else f"{{uniform: [{mean - 3.0}, {mean + 3.0}]}}"
-        lines += [f"repeats: {repeats}", "duty:", f"  - name: {motion.tag}",
-                  f"    speed: {speed}", "    bandwidth: 8.0", f"    load: {{constant: {load}}}", "classes:", *classes,
-                  "record:", "  format: bag"]
+        speeds = self.speeds(name, motion, seed, paths)
+        lines += [f"repeats: {repeats * paths // len(speeds)}", "duty:"]
+        for path, speed in enumerate(speeds):
+            lines += [f"  - name: {motion.tag}_{path}", f"    speed: {speed}", "    bandwidth: 8.0",
+                      f"    load: {{constant: {load}}}"]
+        lines += ["classes:", *classes, "record:", "  format: bag"]
         plan = self.work / f"{name}.yaml"
         plan.write_text("\n".join(lines) + "\n")
         out = self.work / name
@@ -197,8 +232,9 @@ class Bench:
             return [(out / row["file"], row) for row in csv.DictReader(index) if row["status"] == "ok"]
 
     def sound(self, purpose, gear, motion, temperature, repeats, seed, others=()):
+        """At work `repeats` along each of PATHS."""
         return self.sweep(f"{purpose}_{gear.name}_{motion.tag}", gear, motion, temperature, ["  healthy: []"], repeats,
-                          seed, others=others)
+                          seed, others=others, paths=PATHS if motion.windows > 1 else 1)
 
     def faulty(self, trial, motion, temperature, others=()):
         """Every kind at every severity, from the start on."""
@@ -220,24 +256,27 @@ class Bench:
 
     def reference(self, gear, motion):
         """File of the healthy reference, from runs of its own."""
-        bags = self.sound("commissioning", gear, motion, f"{{grid: {COMMISSIONING}}}", 8, 1)
+        going_on = motion.windows > 1
+        motion = at_work(motion, REFERENCE_WINDOWS) if going_on else motion
+        bags = self.sound("commissioning", gear, motion, f"{{grid: {COMMISSIONING}}}", 1 if going_on else 8, 1)
         path = self.work / f"reference_{gear.name.replace(' ', '_')}_{motion.tag}.yaml"
         self.indicators([bag for bag, _ in bags],
                         ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])
         return path
 
     def judge(self, bags, gear, motion):
-        """Assessments of runs compared with the reference; of those at an operating point that it has not None."""
-        report = self.indicators([bag for bag, _ in bags], ["--baseline", self.reference(gear, motion), "--set",
-                                                            "indicators.confirm_windows=1"])
-        windows = {}
+        """Assessments of runs compared with the reference, none of windows at an operating point that it has not."""
+        report = self.indicators([bag for bag, _ in bags], ["--baseline", self.reference(gear, motion),
+                                                            *([] if motion.windows > 1 else ONCE)])
+        windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict = window["assessment"]
             if verdict["state"] == "assessed":
-                windows[window["recording"]] = Window(*(verdict[key] for key in (
-                    "largest_score", "cause", "confidence", "alternatives", "severity", "severity_deviation")))
+                windows[window["recording"]].append(Window(window["averaged"], *(verdict[key] for key in (
+                    "largest_score", "level", "cause", "confidence", "alternatives", "severity",
+                    "severity_deviation"))))
         return [Run(gear, motion, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0),
-                    windows.get(str(bag)))
+                    windows[str(bag)])
                 for bag, row in bags]
 
     def indicators(self, bags, options=()):

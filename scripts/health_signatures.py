@@ -9,7 +9,7 @@ import re
 import numpy
 
 import page_section
-from health_runs import CALIBRATED, FITTED, GREASE, split_table
+from health_runs import CALIBRATED, FITTED, GREASE, ONCE, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
 # Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
@@ -27,6 +27,7 @@ SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_fricti
 THRESHOLD = 4.5       # of an indicator's score, as shipped
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
+SOUND_STRENGTHS = [0.0, 0.5, 1.0]
 
 Table = collections.namedtuple("Table", "causes motions severities changes")  # a row each
 # Of the law in fault_signatures.hpp, by its letters: r e l b.
@@ -139,15 +140,17 @@ class Hypotheses:
         change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], sound, 1.0)
         free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
         change = numpy.where(free, amplitude_change(sound, change), change)
-        nothing = numpy.zeros((1, len(number)))
-        self.change = numpy.vstack([nothing, change, numpy.repeat(nothing, len(UNKNOWN_STRENGTHS), axis=0)])
-        self.severity = numpy.concatenate([[0.0], table.severities, numpy.zeros(len(UNKNOWN_STRENGTHS))])
+        sound_rows, unknown_rows = len(SOUND_STRENGTHS), len(UNKNOWN_STRENGTHS)
+        self.change = numpy.pad(change, [(sound_rows, unknown_rows), (0, 0)])
+        self.severity = numpy.pad(table.severities, (sound_rows, unknown_rows))
+        self.faults = slice(sound_rows, sound_rows + len(table.severities))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
         self.left = difference - numpy.where(phase, 0.0, self.change)
 
     def log_likelihoods(self, errors):
         strength = self.square * errors.length ** 2
-        strength[-len(UNKNOWN_STRENGTHS):] = numpy.square(UNKNOWN_STRENGTHS)
+        strength[:self.faults.start] = numpy.square(SOUND_STRENGTHS)
+        strength[self.faults.stop:] = numpy.square(UNKNOWN_STRENGTHS)
         variance = self.own * (1.0 + strength[:, None])
         variance += numpy.where(self.phase, 0.5, errors.number ** 2) * self.change ** 2
         variance += (errors.line * self.severity[:, None]) ** 2 * self.line
@@ -163,16 +166,17 @@ class Hypotheses:
     def posterior(self, errors):
         """(probability by cause, severity by cause, log odds against a sound drive)."""
         found = self.log_likelihoods(errors)
-        rows = found[1:-len(UNKNOWN_STRENGTHS)]
+        likelihoods = numpy.exp(found - found.max())
+        rows = likelihoods[self.faults]
         names = list(dict.fromkeys(self.table.causes))
-        odds = math.log(max(numpy.mean([numpy.mean(numpy.exp(rows[self.causes == cause] - rows.max()))
-                                        for cause in names]), 1e-300)) + rows.max() - found[0]
+        odds = (math.log(max(numpy.mean([numpy.mean(rows[self.causes == cause]) for cause in names]), 1e-300))
+                - math.log(max(numpy.mean(likelihoods[:self.faults.start]), 1e-300)))
         weights = numpy.exp(errors.weight * (found - found.max()))
-        faults = weights[1:-len(UNKNOWN_STRENGTHS)]
+        faults = weights[self.faults]
         means = {cause: numpy.mean(faults[self.causes == cause]) for cause in names}
         severity = {cause: numpy.average(self.table.severities[self.causes == cause],
                                          weights=faults[self.causes == cause] + 1e-300) for cause in names}
-        means["none"] = numpy.mean(weights[-len(UNKNOWN_STRENGTHS):])
+        means["none"] = numpy.mean(weights[self.faults.stop:])
         total = sum(means.values())
         return {cause: mean / total for cause, mean in means.items()}, severity, odds
 
@@ -185,7 +189,8 @@ def calibration_windows(bench):
         for motion in trial.motions:
             bags = bench.faulty(trial, motion, drawn)
             bags += bench.sound("sound_calibrated", trial.gear, motion, drawn, 20, 4)
-            report = bench.indicators([bag for bag, _ in bags], ["--baseline", bench.reference(trial.gear, motion)])
+            report = bench.indicators([bag for bag, _ in bags],
+                                      ["--baseline", bench.reference(trial.gear, motion), *ONCE])
             rows = {str(bag): row for bag, row in bags}
             found += [(rows[window["recording"]]["class"], float(rows[window["recording"]]["fault_severity"] or 0.0),
                        window) for window in report["windows"] if window["assessment"]["state"] == "assessed"]

@@ -8,6 +8,11 @@
 
 namespace hjt
 {
+namespace
+{
+constexpr int LEAST_WINDOWS = 3;  // of which an outlier can be left out, and in a row for another level
+}
+
 const char* levelName(HealthLevel level) noexcept
 {
   constexpr std::array NAMES{ "OK", "WARN", "ERROR" };
@@ -15,7 +20,7 @@ const char* levelName(HealthLevel level) noexcept
 }
 
 Assessor::Assessor(const Parameters& parameters)
-  : confirm_windows_(parameters.indicators.confirm_windows)
+  : least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
   , error_factor_(parameters.indicators.error_factor)
   , log_odds_threshold_(-std::log(parameters.indicators.false_alarm_rate))
   , baseline_(parameters)
@@ -54,7 +59,8 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   assessment_.largest_score = std::max(posterior.log_odds / log_odds_threshold_, 0.0);
   const HealthLevel odds = posterior.log_odds > log_odds_threshold_ ? HealthLevel::WARN : HealthLevel::OK;
   const HealthLevel level = levelOf(plain);
-  updateLevel(std::max({ level, levelOf(conditional), odds }));
+  const HealthLevel given_others = levelOf(conditional);
+  updateLevel(std::max({ level, given_others, odds }));
   if (assessment_.level == HealthLevel::OK)
   {
     assessment_.cause = Cause::NONE;
@@ -67,8 +73,9 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
     explain(posterior);
-    level != HealthLevel::OK ? listEvidence(indicators, plain, deviations_.plain) :
-                               listEvidence(indicators, conditional, deviations_.conditional);
+    const bool by_itself = level != HealthLevel::OK || given_others == HealthLevel::OK;
+    by_itself ? listEvidence(indicators, plain, deviations_.plain) :
+                listEvidence(indicators, conditional, deviations_.conditional);
   }
   return assessment_;
 }
@@ -90,33 +97,40 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
   return factor > error_factor_ ? HealthLevel::ERROR : HealthLevel::WARN;
 }
 
-/// Lets the level follow once enough windows in a row agree.
+/// Lets the level follow once enough windows in a row agree. What one class of operating points shows is not refuted by
+/// another, where the fault may not show.
 void Assessor::updateLevel(HealthLevel level) noexcept
 {
+  if (baseline_.residual().windows < least_windows_)
+  {
+    return;
+  }
   if (level > assessment_.level)
   {
     least_worse_ = worse_ == 0 ? level : std::min(least_worse_, level);
     better_ = 0;
-    if (++worse_ >= confirm_windows_)
+    if (++worse_ >= least_windows_)
     {
       assessment_.level = least_worse_;
+      shown_in_ = baseline_.bin();
       worse_ = 0;
     }
   }
-  else if (level < assessment_.level)
+  else if (level == assessment_.level)
+  {
+    shown_in_ = baseline_.bin();
+    worse_ = 0;
+    better_ = 0;
+  }
+  else if (baseline_.bin() == shown_in_)
   {
     most_better_ = better_ == 0 ? level : std::max(most_better_, level);
     worse_ = 0;
-    if (++better_ >= confirm_windows_)
+    if (++better_ >= least_windows_)
     {
       assessment_.level = most_better_;
       better_ = 0;
     }
-  }
-  else
-  {
-    worse_ = 0;
-    better_ = 0;
   }
 }
 

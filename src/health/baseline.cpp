@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Dense>
 #include <boost/math/distributions/normal.hpp>
@@ -24,6 +25,9 @@ constexpr double PLACE_ERROR = 0.005;
 constexpr double LEAST_LEFT = 1e-4;  // of a variance by the common causes: they are known no better
 constexpr int ITERATIONS = 30;       // for a principal component: its line is narrow enough long before it is exact
 constexpr int MIN_COUNT = 8;         // windows before a spread means anything; as least of indicators.baseline_windows
+constexpr int MIN_STEPS = 8;         // pairs of windows before what they differ by means anything
+constexpr std::size_t TRIMMED = 5;   // one of so many is left out at either end
+constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
 
 int stepOf(double value, double step) noexcept
 {
@@ -43,6 +47,27 @@ double studentOf(double score, double freedom) noexcept
   return std::sqrt(freedom * std::expm1(plain * plain / freedom));
 }
 
+/// What stays from one window to the next.
+struct Persistence
+{
+  double stays;        // r
+  double independent;  // e
+};
+
+Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference) noexcept
+{
+  if (!(reference.within > 0.0 && reference.variance > 0.0))
+  {
+    return { 1.0, 1.0 };
+  }
+  const double found = 1.0 - reference.within / reference.variance;
+  // Its standard error (von Neumann 1941): what is not seen to stay may, and what seems to may not.
+  const double error = 1.0 / std::sqrt(std::max(reference.count - bin.runs, 1));
+  const double least = std::clamp(found - error, 0.0, 1.0);
+  const double runs = static_cast<double>(bin.runs) / bin.windows;
+  return { std::clamp(found + error, error, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
+}
+
 /// For the parts of a line the floor is a share of its amplitude: the part itself may be near zero.
 std::size_t sizeOf(std::size_t indicator) noexcept
 {
@@ -54,6 +79,35 @@ std::size_t sizeOf(std::size_t indicator) noexcept
     }
   }
   return indicator;
+}
+/// Adds what a window differs from the one before it by.
+void learnStep(StepSums& steps, const SignalIndicators& indicators, const Place& place) noexcept
+{
+  Place moved{};
+  for (std::size_t i = 0; i < PLACES; ++i)
+  {
+    moved[i] = place[i] - steps.last_place[i];
+  }
+  for (std::size_t i = 0; i < PLACES; ++i)
+  {
+    for (std::size_t j = 0; j < PLACES; ++j)
+    {
+      steps.places[i][j] += moved[i] * moved[j];
+    }
+  }
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const double step = indicators.values[i] - steps.last[i];
+    if (std::isfinite(step))
+    {
+      ++steps.count[i];
+      steps.indicators[i] += step * step;
+      for (std::size_t j = 0; j < PLACES; ++j)
+      {
+        steps.mixed[i][j] += step * moved[j];
+      }
+    }
+  }
 }
 }  // namespace
 
@@ -84,14 +138,21 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
 
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
-  const auto place = [](double value, int step, double size)
-  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -1.0, 1.0) : 0.0; };
-  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP);
-  return { temperature, temperature * temperature, place(point.load, bin.load, load_step) };
+  const auto place = [](double value, int step, double size, double farthest)
+  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -farthest, farthest) : 0.0; };
+  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0);
+  constexpr double FARTHEST = 100.0;
+  return { temperature,
+           temperature * temperature,
+           place(point.load, bin.load, load_step, 1.0),
+           place(point.load_rms, bin.load, load_step, FARTHEST),
+           place(point.load_mean, 0, load_step, FARTHEST),
+           place(point.inertia_torque, 0, load_step, FARTHEST) };
 }
 
 Baseline::Baseline(const Parameters& parameters)
   : windows_(parameters.indicators.baseline_windows)
+  , evidence_windows_(static_cast<std::size_t>(parameters.indicators.evidence_windows))
   , least_spread_(parameters.indicators.least_spread)
   , load_step_(hjt::loadStep(parameters))
 {
@@ -105,16 +166,26 @@ Baseline::Baseline(const Parameters& parameters)
     floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
   }
   bins_.reserve(MAX_BINS);
+  makeRoom();
+}
+
+void Baseline::makeRoom()
+{
+  const std::size_t bins = std::max(bins_.size(), bins_.capacity());
+  recent_.assign(bins, {});
+  compared_.resize(bins * evidence_windows_);
 }
 
 void Baseline::setReference(std::vector<ReferenceBin> bins)
 {
   bins_ = std::move(bins);
   given_ = true;
+  makeRoom();
 }
 
 void Baseline::reset() noexcept
 {
+  std::fill(recent_.begin(), recent_.end(), Recent{});
   if (!given_)
   {
     bins_.clear();
@@ -165,13 +236,22 @@ void fitReference(ReferenceBin& bin) noexcept
     Reference& reference = bin.references[i];
     reference.common = {};
     reference.fitted = reference.count == bin.windows && left(column, column) > 0.0;
+    using Step = Eigen::Matrix<double, PLACES, 1>;
+    double steps = bin.steps.indicators[i];
     if (reference.fitted)
     {
-      Eigen::Map<Eigen::Matrix<double, PLACES, 1>>(reference.slopes.data()) = slopes.col(column);
+      const Step slope = slopes.col(column);
+      steps += slope.dot(Eigen::Map<const Places>(bin.steps.places.front().data()) * slope -
+                         2.0 * Eigen::Map<const Step>(bin.steps.mixed[i].data()));
+      Eigen::Map<Step>(reference.slopes.data()) = slope;
       reference.variance = left(column, column) / freedom;
       scale[column] = 1.0 / std::sqrt(left(column, column));
       ++used;
     }
+    const int count = bin.steps.count[i];
+    reference.within = count >= MIN_STEPS && reference.variance > 0.0 ?
+                           std::clamp(0.5 * steps / count, LEAST_LEFT * reference.variance, reference.variance) :
+                           0.0;
   }
   left = scale.asDiagonal() * left * scale.asDiagonal();
   const double edge = std::pow(1.0 + std::sqrt(used / freedom), 2);
@@ -204,6 +284,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
                                WindowDeviations& deviations) noexcept
 {
   deviations = {};
+  residual_ = {};
   ReferenceBin* bin = find(binOf(indicators.point, load_step_));
   if (bin == nullptr || (given_ && bin->windows < MIN_COUNT))
   {
@@ -214,15 +295,32 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
     learn(*bin, indicators);
     return BaselineState::LEARNING;
   }
-  compare(*bin, indicators, model, deviations);
+  const auto index = static_cast<std::size_t>(bin - bins_.data());
+  Recent& recent = recent_[index];
+  const std::size_t first = index * evidence_windows_;
+  take(*bin, indicators, model, compared_[first + recent.next]);
+  recent.next = (recent.next + 1) % evidence_windows_;
+  recent.count = std::min(recent.count + 1, evidence_windows_);
+  bin_ = bin->bin;
+  compare(*bin, first, recent.count, deviations);
   return BaselineState::COMPARED;
 }
 
 void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept
 {
   ++bin.windows;
+  const bool follows = bin.windows > 1 && indicators.windows == bin.steps.last_window + 1;
+  bin.runs += follows ? 0 : 1;
+  const Place here = placeIn(bin.bin, indicators.point, load_step_);
+  if (follows)
+  {
+    learnStep(bin.steps, indicators, here);
+  }
+  bin.steps.last_window = indicators.windows;
+  bin.steps.last = indicators.values;
+  bin.steps.last_place = here;
   const double weight = (bin.windows - 1.0) / bin.windows;
-  Place place = placeIn(bin.bin, indicators.point, load_step_);  // from here on less the mean so far
+  Place place = here;  // less the mean so far
   for (std::size_t i = 0; i < PLACES; ++i)
   {
     place[i] -= bin.mean_place[i];
@@ -268,12 +366,11 @@ void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) cons
   }
 }
 
-double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators,
-                          double left, double widening) const noexcept
+double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, double error_square, double left,
+                          double widening) const noexcept
 {
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
-  const double error = indicators.uncertainty[indicator];
-  return std::max(left, error * error) * widening + least * least + floor_[indicator] * floor_[indicator];
+  return std::max(left, error_square) * widening + least * least + floor_[indicator] * floor_[indicator];
 }
 
 Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
@@ -290,7 +387,65 @@ Deviation Baseline::deviation(double difference, double expected, double spread,
   return deviation;
 }
 
-void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
+void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
+                    Compared& window) noexcept
+{
+  using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
+  const Place here = placeIn(bin.bin, indicators.point, load_step_);
+  const PlaceVector place =
+      Eigen::Map<const PlaceVector>(here.data()) - Eigen::Map<const PlaceVector>(bin.mean_place.data());
+  window.leverage = place.dot(
+      Eigen::Map<const Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>>(bin.leverage.front().data()) * place);
+  window.error = indicators.uncertainty;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const Reference& reference = bin.references[i];
+    window.difference[i] = std::numeric_limits<double>::quiet_NaN();
+    expected_[i] = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
+    residual_.sound[i] = reference.count < MIN_COUNT ? 0.0 : expected_[i] + (model != nullptr ? model->values[i] : 0.0);
+    if (reference.count < MIN_COUNT || !std::isfinite(indicators.values[i]))
+    {
+      continue;
+    }
+    window.difference[i] = indicators.values[i] - expected_[i];
+    if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
+    {
+      // The mean of the power lies below the power of the mean.
+      window.difference[i] =
+          amplitudeChange(sound, window.difference[i]) + std::min(reference.variance / sound, sound) / 6.0;
+    }
+  }
+}
+
+Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept
+{
+  std::array<double, MAX_EVIDENCE> differences;  // of which the first `found` count
+  std::size_t found = 0;
+  Average average;
+  for (std::size_t i = first; i < first + count; ++i)
+  {
+    const double difference = compared_[i].difference[indicator];
+    if (std::isfinite(difference))
+    {
+      differences[found++] = difference;
+      average.error_square += compared_[i].error[indicator] * compared_[i].error[indicator];
+    }
+  }
+  if (2 * found < count || found < std::min(count, LEAST_WINDOWS))
+  {
+    return average;
+  }
+  const std::size_t left_out = found < LEAST_WINDOWS ? 0 : std::max<std::size_t>(found / TRIMMED, 1);
+  std::sort(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(found));
+  const double sum = std::accumulate(differences.begin() + static_cast<std::ptrdiff_t>(left_out),
+                                     differences.begin() + static_cast<std::ptrdiff_t>(found - left_out), 0.0);
+  average.difference = sum / static_cast<double>(found - 2 * left_out);
+  average.error_square /= static_cast<double>(found);
+  average.weight = static_cast<double>(found - left_out);
+  return average;
+}
+
+void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t count,
                        WindowDeviations& deviations) noexcept
 {
   // Woodbury's identity: C^-1 = D^-1 - D^-1 F (1 + F' D^-1 F)^-1 F' D^-1, F with a row for each indicator.
@@ -299,41 +454,40 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
   inner.setIdentity();
   Causes projected = Causes::Zero();
   double causes = 0.0;
-  double least = 0.0;  // degrees of freedom
-  residual_ = {};
-  using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
-  const Place here = placeIn(bin.bin, indicators.point, load_step_);
-  const PlaceVector place =
-      Eigen::Map<const PlaceVector>(here.data()) - Eigen::Map<const PlaceVector>(bin.mean_place.data());
-  const double leverage = place.dot(
-      Eigen::Map<const Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>>(bin.leverage.front().data()) * place);
+  double freedoms = 0.0;
+  double compared = 0.0;
+  double leverage = 0.0;
+  for (std::size_t i = first; i < first + count; ++i)
+  {
+    leverage += compared_[i].leverage / static_cast<double>(count);
+  }
+  residual_.windows = static_cast<int>(count);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    const Reference& reference = bin.references[i];
-    if (reference.count < MIN_COUNT || !std::isfinite(indicators.values[i]))
+    const Average average = this->average(first, count, i);
+    if (average.weight == 0.0)  // too few windows determined it
     {
       continue;
     }
+    const Reference& reference = bin.references[i];
+    const Persistence persistence = persistenceOf(bin, reference);
     const double n = reference.count;
-    const double freedom = reference.fitted ? n - 1.0 - PLACES : n - 1.0;
-    const double widening = 1.0 + 1.0 / n + (reference.fitted ? leverage : 0.0);
-    const double expected = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
-    least = least == 0.0 ? freedom : std::min(least, freedom);
-    residual_.sound[i] = expected + (model != nullptr ? model->values[i] : 0.0);
-    residual_.difference[i] = indicators.values[i] - expected;
-    if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
-    {
-      // The mean of the power lies below the power of the mean.
-      residual_.difference[i] =
-          amplitudeChange(sound, residual_.difference[i]) + std::min(reference.variance / sound, sound) / 6.0;
-    }
-    deviations.plain[i] = deviation(residual_.difference[i], expected,
-                                    std::sqrt(variance(i, bin, indicators, reference.variance, widening)), freedom);
+    const double fitted = reference.fitted ? PLACES : 0.0;
+    const double freedom = std::max(persistence.independent * n - 1.0 - fitted, 1.0);
+    const double h = (1.0 / n + (reference.fitted ? leverage : 0.0)) / persistence.independent;
+    const double widening = persistence.stays + (1.0 - persistence.stays) / average.weight + h;
+    freedoms += freedom;
+    compared += 1.0;
+    residual_.difference[i] = average.difference;
+    deviations.plain[i] =
+        deviation(average.difference, expected_[i],
+                  std::sqrt(variance(i, bin, average.error_square, reference.variance, widening)), freedom);
     const Causes common = Eigen::Map<const Causes>(reference.common.data());
     const double found = static_cast<double>((common.array() != 0.0).count());
-    const double left = std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * freedom / (freedom - found);
+    const double left =
+        std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, indicators, left * reference.variance, widening);
+    residual_.own[i] = variance(i, bin, average.error_square, left * reference.variance, widening);
     if (residual_.own[i] > 0.0)
     {
       Eigen::Map<Causes> row(residual_.common[i].data());
@@ -342,7 +496,7 @@ void Baseline::compare(const ReferenceBin& bin, const SignalIndicators& indicato
       projected += row * (residual_.difference[i] / residual_.own[i]);
     }
   }
-  residual_.freedom = std::max(least - causes, 1.0);
+  residual_.freedom = compared > 0.0 ? std::max(freedoms / compared - causes, 1.0) : 0.0;
   if (causes == 0.0)
   {
     return;

@@ -33,6 +33,7 @@ ReferenceBin readBin(const YAML::Node& node)
   bin.bin = { node["speed"].as<int>(), node["direction"].as<int>(), node["load"].as<int>(),
               node["temperature"].as<int>() };
   bin.windows = node["windows"].as<int>();
+  bin.runs = node["runs"].as<int>();
   if (node["place"])
   {
     bin.mean_place = node["place"].as<Place>();
@@ -42,24 +43,25 @@ ReferenceBin readBin(const YAML::Node& node)
   {
     const auto numbers = entry.second.as<std::vector<double>>();
     const auto name = entry.first.as<std::string>();
-    const bool fitted = numbers.size() == 3 + PLACES + COMMON_CAUSES && node["place"];
+    const bool fitted = numbers.size() == 4 + PLACES + COMMON_CAUSES && node["place"];
     const bool finite =
         std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
-    if ((numbers.size() != 3 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0)
+    if ((numbers.size() != 4 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0 || numbers[3] < 0.0)
     {
       throw InputError(name +
-                       " must be [windows >= 1, mean, spread >= 0], and slopes over the bin's 'place' and shares "
-                       "of common causes or none");
+                       " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0], and slopes over "
+                       "the bin's 'place' and shares of common causes or none");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
     reference.mean = numbers[1];
     reference.variance = numbers[2] * numbers[2];
+    reference.within = numbers[3] * numbers[3];
     reference.fitted = fitted;
     if (fitted)
     {
-      std::copy_n(numbers.begin() + 3, PLACES, reference.slopes.begin());
-      std::copy_n(numbers.begin() + 3 + PLACES, COMMON_CAUSES, reference.common.begin());
+      std::copy_n(numbers.begin() + 4, PLACES, reference.slopes.begin());
+      std::copy_n(numbers.begin() + 4 + PLACES, COMMON_CAUSES, reference.common.begin());
     }
   }
   return bin;
@@ -112,19 +114,23 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
     }
     return text;
   };
-  text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
-          "K.\n"
-          "# Place in it: temperature, its square, load, -1 ... 1 from edge to edge.\n"
-          "# Each indicator: [windows, mean, spread, slopes over the place, share of the spread that goes with each "
-          "common cause],\n# units as in docs/indicators.md.\n"
-          "load_step: "
-       << numberText(baseline.loadStep()) << "\nbaseline:\n";
+  text
+      << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
+         "K.\n"
+         "# Place in it: temperature, its square, mean magnitude, rms and mean of the load, torque of inertia.\n"
+         "# Each indicator: [windows, mean, spread, spread from one window to the next (0: not known), slopes over the "
+         "place, share\n# of the spread that goes with each common cause], units as in docs/indicators.md.\n"
+         "load_step: "
+      << numberText(baseline.loadStep()) << "\nbaseline:\n";
   for (ReferenceBin bin : baseline.bins())
   {
-    fitReference(bin);
+    if (!baseline.given())
+    {
+      fitReference(bin);
+    }
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
-         << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows << "\n    place: ["
-         << list(bin.mean_place) << "]\n    leverage:\n";
+         << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows
+         << "\n    runs: " << bin.runs << "\n    place: [" << list(bin.mean_place) << "]\n    leverage:\n";
     for (const Place& row : bin.leverage)
     {
       text << "      - [" << list(row) << "]\n";
@@ -136,7 +142,7 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
       if (reference.count > 0)
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
-             << numberText(std::sqrt(reference.variance));
+             << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within));
         if (reference.fitted)
         {
           text << ", " << list(reference.slopes) << ", " << list(reference.common);

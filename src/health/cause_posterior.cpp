@@ -17,6 +17,7 @@ using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
 
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
+constexpr std::array SOUND_STRENGTHS{ 0.0, 0.5, 1.0 };             // of what a sound drive differs by
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
@@ -125,6 +126,21 @@ public:
            (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
   }
 
+  /// As likely with the reference's spreads as with larger ones: each of a hundred is known from some tens of windows.
+  double soundLogLikelihood() const noexcept
+  {
+    std::array<double, SOUND_STRENGTHS.size()> logarithms{};
+    std::transform(SOUND_STRENGTHS.begin(), SOUND_STRENGTHS.end(), logarithms.begin(),
+                   [this](double strength) { return logLikelihood(nullptr, strength); });
+    const double largest = *std::max_element(logarithms.begin(), logarithms.end());
+    double sum = 0.0;
+    for (const double logarithm : logarithms)
+    {
+      sum += std::exp(logarithm - largest);
+    }
+    return largest + std::log(sum / static_cast<double>(logarithms.size()));
+  }
+
 private:
   static double changeBy(const Signature& signature, const Term& term) noexcept
   {
@@ -179,7 +195,7 @@ struct Sum
 CausePosterior causePosterior(const WindowResidual& residual) noexcept
 {
   const Terms terms(residual);
-  const double sound = terms.logLikelihood(nullptr, 0.0);
+  const double sound = terms.soundLogLikelihood();
   std::array<double, std::size(FITTED_SIGNATURES)> likelihoods{};
   std::array<double, UNKNOWN_STRENGTHS.size()> unknown{};
   double largest = sound;

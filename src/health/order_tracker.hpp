@@ -106,6 +106,17 @@ public:
     return fit;
   }
 
+  /// Whether the last fit determined every line. One that it did not determine can take any value outside the window.
+  bool complete() const noexcept
+  {
+    bool determined = used_ > NUISANCES;
+    for (int column = NUISANCES; column < used_; ++column)
+    {
+      determined = determined && !(regression_.inflation(column) > MAX_INFLATION);
+    }
+    return determined;
+  }
+
   /// Kinematic error of the last added sample less what the last fit makes of it [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 

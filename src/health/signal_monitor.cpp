@@ -130,9 +130,15 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     addSteady(sample, motor_angle, travel, torsion);
   }
+  const double acceleration = speed_.acceleration();
+  window_.acceleration_square += acceleration * acceleration;
+  window_.acceleration_torque += acceleration * (ratio_ * sample.motor_torque - (load_known ? joint_torque : 0.0));
+  window_.all_samples += 1.0;
   if (load_known)
   {
     window_.load.add(std::abs(joint_torque), seconds);
+    window_.load_signed.add(joint_torque, seconds);
+    window_.load_square.add(joint_torque * joint_torque, seconds);
   }
   if (std::isfinite(sample.temperature))
   {
@@ -228,8 +234,14 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   indicators_.windows = windows;
   indicators_.turns = window_.travel / TWO_PI;
   indicators_.point = { window_.samples > 0 ? window_.speed.value() : 0.0,
-                        window_.samples > 0 ? window_.direction.value() : 0.0, window_.load.value(),
-                        window_.temperature.value() };
+                        window_.samples > 0 ? window_.direction.value() : 0.0,
+                        window_.load.value(),
+                        window_.temperature.value(),
+                        window_.load_signed.value(),
+                        std::sqrt(window_.load_square.value()),
+                        window_.acceleration_square > 0.0 ?
+                            window_.acceleration_torque / std::sqrt(window_.acceleration_square * window_.all_samples) :
+                            0.0 };
   set(ScalarIndicator::RATIO_DEVIATION, window_.ratio.value());
   set(ScalarIndicator::KINEMATIC_ERROR, window_.kinematic_error.value());
   set(ScalarIndicator::RUNNING_TORQUE, window_.running_torque.value());
@@ -251,7 +263,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   }
   if (window_.line_samples > 0 && tracker_.fit(window_.line_travel / window_.line_samples))
   {
-    tracked_ = true;
+    tracked_ = tracker_.complete();
     fillLines(LineSignal::MOTOR_TORQUE);
     if (window_.motor_encoder)
     {

@@ -67,6 +67,11 @@ private:
     Mean speed;
     Mean direction;
     Mean load;
+    Mean load_signed;
+    Mean load_square;
+    double acceleration_square{};  // sums over the samples [rad^2/s^4]
+    double acceleration_torque{};  // [N.m rad/s^2]
+    double all_samples{};          // number
     Mean temperature;
     Mean running_torque;
     Mean ratio;
@@ -118,7 +123,7 @@ private:
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
   double turn_travel_{};    // since the turn window was read [rad]
-  bool tracked_{};          // lines have been fitted: the residual means something
+  bool tracked_{};          // every line has been fitted: the residual means something
   double residual_mean_{};  // slow [rad]
   Window window_;
 };

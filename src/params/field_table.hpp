@@ -324,9 +324,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
-        ofOthers("chance that a healthy window shows any indicator beyond its threshold"));
-  visit("indicators.confirm_windows", "-", p.indicators.confirm_windows, Range{ 1, 1000 },
-        ofOthers("windows in a row that must agree before the level changes"));
+        ofOthers("chance that the mean of healthy windows shows any indicator beyond its threshold"));
+  visit("indicators.evidence_windows", "-", p.indicators.evidence_windows, Range{ 1, 100 },
+        ofOthers("windows of an operating point that a verdict is made of the mean of"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         ofOthers("a deviation of this many times the threshold is an error, not a warning"));
   visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },

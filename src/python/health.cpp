@@ -130,6 +130,15 @@ void bindIndicators(py::module& module)
           "load", [](const SignalIndicators& self) { return self.point.load; },
           "magnitude of the load torque, mean; nan: unknown [N.m]")
       .def_property_readonly(
+          "load_mean", [](const SignalIndicators& self) { return self.point.load_mean; },
+          "of the load torque with its sign; nan: unknown [N.m]")
+      .def_property_readonly(
+          "load_rms", [](const SignalIndicators& self) { return self.point.load_rms; },
+          "of the load torque; nan: unknown [N.m]")
+      .def_property_readonly(
+          "inertia_torque", [](const SignalIndicators& self) { return self.point.inertia_torque; },
+          "rms of the motor torque that goes with the acceleration, at the joint [N.m]")
+      .def_property_readonly(
           "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
           "mean; nan: not measured [degC]")
       .def_property_readonly(

@@ -342,7 +342,10 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   message.speed = indicators.point.speed;
   message.direction = indicators.point.direction;
   fillOptional(indicators.point.load, message.load, message.load_valid);
+  message.load_mean = message.load_valid ? indicators.point.load_mean : 0.0;
+  message.load_rms = message.load_valid ? indicators.point.load_rms : 0.0;
   fillOptional(indicators.point.temperature, message.temperature, message.temperature_valid);
+  message.inertia_torque = indicators.point.inertia_torque;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     fillOptional(indicators.values[i], message.values[i], message.valid[i]);
@@ -355,8 +358,13 @@ SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message)
   indicators.stamp = fromRosTime(message.window_end);
   indicators.windows = message.windows;
   indicators.turns = message.turns;
-  indicators.point = { message.speed, message.direction, optionalValue(message.load, message.load_valid),
-                       optionalValue(message.temperature, message.temperature_valid) };
+  indicators.point = { message.speed,
+                       message.direction,
+                       optionalValue(message.load, message.load_valid),
+                       optionalValue(message.temperature, message.temperature_valid),
+                       optionalValue(message.load_mean, message.load_valid),
+                       optionalValue(message.load_rms, message.load_valid),
+                       message.inertia_torque };
   const std::size_t count = std::min({ message.names.size(), message.values.size(), message.valid.size() });
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {

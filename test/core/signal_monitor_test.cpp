@@ -447,7 +447,7 @@ TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
   windows(LEARNING);
   faulty_ = Line::OUTER;
   fault_amplitude_ = 2.0;
-  EXPECT_EQ(windows(1).level, HealthLevel::OK) << "one window is not enough";
+  EXPECT_EQ(windows(4).level, HealthLevel::OK) << "three means of three windows or more";
   const Assessment faulty = windows(1);
   EXPECT_GE(faulty.level, HealthLevel::WARN);
   EXPECT_EQ(faulty.cause, causeOf(FaultKind::BEARING_OUTER_RACE));
@@ -456,8 +456,8 @@ TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
   EXPECT_STREQ(indicatorName(faulty.evidence[0].indicator), "error_outer");
   EXPECT_NEAR(faulty.evidence[0].value / ARCSEC, 2.0, 0.3);
   fault_amplitude_ = 0.0;
-  EXPECT_GE(windows(1).level, HealthLevel::WARN);
-  EXPECT_EQ(windows(1).level, HealthLevel::OK);
+  EXPECT_GE(windows(4).level, HealthLevel::WARN);
+  EXPECT_EQ(windows(8).level, HealthLevel::OK);
   EXPECT_EQ(assessor_.assessment().cause, Cause::NONE);
 }
 
@@ -465,14 +465,32 @@ TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
 {
   windows(LEARNING);
   fault_amplitude_ = 1.5;  // at a right angle to the healthy 5 arcsec: the amplitude only grows to 5.2
-  EXPECT_GE(windows(2).level, HealthLevel::WARN);
+  EXPECT_GE(windows(5).level, HealthLevel::WARN);
+}
+
+TEST_F(Assessed, OneWindowOfTenIsNoVerdict)
+{
+  windows(LEARNING + 9);
+  drag_ = 3.0;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+  drag_ = 1.0;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+}
+
+TEST_F(Assessed, WhatASingleWindowDoesNotShowTheMeanOfTenDoes)
+{
+  windows(LEARNING);
+  faulty_ = Line::OUTER;
+  fault_amplitude_ = 0.15;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+  EXPECT_GE(windows(12).level, HealthLevel::WARN);
 }
 
 TEST_F(Assessed, DragIsPutDownToTheLubricant)
 {
   windows(LEARNING);
   drag_ = 1.6;
-  const Assessment& assessment = windows(2);
+  const Assessment& assessment = windows(5);
   EXPECT_GE(assessment.level, HealthLevel::WARN);
   EXPECT_EQ(assessment.cause, causeOf(FaultKind::LUBRICANT_DEGRADATION));
 }
@@ -528,7 +546,10 @@ TEST_F(AtAnyTemperature, WhatTemperatureMovesTogetherIsNoFault)
 
 TEST_F(AtAnyTemperature, ARelationThatBreaksIsSeenWhereEachIndicatorIsOrdinary)
 {
-  assess(1.0, -20.0);  // as stiff as at -1 spread, with the friction of 1 spread
+  for (int window = 0; window < 4; ++window)
+  {
+    assess(1.0, -20.0);  // as stiff as at -1 spread, with the friction of 1 spread
+  }
   const Assessment& found = assess(1.0, -20.0);
   EXPECT_NE(found.level, HealthLevel::OK);
   ASSERT_GT(found.evidence_count, 0U);
@@ -569,6 +590,70 @@ TEST(Reference, OfOneTemperatureCallsNothingAFaultAtAnother)
 {
   EXPECT_LT(scoreAt(28.0, 0.0, 0.05), 1.0);
   EXPECT_GT(scoreAt(25.0, 0.002, 0.05), 1.0);
+}
+
+/// Variance of the mean of ten sound windows, over that of one, of a reference of `runs` stretches of ten windows whose
+/// values share `shared` of their spread.
+double varianceOfTen(double shared, int runs)
+{
+  Parameters parameters = shippedParameters({ "indicators.least_spread=0.0" });
+  parameters.indicators.baseline_windows = 10 * runs;
+  const auto own = [&](int evidence_windows)
+  {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    parameters.indicators.evidence_windows = evidence_windows;
+    Assessor assessor(parameters);
+    for (int run = 0; run <= runs; ++run)
+    {
+      const double stays = std::sqrt(shared) * normal(random);
+      for (int i = 1; i <= 10; ++i)
+      {
+        SignalIndicators window;
+        window.windows = static_cast<std::uint64_t>(i);
+        window.point = { 100.0, 1.0, 30.0, 25.0 };
+        window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] =
+            0.15 + 1e-3 * (stays + std::sqrt(1.0 - shared) * normal(random));
+        assessor.update(window);
+      }
+    }
+    return assessor.baseline().residual().own[indexOf(ScalarIndicator::RUNNING_TORQUE)];
+  };
+  return own(10) / own(1);
+}
+
+TEST(Reference, OfIndependentWindowsMakesTheMeanOfTenNearlyTenTimesAsSure)
+{
+  EXPECT_NEAR(varianceOfTen(0.0, 60), 1.0 / 8.0, 0.12);
+}
+
+TEST(Reference, OfWindowsAlikeWithinARunDoesNot)
+{
+  EXPECT_NEAR(varianceOfTen(0.8, 60), 0.8, 0.15);
+}
+
+TEST(Level, IsNotRefutedAtAnotherOperatingPoint)
+{
+  Assessor assessor(shippedParameters());
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto assess = [&](int windows, double temperature, double beside)
+  {
+    for (int i = 0; i < windows; ++i)
+    {
+      SignalIndicators window;
+      window.point = { 100.0, 1.0, 30.0, temperature };
+      window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + 1e-4 * normal(random) + beside;
+      assessor.update(window);
+    }
+    return assessor.assessment().level;
+  };
+  assess(LEARNING, 25.0, 0.0);
+  assess(LEARNING, 35.0, 0.0);
+  EXPECT_EQ(assess(4, 25.0, 0.01), HealthLevel::OK);
+  EXPECT_GE(assess(1, 25.0, 0.01), HealthLevel::WARN);
+  EXPECT_GE(assess(20, 35.0, 0.0), HealthLevel::WARN);
+  EXPECT_EQ(assess(12, 25.0, 0.0), HealthLevel::OK);
 }
 
 TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)

@@ -168,14 +168,15 @@ class FaultsOfANode(unittest.TestCase):
 
     def test_a_fault_raises_the_level_and_its_end_lowers_it(self):
         # Short windows, and few for the reference. After the start /diagnostics says nothing but changes of level.
-        self.start(**{"indicators/window_turns": 5.0, "indicators/baseline_windows": 20,
+        self.start(**{"indicators/window_turns": 5.0, "indicators/baseline_windows": 60,
+                      "indicators/evidence_windows": 2,
                       "indicators/false_alarm_rate": 0.02, "diagnostic_period": 3600.0})
         self.torque = 0.4  # takes the motor to its speed limit and holds it there
         self.indicators = self.listener("indicators", Indicators)
         self.assessment = self.listener("assessment", Assessment)
         self.run_until(lambda: self.assessment.messages() and self.last().state == Assessment.ASSESSED, "a reference")
         indicators = self.indicators.messages()[-1]
-        self.assertGreater(indicators.windows, 20)
+        self.assertGreater(indicators.windows, 60)
         self.assertAlmostEqual(indicators.turns, 5.0, delta=0.1)
         self.assertTrue(indicators.temperature_valid)
         self.assertAlmostEqual(indicators.temperature, 25.0, delta=1e-9)

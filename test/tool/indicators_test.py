@@ -68,13 +68,14 @@ class Indicators(tool.ToolTest):
         for line in (0.2, 4.0):
             self.write("faulty.csv", recording(line_after=0.0, seconds=12.0, line=line))
             for window in self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline",
-                                            "b.yaml", "--set", "indicators.confirm_windows=1")["windows"]:
+                                            "b.yaml", "--set", "indicators.evidence_windows=1", "--set",
+                                            "indicators.false_alarm_rate=1e-3")["windows"]:
                 layout = health_signatures.Layout(window["indicators"])
                 probability, _, log_odds = health_signatures.Hypotheses(layout, window, table).posterior(errors)
                 found = window["assessment"]
                 self.assertEqual(found["cause"], max(probability, key=probability.get))
                 self.assertAlmostEqual(found["confidence"], probability[found["cause"]], delta=1e-6)
-                self.assertGreaterEqual(found["largest_score"], 0.99999 * log_odds / math.log(1000.0))
+                self.assertGreaterEqual(found["largest_score"], 0.99999 * log_odds / math.log(1e3))
 
     def test_what_a_model_shows_too_is_taken_off(self):
         self.write("a.csv", recording(line_after=0.0, seconds=12.0))
@@ -134,7 +135,7 @@ class Indicators(tool.ToolTest):
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
         self.write("bad.yaml",
                    "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
-                   "indicators: {nonsense: [3, 1.0, 0.1]}}\n")
+                   "runs: 3, indicators: {nonsense: [3, 1.0, 0.1, 0.1]}}\n")
         self.write("other.yaml", "load_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                                  "windows: 3, indicators: {}}\n")
         self.fail_with(1, ["other.yaml is no baseline: its load_step is 2.925 [N.m], expected 25.125"],

@@ -248,7 +248,7 @@ record:
         reported = self.succeed_json("indicators", "a/" + file_name, "--config", "real_sensors.yaml",
                                      "--set", "indicators.window_turns=20.0")["windows"]
         self.assertEqual(len(reported), len(windows["window_end"]))
-        for name in ("kinematic_error", "running_torque", "residual_rms", "error_outer"):
+        for name in ("kinematic_error", "running_torque", "error_outer"):
             for window, value in zip(reported[1:], windows[name][1:]):
                 self.assertAlmostEqual(window["indicators"][name], value, delta=1e-9)
 

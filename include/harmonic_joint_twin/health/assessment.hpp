@@ -61,7 +61,7 @@ struct Assessment
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
   double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]
-  double largest_score{};       ///< of the last window, over the threshold: beyond 1 is out of the ordinary [-]
+  double largest_score{};       ///< of the last windows' mean, over the threshold: beyond 1 is out of the ordinary [-]
   std::size_t alternative_count{};
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
   std::size_t evidence_count{};
@@ -70,11 +70,13 @@ struct Assessment
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
-/// WARN: an indicator beyond the baseline's threshold, by itself or given all others; or odds of any fault of the
-/// table against none of 1 / indicators.false_alarm_rate, which sound windows of the reference's distribution exceed no
-/// more often than at this rate (Markov's inequality). ERROR: an indicator beyond indicators.error_factor times the
-/// threshold. The level changes after indicators.confirm_windows windows in a row that say the same or worse (up), or
-/// better (down). While the operating point has no reference, the last verdict stands.
+/// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator beyond the baseline's
+/// threshold, by itself or given all others; or odds of any fault of the table against none of
+/// 1 / indicators.false_alarm_rate, which sound windows of the reference's distribution exceed no more often than at
+/// this rate (Markov's inequality). ERROR: an indicator beyond indicators.error_factor times the threshold. The level
+/// rises after three such means in a row, each of three windows at least, that show the higher level. It falls after
+/// three that show a lower one at the operating point that last showed the level. With indicators.evidence_windows
+/// below three, that many do. While the operating point has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -97,14 +99,15 @@ private:
   void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores,
                     const Deviations& deviations) noexcept;
 
-  const int confirm_windows_;
+  const int least_windows_;
   const double error_factor_;
   const double log_odds_threshold_;
   Baseline baseline_;
   WindowDeviations deviations_;
   Assessment assessment_;
-  int worse_{};   // windows in a row that say worse than the level
-  int better_{};  // and better
+  OperatingBin shown_in_;  // class that the level was last seen in
+  int worse_{};            // windows in a row that say worse than the level
+  int better_{};           // and better
   HealthLevel least_worse_{};
   HealthLevel most_better_{};
 };

@@ -32,11 +32,13 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 /// That of this gear [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// What healthy indicators follow within a class: temperature, its square and load, as the place in the class.
-constexpr std::size_t PLACES = 3;
+/// What healthy indicators follow within a class: temperature, its square, the load's mean magnitude, its rms, its mean
+/// with the sign, and the torque of inertia. A payload and how it is moved show in the last four.
+constexpr std::size_t PLACES = 6;
 using Place = std::array<double, PLACES>;
 
-/// -1 ... 1 from one edge of the class to the other; 0 of what is not measured [-].
+/// Temperature and load -1 ... 1 from one edge of the class to the other, the others in the same steps; 0 of what is
+/// not measured [-].
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
 /// What else moves healthy indicators together from one window to another.
@@ -48,6 +50,7 @@ struct Reference
   int count{};
   double mean{};      // unit of the indicator
   double variance{};  // about the mean, from fitReference on about what the place makes of it
+  double within{};    // half the mean square of what successive windows differ by; 0: not known
   bool fitted{};      // has slopes and common causes
   Place slopes{};     // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
@@ -62,14 +65,28 @@ struct ReferenceSums
   std::array<Place, PLACES> places{};
 };
 
+/// Sums over pairs of windows of which one follows the other, of products of what they differ by.
+struct StepSums
+{
+  std::array<int, INDICATOR_COUNT> count{};
+  std::array<double, INDICATOR_COUNT> indicators{};
+  std::array<Place, INDICATOR_COUNT> mixed{};
+  std::array<Place, PLACES> places{};
+  std::uint64_t last_window{};  // SignalIndicators::windows, of the last one learned
+  std::array<double, INDICATOR_COUNT> last{};
+  Place last_place{};
+};
+
 struct ReferenceBin
 {
   OperatingBin bin;
   int windows{};
+  int runs{};  // stretches of windows that follow each other
   Place mean_place{};
   std::array<Place, PLACES> leverage{};  // inverse of the places' sums, from fitReference
   std::array<Reference, INDICATOR_COUNT> references;
   ReferenceSums sums;
+  StepSums steps;
 };
 
 /// Makes of the sums what windows are compared with: the straight line over the place by least squares, and of what it
@@ -105,9 +122,10 @@ struct WindowDeviations
 /// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-/// What a window differs from its reference by, and what sound windows differ by: covariance D + F F'.
+/// What the last windows of a class differ from their reference by, and what sound ones differ by: covariance D + F F'.
 struct WindowResidual
 {
+  int windows{};                                     ///< that were averaged [-]
   std::array<double, INDICATOR_COUNT> sound{};       ///< reference with what was subtracted, units of the indicators
   std::array<double, INDICATOR_COUNT> difference{};  ///< from it; of what isFreeAmplitude by amplitudeChange
   std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
@@ -122,26 +140,35 @@ enum class BaselineState : std::uint8_t
   NO_REFERENCE  ///< no reference for this operating point, and none is learned
 };
 
-/// Indicators of a healthy joint by operating point: learned from the first windows there, or given.
+/// Indicators of a healthy joint by operating point: learned from the first windows there, or given. Compared is the
+/// trimmed mean over the last indicators.evidence_windows windows of a class: a fifth of them, one at least of three or
+/// more, is left out at either end.
 ///
-/// Law:   t = (x - m - b (z - z_0)) / sqrt(max(s^2, u^2) (1 + h) + (f m)^2 + q^2),  h = 1/n + (z - z_0)' L (z - z_0)
-///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = n - 1 - PLACES
+/// Law:   t = mean(x - m - b (z - z_0)) / sqrt(max(s^2, u^2) (r + (1 - r) / k + h) + (f m)^2 + q^2)
+///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - PLACES, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
-///                 leave, by least squares;  L  inverse of the places' sums of squares, so that h grows beyond what was
-///                 learned
+///                 leave, by least squares;  L  inverse of the places' sums of squares
+///        h        (1/n + (z - z_0)' L (z - z_0)) / e: grows beyond what was learned
+///        k        windows averaged, less those left out at one end
+///        r        share of s^2 that stays from one window to the next: 1 less half the mean square of what successive
+///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
+///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
+///                 r' as r, less the error; 1 if none followed another
 ///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
 ///          0.3 for kurtosis, 0.5 for crest
 /// Given the others, with what moves all of them together:
-///        t_i = (C^-1 d)_i / sqrt((C^-1)_ii),  C = D + F F',  of v - r degrees of freedom;  d  numerators as above
-/// where  F    s times Reference::common, r columns;  D  diagonal: variance as above, of what F leaves of s
+///        t_i = (C^-1 d)_i / sqrt((C^-1)_ii),  C = D + F F',  of the mean v less columns of F;  d  numerators as above
+/// where  F    Reference::common times s sqrt(r + (1 - r) / k + h);  D  diagonal: variance as above, of what F leaves
+///             of s
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
-/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators in both
-/// ways, two-sided (Bonferroni).
+/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators in both ways, two-sided
+/// (Bonferroni).
 class Baseline
 {
 public:
   static constexpr std::size_t MAX_BINS = 64;
+  static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
 
   explicit Baseline(const Parameters& parameters);
 
@@ -155,28 +182,61 @@ public:
                        WindowDeviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
-  const WindowResidual& residual() const noexcept { return residual_; }  ///< of the last window
+  const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
+  const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   int windowsNeeded() const noexcept { return windows_; }
+  bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
 
 private:
+  /// One window against its reference.
+  struct Compared
+  {
+    std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
+    std::array<double, INDICATOR_COUNT> error{};       // by the fit
+    double leverage{};                                 // (z - z_0)' L (z - z_0)
+  };
+
+  /// The last windows of a class, oldest overwritten.
+  struct Recent
+  {
+    std::size_t count{};
+    std::size_t next{};
+  };
+
+  /// A difference of several windows.
+  struct Average
+  {
+    double difference{};
+    double error_square{};
+    double weight{};  // k
+  };
+
   ReferenceBin* find(const OperatingBin& bin) noexcept;
+  void makeRoom();
   void learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
-  /// Of a window's difference; `left`: of the reference [unit of the indicator squared], `widening`: 1 + h [-].
-  double variance(std::size_t indicator, const ReferenceBin& bin, const SignalIndicators& indicators, double left,
+  void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
+            Compared& window) noexcept;
+  Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
+  /// Of a difference; `left`: of the reference [unit of the indicator squared].
+  double variance(std::size_t indicator, const ReferenceBin& bin, double error_square, double left,
                   double widening) const noexcept;
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
-  void compare(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
-               WindowDeviations& deviations) noexcept;
+  void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, WindowDeviations& deviations) noexcept;
 
   const int windows_;
+  const std::size_t evidence_windows_;
   const double least_spread_;
   const double load_step_;  // [N.m]
   double threshold_;
   std::array<double, INDICATOR_COUNT> floor_{};  // q
   WindowResidual residual_;
+  std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted
+  OperatingBin bin_;
   bool given_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity
+  std::vector<Recent> recent_;      // by bin
+  std::vector<Compared> compared_;  // evidence_windows_ by bin
 };
 }  // namespace hjt

@@ -149,7 +149,7 @@ struct CausePosterior
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
 /// The odds are of b = 1.
-/// No fault: mu = 0. Something else: mu = 0, S = 3, 10, 30, 100.
+/// No fault: mu = 0, e S = 0, 0.5 or 1, as likely. Something else: mu = 0, e S = 3, 10, 30, 100.
 /// Does not allocate.
 CausePosterior causePosterior(const WindowResidual& residual) noexcept;
 }  // namespace hjt

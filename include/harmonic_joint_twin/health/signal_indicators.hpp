@@ -78,10 +78,13 @@ const char* indicatorUnit(std::size_t indicator) noexcept;
 /// How the joint was run during a window; means over it.
 struct OperatingPoint
 {
-  double speed{};        ///< magnitude, motor [rad/s]
-  double direction{};    ///< share of travel forward less share back: -1 ... 1 [-]
-  double load{};         ///< magnitude of the load torque; NaN: no estimate of it [N.m]
-  double temperature{};  ///< NaN: not measured [degC]
+  double speed{};           ///< magnitude, motor [rad/s]
+  double direction{};       ///< share of travel forward less share back: -1 ... 1 [-]
+  double load{};            ///< magnitude of the load torque; NaN: no estimate of it [N.m]
+  double temperature{};     ///< NaN: not measured [degC]
+  double load_mean{};       ///< of the load torque with its sign; NaN as load [N.m]
+  double load_rms{};        ///< of the load torque; NaN as load [N.m]
+  double inertia_torque{};  ///< rms of the motor torque that goes with the acceleration, at the joint [N.m]
 };
 
 /// All indicators of one window. NaN: the window did not tell.

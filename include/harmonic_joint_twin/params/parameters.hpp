@@ -269,7 +269,7 @@ struct IndicatorParameters
   int baseline_windows{};
   double least_spread{};
   double false_alarm_rate{};
-  int confirm_windows{};
+  int evidence_windows{};
   double error_factor{};
 };
 

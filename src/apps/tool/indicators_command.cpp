@@ -124,6 +124,9 @@ const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "speed", [](const WindowResult& window) { return window.indicators.point.speed; } },
   { "direction", [](const WindowResult& window) { return window.indicators.point.direction; } },
   { "load", [](const WindowResult& window) { return window.indicators.point.load; } },
+  { "load_mean", [](const WindowResult& window) { return window.indicators.point.load_mean; } },
+  { "load_rms", [](const WindowResult& window) { return window.indicators.point.load_rms; } },
+  { "inertia_torque", [](const WindowResult& window) { return window.indicators.point.inertia_torque; } },
   { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
 };
 
@@ -163,6 +166,7 @@ std::vector<Column<WindowResult>> documentColumns()
       { "scores", [](W window) { return byIndicator([&](std::size_t i) { return window.deviations[i].score; }); } });
   columns.push_back({ "residual", residualJson });
   columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
+  columns.push_back({ "averaged", [](const WindowResult& window) { return window.residual.windows; } });
   columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
   return columns;
 }
