@@ -298,7 +298,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
-                        "page's table of them, and nothing else; three minutes each on two cores")
+                        "page's table of them, and nothing else; four minutes each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
     bench = health_runs.Bench(options.tool, options.work, options.jobs)

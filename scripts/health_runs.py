@@ -38,9 +38,10 @@ PICK_AND_PLACE = Motion("pick-and-place", "pick_and_place", 20.0, True, [(-50, 9
 SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 55)])
 LOADING = Motion("loading", "loading", 20.0, True, [(40, 60), (-15, 110), (10, 35), (-45, 80)])
 SORTING = Motion("sorting", "sorting", 20.0, True, [(-30, 80), (10, 55), (-5, 95), (45, 65)])
-DISPENSING = Motion("dispensing", "dispensing", 20.0, True, [(20, 30), (-20, 50), (25, 40), (-10, 75)])
 TENDING = Motion("tending", "tending", 20.0, True, [(55, 105), (5, 60), (-35, 85), (15, 45)])
-AT_WORK = [STACKING, PICK_AND_PLACE, SEAM, LOADING, SORTING, DISPENSING, TENDING]
+PACKING = Motion("packing", "packing", 20.0, True, [(30, 60), (-45, 85), (15, 110), (-20, 40)])
+DEBURRING = Motion("deburring", "deburring", 20.0, True, [(25, 35), (45, 55), (5, 25), (-15, 60)])
+PALLETISING = Motion("palletising", "palletising", 20.0, True, [(-55, 95), (10, 70), (50, 90), (-10, 105)])
 
 WORK_WINDOWS = 12         # of a run at work with a fault
 SOUND_WINDOWS = 30        # of one without
@@ -106,13 +107,13 @@ CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, turn(33)], [0.25, 
               Trial("calibrated", drawn(704), [CHECK_UP, turn(60)], [0.2, 0.5], 150, 33),
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5),
               Trial("calibrated", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
-JUDGED = [Trial("judged", drawn(820), [CHECK_UP, at_work(SORTING)], [0.2, 0.5], 52, 51),
-          Trial("judged", drawn(821), [CHECK_UP, at_work(DISPENSING)], [0.2, 0.5], 97, 52),
-          Trial("judged", drawn(822), [CHECK_UP, at_work(PICK_AND_PLACE)], [0.2, 0.5], 133, 53),
-          Trial("judged", drawn(823), [CHECK_UP, at_work(turn(65))], [0.2, 0.5], 8, 54),
-          Trial("judged", uneven(1618), [CHECK_UP], [0.2, 0.5], 171, 55),
-          Trial("judged", uneven(14142), [CHECK_UP], [0.2, 0.5], 119, 56)]
-SERIES_FIRST = 100  # gears of lower numbers were looked at while the assessment was made
+JUDGED = [Trial("judged", drawn(830), [CHECK_UP, at_work(PACKING)], [0.2, 0.5], 33, 61),
+          Trial("judged", drawn(831), [CHECK_UP, at_work(DEBURRING)], [0.2, 0.5], 84, 62),
+          Trial("judged", drawn(832), [CHECK_UP, at_work(PALLETISING)], [0.2, 0.5], 147, 63),
+          Trial("judged", drawn(833), [CHECK_UP, at_work(turn(55))], [0.2, 0.5], 180, 64),
+          Trial("judged", uneven(2236), [CHECK_UP], [0.2, 0.5], 68, 65),
+          Trial("judged", uneven(17320), [CHECK_UP], [0.2, 0.5], 195, 66)]
+SERIES_FIRST = 112  # gears of lower numbers were looked at while the assessment was made
 SERIES_MOTIONS = [at_work(motion) for motion in (PICK_AND_PLACE, SEAM, TENDING, SORTING)]  # one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, at_work(PICK_AND_PLACE)], [0.5], 60, 5)]
 

@@ -73,13 +73,16 @@ std::size_t sizeOf(std::size_t indicator) noexcept
 {
   for (const LineSignal signal : ALL_LINE_SIGNALS)
   {
-    if (indicator >= cosineIndex(signal, 0) && indicator <= sineIndex(signal, PHASE_LOCKED - 1))
+    if (indicator >= cosineIndex(signal, 0) && indicator <= sineIndex(signal, FIRST_LOCKED - 1))
     {
       return amplitudeIndex(signal, (indicator - cosineIndex(signal, 0)) / 2);
     }
   }
-  return indicator;
+  constexpr std::size_t PARTS = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
+  return indicator < PARTS ? indicator :
+                             amplitudeIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED) + (indicator - PARTS) / 2;
 }
+
 /// Adds what a window differs from the one before it by.
 void learnStep(StepSums& steps, const SignalIndicators& indicators, const Place& place) noexcept
 {

@@ -58,13 +58,12 @@ public:
     {
       add(residual, i, i);
     }
-    for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
-      const auto signal = static_cast<LineSignal>(s);
-      for (std::size_t line = 0; line < LINE_COUNT; ++line)
+      for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
       {
-        const std::size_t number = SCALAR_COUNT + s * LINE_COUNT + line;
-        if (line < PHASE_LOCKED)
+        const std::size_t number = signatureNumber(signal, line);
+        if (isPhaseLocked(line))
         {
           const double square = soundSquare(residual, signal, line);
           add(residual, cosineIndex(signal, line), number, square);

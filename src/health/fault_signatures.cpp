@@ -39,6 +39,10 @@ public:
   {
     for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
+      if (!hasLine(signal, index(line)))
+      {
+        continue;
+      }
       const Deviation& cosine = deviations_[cosineIndex(signal, index(line))];
       const Deviation& sine = deviations_[sineIndex(signal, index(line))];
       const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;
@@ -108,7 +112,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
   }
   for (const LineRow& row : LINES)
   {
-    if (index(row.line) < PHASE_LOCKED)
+    if (isPhaseLocked(index(row.line)))
     {
       gather.vector(row.feature, row.line);
     }

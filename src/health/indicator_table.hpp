@@ -58,7 +58,7 @@ struct LineRow
   Feature feature;
 };
 
-/// The tracked lines; each is an indicator of every LineSignal.
+/// The tracked lines; each is an indicator of every LineSignal that hasLine.
 inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
     { Line::WAVE_GENERATOR_1, "wave_generator_1", Feature::ORDER_1 },
     { Line::WAVE_GENERATOR_2, "wave_generator_2", Feature::ORDER_2 },
@@ -78,6 +78,12 @@ inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
     { Line::OUTER_ABOVE, "outer_above", Feature::OUTER },
     { Line::INNER, "inner", Feature::INNER },
     { Line::INNER_DOUBLE, "inner_double", Feature::INNER },
+    { Line::WAVE_GENERATOR_4_LOAD, "wave_generator_4_load", Feature::ORDER_4 },
+    { Line::WAVE_GENERATOR_6_LOAD, "wave_generator_6_load", Feature::ORDER_6 },
+    { Line::WAVE_GENERATOR_8_LOAD, "wave_generator_8_load", Feature::ORDER_8 },
+    { Line::WAVE_GENERATOR_4_LOAD_LAG, "wave_generator_4_load_lag", Feature::ORDER_4 },
+    { Line::WAVE_GENERATOR_6_LOAD_LAG, "wave_generator_6_load_lag", Feature::ORDER_6 },
+    { Line::WAVE_GENERATOR_8_LOAD_LAG, "wave_generator_8_load_lag", Feature::ORDER_8 },
 } };
 static_assert(isInOrder(LINES, &LineRow::line), "a row for each Line, in its order");
 }  // namespace hjt

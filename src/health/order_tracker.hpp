@@ -27,6 +27,7 @@ struct LineSample
   double kinematic_error{};  ///< motor angle / ratio - output angle [rad]
   double motor_torque{};     ///< [N.m]
   double ripple{};           ///< of the motor angle, see RippleFilter [rad]
+  double weight{ 1.0 };      ///< inverse of the noise's variance, 1 where the motion is calm [-]
 };
 
 struct LineFit
@@ -41,8 +42,11 @@ struct LineFit
 
 /// Amplitude and phase of lines at known orders, in all LineSignals at once.
 ///
-/// Law:   y(t) = b . n(t) + sum_k ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  least squares over one window
+/// Law:   y(t) = b . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  least squares over one
+///        window, by the samples' weights
 /// where  theta  motor angle of the very sample [rad];  o_k  order [1/turn]
+///        m      1; of a line in proportion to the load T / T_r less its mean, of one that lags also d T / T_r less its
+///               mean, so that the line without either is that of the mean load;  T_r  rated torque, d  direction
 ///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|,
 ///               T^3 (the torsion is no straight line over the load)
 /// Nothing is resampled and no speed need be constant: the line is a function of the angle, whichever way and however
@@ -50,13 +54,16 @@ struct LineFit
 ///
 /// Not valid, and not fitted: a line above 0.8 of half the samples a turn. Not valid either: one that the travel cannot
 /// tell from another (variance inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15
-/// for 1.98 beside 2).
+/// for 1.98 beside 2). A line in proportion to the load is fitted if the load varies, one that lags if the motion goes
+/// both ways.
 class OrderTracker
 {
 public:
-  explicit OrderTracker(const LineOrders& orders)
-    : orders_(sorted(orders))
-    , places_(placesOf(orders))
+  /// Torque [N.m].
+  OrderTracker(const LineOrders& orders, double rated_torque)
+    : rated_torque_(rated_torque)
+    , orders_(sorted(orders))
+    , places_(placesOf(orders, orders_))
     , rotations_(orders_)
     , row_(Eigen::VectorXd::Zero(COLUMNS))
     , targets_(Eigen::Vector3d::Zero())
@@ -72,9 +79,15 @@ public:
     row_.head<NUISANCES>() << 1.0, sample.direction, sample.speed, std::cos(sample.output_angle),
         std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
         sample.load * sample.load * sample.load;
-    rotations_.at(sample.motor_angle, row_.data() + NUISANCES);
+    rotations_.at(sample.motor_angle, row_.data() + FIRST_LINE);
+    const double load = sample.load / rated_torque_;
+    const std::array factors{ load - mean_load_, sample.direction * load - mean_lagging_load_ };
+    for (int i = 0; i < LOADED_COLUMNS; ++i)
+    {
+      row_[NUISANCES + i] = factors[i < LOADED_COLUMNS / 2 ? 0 : 1] * row_[baseOf(i)];
+    }
     targets_ = { sample.kinematic_error, sample.motor_torque, sample.ripple };
-    regression_.add(row_, targets_);
+    regression_.add(row_, targets_, sample.weight);
   }
 
   /// `angle_step`: mean travel between two samples [rad]. False: too little came.
@@ -82,7 +95,8 @@ public:
   {
     const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
     const auto seen = std::lower_bound(orders_.begin(), orders_.end(), highest) - orders_.begin();
-    const int used = NUISANCES + 2 * static_cast<int>(seen);
+    const int used = FIRST_LINE + 2 * static_cast<int>(seen);
+    prepareLoaded(used);
     const bool fitted = regression_.fit(used);
     used_ = fitted ? used : 0;
     return fitted;
@@ -90,8 +104,10 @@ public:
 
   LineFit line(LineSignal signal, std::size_t line) const noexcept
   {
-    const int column = NUISANCES + 2 * static_cast<int>(places_[line]);
-    if (column >= used_ || regression_.inflation(column) > MAX_INFLATION ||
+    const bool loaded = line >= FIRST_LOADED;
+    const int column = loaded ? NUISANCES + 2 * static_cast<int>(line - FIRST_LOADED) :
+                                FIRST_LINE + 2 * static_cast<int>(places_[line]);
+    if (column >= used_ || (loaded && !loaded_[line - FIRST_LOADED]) || regression_.inflation(column) > MAX_INFLATION ||
         regression_.inflation(column + 1) > MAX_INFLATION)
     {
       return {};
@@ -109,8 +125,8 @@ public:
   /// Whether the last fit determined every line. One that it did not determine can take any value outside the window.
   bool complete() const noexcept
   {
-    bool determined = used_ > NUISANCES;
-    for (int column = NUISANCES; column < used_; ++column)
+    bool determined = used_ > FIRST_LINE;
+    for (int column = FIRST_LINE; column < used_; ++column)
     {
       determined = determined && !(regression_.inflation(column) > MAX_INFLATION);
     }
@@ -123,32 +139,78 @@ public:
 private:
   static constexpr double MAX_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
   static constexpr double USED_BAND = 0.8;      // of half the samples a turn [-]
+  static constexpr double LEAST_LOAD = 0.05;    // spread of the load, of the rated torque [-]
+  static constexpr double ONE_WAY = 0.9;        // mean direction of a motion that does not go both ways [-]
 
+  // Columns: nuisances, lines in proportion to the load, the others by their orders.
+  static constexpr int DIRECTION = 1;
+  static constexpr int LOAD = 5;
   static constexpr int NUISANCES = 8;
-  static constexpr int COLUMNS = NUISANCES + 2 * static_cast<int>(LINE_COUNT);
+  static constexpr int LOADED_COLUMNS = 2 * static_cast<int>(LOADED_COUNT);
+  static constexpr int FIRST_LINE = NUISANCES + LOADED_COLUMNS;
+  static constexpr int COLUMNS = FIRST_LINE + 2 * static_cast<int>(FIRST_LOADED);
 
   using Places = std::array<std::size_t, LINE_COUNT>;
+  using PlainOrders = std::array<double, FIRST_LOADED>;
 
-  static LineOrders sorted(LineOrders orders)
+  static PlainOrders sorted(const LineOrders& orders)
   {
-    std::sort(orders.begin(), orders.end());
-    return orders;
+    PlainOrders plain{};
+    std::copy_n(orders.begin(), plain.size(), plain.begin());
+    std::sort(plain.begin(), plain.end());
+    return plain;
   }
 
-  static Places placesOf(const LineOrders& orders)
+  static Places placesOf(const LineOrders& orders, const PlainOrders& sorted)
   {
     Places places{};
-    for (std::size_t line = 0; line < LINE_COUNT; ++line)
-    {
-      places[line] = static_cast<std::size_t>(
-          std::count_if(orders.begin(), orders.end(), [&](double other) { return other < orders[line]; }));
-    }
+    std::transform(
+        orders.begin(), orders.end(), places.begin(),
+        [&](double order)
+        { return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), order) - sorted.begin()); });
     return places;
   }
 
-  LineOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
-  Places places_;      // of the lines among them
-  AngleMultiples<LINE_COUNT> rotations_;
+  /// Column of the line with the order of the loaded column `i`.
+  int baseOf(int i) const noexcept
+  {
+    return FIRST_LINE + 2 * static_cast<int>(places_[FIRST_LOADED + static_cast<std::size_t>(i) / 2]) + i % 2;
+  }
+
+  /// Takes the means off the load, and leaves out what the window cannot determine.
+  void prepareLoaded(int used) noexcept
+  {
+    const double weighted_load = regression_.mean(LOAD, 0) / rated_torque_;
+    const double lagging = regression_.mean(LOAD, DIRECTION) / rated_torque_;
+    const double square = regression_.mean(LOAD, LOAD) / (rated_torque_ * rated_torque_);
+    const bool varies = square - weighted_load * weighted_load > LEAST_LOAD * LEAST_LOAD;
+    const bool both_ways = std::abs(regression_.mean(DIRECTION, 0)) < ONE_WAY;
+    const std::array shares{ weighted_load - mean_load_, lagging - mean_lagging_load_ };
+    for (int i = 0; i < LOADED_COLUMNS; ++i)
+    {
+      const bool lags = i >= LOADED_COLUMNS / 2;
+      bool& fitted = loaded_[static_cast<std::size_t>(i) / 2];
+      fitted = varies && (both_ways || !lags) && baseOf(i) < used;
+      if (fitted)
+      {
+        regression_.subtract(NUISANCES + i, baseOf(i), shares[lags ? 1 : 0]);
+      }
+      else
+      {
+        regression_.drop(NUISANCES + i);
+      }
+    }
+    mean_load_ = weighted_load;
+    mean_lagging_load_ = lagging;
+  }
+
+  const double rated_torque_;                // [N.m]
+  double mean_load_{};                       // of the window before, over the rated torque [-]
+  double mean_lagging_load_{};               // of the load times the direction, likewise [-]
+  std::array<bool, LOADED_COUNT> loaded_{};  // that were fitted
+  PlainOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
+  Places places_;       // of the lines among them
+  AngleMultiples<FIRST_LOADED> rotations_;
   Eigen::VectorXd row_;
   Eigen::Vector3d targets_;
   RunningRegression regression_;

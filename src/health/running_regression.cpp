@@ -17,13 +17,15 @@ namespace
 // such as the ripple of a steady speed beside the constant.
 constexpr double RIDGE = 1e-6;
 
-/// Adds row row' to a matrix of that order, by columns: its lower triangle, and above it what fills whole vectors.
-HJT_VECTOR_CLONES void addSquare(const double* __restrict__ row, int order, double* __restrict__ square) noexcept
+/// Adds weight row row' to a matrix of that order, by columns: its lower triangle, and above it what fills whole
+/// vectors.
+HJT_VECTOR_CLONES void addSquare(const double* __restrict__ row, int order, double weight,
+                                 double* __restrict__ square) noexcept
 {
   constexpr int VECTOR = 8;
   for (int column = 0; column < order; ++column)
   {
-    const double factor = row[column];
+    const double factor = weight * row[column];
     double* __restrict__ sums = square + static_cast<std::ptrdiff_t>(column) * order;
 #pragma omp simd
     for (int i = column & -VECTOR; i < order; ++i)
@@ -49,6 +51,7 @@ RunningRegression::RunningRegression(int columns, int targets)
 
 void RunningRegression::reset() noexcept
 {
+  rows_ = 0.0;
   weight_ = 0.0;
   normal_.setZero();
   moments_.setZero();
@@ -57,6 +60,7 @@ void RunningRegression::reset() noexcept
 
 void RunningRegression::forget(double kept) noexcept
 {
+  rows_ *= kept;
   weight_ *= kept;
   normal_ *= kept;
   moments_ *= kept;
@@ -64,33 +68,66 @@ void RunningRegression::forget(double kept) noexcept
 }
 
 void RunningRegression::add(const Eigen::Ref<const Eigen::VectorXd>& row,
-                            const Eigen::Ref<const Eigen::VectorXd>& targets) noexcept
+                            const Eigen::Ref<const Eigen::VectorXd>& targets, double weight) noexcept
 {
-  weight_ += 1.0;
-  addSquare(row.data(), static_cast<int>(row.size()), normal_.data());
+  rows_ += 1.0;
+  weight_ += weight;
+  addSquare(row.data(), static_cast<int>(row.size()), weight, normal_.data());
   for (Eigen::Index target = 0; target < targets.size(); ++target)
   {
-    moments_.col(target) += targets[target] * row;
-    squares_[target] += targets[target] * targets[target];
+    const double weighted = weight * targets[target];
+    moments_.col(target) += weighted * row;
+    squares_[target] += weighted * targets[target];
   }
+}
+
+double& RunningRegression::moment(int column, int other) noexcept
+{
+  return normal_(std::max(column, other), std::min(column, other));
+}
+
+double RunningRegression::mean(int column, int other) const noexcept
+{
+  return normal_(std::max(column, other), std::min(column, other)) / weight_;
+}
+
+void RunningRegression::subtract(int column, int other, double share) noexcept
+{
+  const double own =
+      moment(column, column) - 2.0 * share * moment(column, other) + share * share * moment(other, other);
+  for (int i = 0; i < normal_.rows(); ++i)
+  {
+    moment(column, i) -= share * moment(other, i);
+  }
+  moment(column, column) = own;
+  moments_.row(column) -= share * moments_.row(other);
+}
+
+void RunningRegression::drop(int column) noexcept
+{
+  for (int i = 0; i < normal_.rows(); ++i)
+  {
+    moment(column, i) = 0.0;
+  }
+  moments_.row(column).setZero();
 }
 
 bool RunningRegression::fit(int used) noexcept
 {
-  if (weight_ <= used)
+  if (rows_ <= used)
   {
     return false;
   }
   // Column j times s_j has mean square 1; a column of zeros stays one, and the ridge gives it the coefficient 0.
   for (int i = 0; i < used; ++i)
   {
-    scale_[i] = normal_(i, i) > 0.0 ? std::sqrt(weight_ / normal_(i, i)) : 1.0;
+    scale_[i] = normal_(i, i) > 0.0 ? std::sqrt(rows_ / normal_(i, i)) : 1.0;
   }
   for (int j = 0; j < used; ++j)
   {
     for (int i = j; i < used; ++i)
     {
-      factor_(i, j) = normal_(i, j) * scale_[i] * scale_[j] / weight_;
+      factor_(i, j) = normal_(i, j) * scale_[i] * scale_[j] / rows_;
     }
     factor_(j, j) += RIDGE;
   }
@@ -100,7 +137,7 @@ bool RunningRegression::fit(int used) noexcept
   {
     return false;
   }
-  fitted_weight_ = weight_;
+  fitted_rows_ = rows_;
   // The inverse of the factor, column by column: its squares sum to the diagonal of the inverse.
   inverse_diagonal_.setZero();
   for (int j = 0; j < used; ++j)
@@ -120,19 +157,19 @@ bool RunningRegression::fit(int used) noexcept
   for (Eigen::Index target = 0; target < coefficients_.cols(); ++target)
   {
     auto solution = coefficients_.col(target).head(used);
-    solution = moments_.col(target).head(used).cwiseProduct(scale_.head(used)) / weight_;
+    solution = moments_.col(target).head(used).cwiseProduct(scale_.head(used)) / rows_;
     const double total = squares_[target];
     const auto right = moments_.col(target).head(used);
     cholesky.solveInPlace(solution);
     solution = solution.cwiseProduct(scale_.head(used));
     const double left = std::max(total - solution.dot(right), 0.0);
-    spread_[target] = std::sqrt(left / (weight_ - used));
+    spread_[target] = std::sqrt(left / (rows_ - used));
   }
   return true;
 }
 
 double RunningRegression::standardError(int column, int target) const noexcept
 {
-  return spread_[target] * scale_[column] * std::sqrt(inverse_diagonal_[column] / fitted_weight_);
+  return spread_[target] * scale_[column] * std::sqrt(inverse_diagonal_[column] / fitted_rows_);
 }
 }  // namespace hjt

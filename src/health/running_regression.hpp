@@ -9,7 +9,7 @@ namespace hjt
 ///
 /// Law:   minimise  sum w (y - x . b)^2 + ridge
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
-///        w     weight: 1 when added, less by what `forget` keeps
+///        w     weight: as added, less by what `forget` keeps
 /// Columns are scaled to unit mean square before the factorisation. The ridge, 1e-6 of that, only matters where columns
 /// depend on each other: their coefficients are then shared, and `inflation` shows it.
 class RunningRegression
@@ -19,12 +19,20 @@ public:
 
   void reset() noexcept;
   void forget(double kept) noexcept;
-  void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets) noexcept;
+  /// `weight`: inverse of the variance, relative to that of a row of weight 1 [-].
+  void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets,
+           double weight = 1.0) noexcept;
+
+  /// As if the column had been added less `share` of the other, each time.
+  void subtract(int column, int other, double share) noexcept;
+  void drop(int column) noexcept;  ///< as if it had been added as zeros: its coefficient is 0
+  /// Mean of the product of two columns [-].
+  double mean(int column, int other) const noexcept;
 
   /// Fits with the first `used` columns. False: too few rows, or not solvable; the coefficients are then as before.
   bool fit(int used) noexcept;
 
-  double weight() const noexcept { return weight_; }  ///< rows, less what was forgotten [-]
+  double rows() const noexcept { return rows_; }  ///< less what was forgotten [-]
 
   // Of the last fit.
   double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
@@ -34,6 +42,9 @@ public:
   double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
 
 private:
+  double& moment(int column, int other) noexcept;  // of the two columns, from the lower triangle
+
+  double rows_{};
   double weight_{};
   Eigen::MatrixXd normal_;   // sum x x', of which the lower triangle counts
   Eigen::MatrixXd moments_;  // sum x y'
@@ -44,6 +55,6 @@ private:
   Eigen::VectorXd inverse_diagonal_;
   Eigen::MatrixXd coefficients_;
   Eigen::VectorXd spread_;  // standard deviation of what is left, by target
-  double fitted_weight_{ 1.0 };
+  double fitted_rows_{ 1.0 };
 };
 }  // namespace hjt

@@ -32,11 +32,11 @@ std::array<Label, INDICATOR_COUNT> makeLabels()
   for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
   {
     const auto signal = static_cast<LineSignal>(s);
-    for (std::size_t line = 0; line < LINE_COUNT; ++line)
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
     {
       const std::string name = std::string(SIGNALS[s][0]) + "_" + LINES[line].name;
       labels[amplitudeIndex(signal, line)] = { name, SIGNALS[s][1] };
-      if (line < PHASE_LOCKED)
+      if (isPhaseLocked(line))
       {
         labels[cosineIndex(signal, line)] = { name + "_cos", SIGNALS[s][1] };
         labels[sineIndex(signal, line)] = { name + "_sin", SIGNALS[s][1] };
@@ -61,7 +61,7 @@ const char* indicatorUnit(std::size_t indicator) noexcept
 
 double SignalIndicators::phase(LineSignal signal, Line line) const noexcept
 {
-  if (index(line) >= PHASE_LOCKED)
+  if (!isPhaseLocked(index(line)) || !hasLine(signal, index(line)))
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -79,10 +79,13 @@ SignalIndicators difference(const SignalIndicators& measured, const SignalIndica
   }
   for (const LineSignal signal : ALL_LINE_SIGNALS)
   {
-    for (std::size_t line = 0; line < PHASE_LOCKED; ++line)
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
     {
-      result.values[amplitudeIndex(signal, line)] =
-          std::hypot(result.values[cosineIndex(signal, line)], result.values[sineIndex(signal, line)]);
+      if (isPhaseLocked(line))
+      {
+        result.values[amplitudeIndex(signal, line)] =
+            std::hypot(result.values[cosineIndex(signal, line)], result.values[sineIndex(signal, line)]);
+      }
     }
   }
   return result;

@@ -13,19 +13,25 @@ namespace
 {
 constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // over which the mean speed forgets [rad]
 constexpr double MEAN_TIME = 0.5;                // and the time, for a joint that stands [s]
-constexpr double LARGEST_RIPPLE = 4e-3;          // of a calm motion, by the speed as read [rad]
-constexpr double SETTLING_TIME = 0.4;            // after it was larger or the speed not steady [s]
+constexpr double LARGEST_RIPPLE = 12e-3;         // of a steady motion, by the speed as read [rad]
+constexpr double SETTLING_TIME = 0.1;            // after it was larger or the speed not steady [s]
 constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;       // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;               // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;        // memory of the friction estimate
+// After a change of speed the drive rings on, in a shoulder at 33 to 45 Hz. The filters' pulse at the change is some
+// six times as large as the ringing, and ten times or more as large as the ripple of lines.
+constexpr double RINGING_SHARE = 0.15;      // of the ripple [-]
+constexpr double RINGING_TIME = 0.45;       // in which it dies down by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;     // as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;       // of a sample whose residual counts: 1.5 mrad of it [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;  // over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
   : ratio_(nominalRatio(parameters.gear))
   , output_(parameters.output)
   , parameters_(parameters.indicators)
-  , tracker_(trackedOrders(parameters.gear, parameters.bearing))
+  , tracker_(trackedOrders(parameters.gear, parameters.bearing), parameters.life.rated_torque)
   , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
   , loop_(parameters.health, parameters.indicators)
   , turn_(parameters.gear)
@@ -46,6 +52,7 @@ void SignalMonitor::reset() noexcept
   mean_velocity_ = 0.0;
   speed_ = RippleFilter();
   angle_ = RippleFilter();
+  ringing_ = 0.0;
   calm_ = 0.0;
   waiting_count_ = 0;
   turn_travel_ = 0.0;
@@ -123,6 +130,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     efficiency_.update(elapsed, sample.motor_torque * velocity, sample.load_torque * velocity / ratio_);
   }
+  ringing_ = std::max(ringing_ * std::exp(-seconds / RINGING_TIME), RINGING_SHARE * std::abs(speed_.ripple()));
   const bool calm = moving && even && (!motor_known || std::abs(speed_.ripple()) < LARGEST_RIPPLE);
   calm_ = calm ? calm_ + seconds : 0.0;
   waiting_count_ = calm ? waiting_count_ : 0;
@@ -161,9 +169,10 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   const double load = std::isfinite(sample.load_torque) ? sample.load_torque : 0.0;
   if (calm_ > SETTLING_TIME || !window_.motor_encoder)
   {
-    addLines(
-        { motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque, angle_.ripple() },
-        travel, sample.stamp);
+    const double ringing = window_.motor_encoder ? ringing_ / CALM_RINGING : 0.0;
+    addLines({ motor_angle, output_angle, direction, mean_velocity_, load, torsion, sample.motor_torque,
+               angle_.ripple(), 1.0 / (1.0 + ringing * ringing) },
+             travel, sample.stamp);
   }
   friction_.add(travel, mean_velocity_, output_angle, sample.motor_torque - load / ratio_);
   window_.travel += std::abs(travel);
@@ -181,7 +190,7 @@ void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64
   {
     const Waiting& oldest = waiting_[first_waiting_];
     tracker_.add(oldest.sample);
-    if (tracked_ && window_.both_encoders)
+    if (tracked_ && window_.both_encoders && oldest.sample.weight > LEAST_WEIGHT)
     {
       addResidual(oldest.travel);
     }
@@ -281,7 +290,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
 
 void SignalMonitor::fillLines(LineSignal signal) noexcept
 {
-  for (std::size_t line = 0; line < LINE_COUNT; ++line)
+  for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
   {
     const LineFit fit = tracker_.line(signal, line);
     if (!fit.valid)
@@ -294,7 +303,7 @@ void SignalMonitor::fillLines(LineSignal signal) noexcept
       indicators_.uncertainty[indicator] = fit.error;
     };
     put(amplitudeIndex(signal, line), fit.amplitude());
-    if (line < PHASE_LOCKED)
+    if (isPhaseLocked(line))
     {
       put(cosineIndex(signal, line), fit.cosine);
       put(sineIndex(signal, line), fit.sine);

@@ -122,6 +122,7 @@ private:
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
+  double ringing_{};        // amplitude after the last change of speed [rad]
   double turn_travel_{};    // since the turn window was read [rad]
   bool tracked_{};          // every line has been fitted: the residual means something
   double residual_mean_{};  // slow [rad]

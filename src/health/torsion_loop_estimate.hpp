@@ -50,7 +50,7 @@ public:
     followTorque(torsion, joint_torque);
     if (steady)
     {
-      const bool first = regression_.weight() == 0.0;
+      const bool first = regression_.rows() == 0.0;
       lowest_ = first ? joint_torque : std::min(lowest_, joint_torque);
       highest_ = first ? joint_torque : std::max(highest_, joint_torque);
       const double branch = (joint_torque - centre_) / (0.5 * play_);

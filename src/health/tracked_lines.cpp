@@ -34,6 +34,10 @@ LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& be
   set(Line::OUTER_ABOVE, outer + LOBES);
   set(Line::INNER, inner);
   set(Line::INNER_DOUBLE, 2.0 * inner);
+  for (std::size_t i = 0; i < LOADED_COUNT; ++i)
+  {
+    orders[FIRST_LOADED + i] = orders[index(Line::WAVE_GENERATOR_4) + i % LOADED_ORDERS];
+  }
   return orders;
 }
 }  // namespace hjt

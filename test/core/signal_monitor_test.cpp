@@ -45,7 +45,8 @@ public:
   std::function<double(double)> load = [](double) { return 0.0; };                    // of time [N.m]
   std::function<double(double, double)> error = [](double, double) { return 0.0; };   // motor angle, load [rad]
   std::function<double(double, double)> torque = [](double, double) { return 0.1; };  // motor angle, speed [N.m]
-  std::function<double(double)> ripple = [](double) { return 0.0; };  // of the motor, of its angle [rad]
+  // Of the motor: of its angle, the load and the time [rad]
+  std::function<double(double, double, double)> ripple = [](double, double, double) { return 0.0; };
   bool quantised = true;
 
   /// One sample; true if it completed a window.
@@ -58,7 +59,7 @@ public:
     const double output_angle = motor_angle_ / RATIO - error(motor_angle_, load_torque);
     SignalSample sample;
     sample.stamp = stamp_ += SAMPLE;
-    const double motor_angle = motor_angle_ + ripple(motor_angle_);
+    const double motor_angle = motor_angle_ + ripple(motor_angle_, load_torque, time_);
     sample.motor_angle = quantised ? motor_encoder_.angle(motor_encoder_.count(motor_angle)) : motor_angle;
     sample.output_angle = quantised ? output_encoder_.unwrappedAngle(output_angle) : output_angle;
     sample.motor_velocity = now;
@@ -188,29 +189,101 @@ TEST(SignalMonitor, LeavesOutLinesBeyondHalfTheSamples)
 
 /// Strokes of a joint to and fro, with a ripple of the motor angle: what the third filter leaves of it, and of the
 /// changes of speed, a hundred thousand times as large, nothing.
-TEST(SignalMonitor, FindsTheMotorsRippleBesideChangesOfSpeed)
+class Strokes : public testing::Test
 {
-  constexpr double SPEED = 35.0;   // [rad/s]
-  constexpr double RISE = 0.07;    // [s]
-  constexpr double STROKE = 4.0;   // [s]
-  constexpr double RIPPLE = 5e-5;  // [rad]; a count has 1.5e-3
-  Synthetic joint(shippedParameters({ "indicators.window_turns=150.0" }));
-  joint.speed = [](double time)
+protected:
+  static constexpr double SPEED = 35.0;   // [rad/s]
+  static constexpr double RISE = 0.07;    // [s]
+  static constexpr double STROKE = 4.0;   // [s]
+  static constexpr double RIPPLE = 5e-5;  // [rad]; a count has 1.5e-3
+  // A standard error of a line is 4e-6 rad: 4.2e-4 rad of a count, 20000 samples.
+  static constexpr double TOLERANCE = 1.5e-5;  // [rad]
+
+  Strokes()
   {
-    const double in_stroke = std::fmod(time, STROKE);
-    const double share = std::min({ 1.0, in_stroke / RISE, (STROKE - in_stroke) / RISE });
-    return (std::fmod(time, 2.0 * STROKE) < STROKE ? SPEED : -SPEED) * share;
-  };
-  joint.ripple = [&](double angle) { return RIPPLE * joint.line(Line::INNER, 1.0, 0.3, angle); };
-  const SignalIndicators& found = joint.nextWindow();
-  const double filtered = joint.orders[index(Line::INNER)] * SPEED * 0.02;
-  const double left = std::pow(1.0 + 1.0 / (filtered * filtered), -1.5);
-  // A standard error is 4e-6 rad: 4.2e-4 rad of a count, 20000 samples. The filter's lead turns with the direction.
-  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_RIPPLE, Line::INNER), RIPPLE * left * std::cos(3.0 / filtered), 1.5e-5);
+    joint_.speed = [](double time)
+    {
+      const double in_stroke = std::fmod(time, STROKE);
+      const double share = std::min({ 1.0, in_stroke / RISE, (STROKE - in_stroke) / RISE });
+      return (std::fmod(time, 2.0 * STROKE) < STROKE ? SPEED : -SPEED) * share;
+    };
+  }
+
+  double found(Line line) { return joint_.monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, line); }
+
+  /// Of a line's ripple, after the filter: what stays with the motor angle whichever way it turns (first), and what
+  /// changes its sign with the direction, as the filter leads.
+  std::array<double, 2> left(Line line)
+  {
+    const double filtered = joint_.orders[index(line)] * SPEED * 0.02;
+    const double amplitude = std::pow(1.0 + 1.0 / (filtered * filtered), -1.5);
+    const double lead = 3.0 * std::atan(1.0 / filtered);
+    return { amplitude * std::abs(std::cos(lead)), amplitude * std::sin(lead) };
+  }
+
+  Synthetic joint_{ shippedParameters({ "indicators.window_turns=150.0" }) };
+};
+
+TEST_F(Strokes, RippleIsFoundBesideChangesOfSpeed)
+{
+  joint_.ripple = [&](double angle, double, double) { return RIPPLE * joint_.line(Line::INNER, 1.0, 0.3, angle); };
+  joint_.nextWindow();
+  EXPECT_NEAR(found(Line::INNER), RIPPLE * left(Line::INNER)[0], TOLERANCE);
   for (const Line line : { Line::WAVE_GENERATOR_2, Line::CAGE_LOBES, Line::BALL, Line::OUTER, Line::INNER_DOUBLE })
   {
-    EXPECT_LT(found.amplitude(LineSignal::MOTOR_RIPPLE, line), 1.5e-5) << "line " << index(line);
+    EXPECT_LT(found(line), TOLERANCE) << "line " << index(line);
   }
+}
+
+/// What rings on after each change of speed is a hundred times as large as the line, and as fast as order 6.
+TEST_F(Strokes, RippleIsFoundBesideWhatRingsOn)
+{
+  joint_.ripple = [&](double angle, double, double time)
+  {
+    const double since = std::fmod(time, STROKE);
+    return RIPPLE * joint_.line(Line::WAVE_GENERATOR_8, 1.0, 0.3, angle) +
+           5e-3 * std::exp(-since / 0.45) * std::sin(6.0 * SPEED * since);
+  };
+  joint_.nextWindow();
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_8), RIPPLE * left(Line::WAVE_GENERATOR_8)[0], TOLERANCE);
+  for (const Line line : { Line::WAVE_GENERATOR_4, Line::WAVE_GENERATOR_6, Line::BALL, Line::OUTER })
+  {
+    EXPECT_LT(found(line), 2.0 * TOLERANCE) << "line " << index(line);
+  }
+}
+
+TEST_F(Strokes, RippleInProportionToTheLoadIsALineOfItsOwn)
+{
+  const double rated = shippedParameters().life.rated_torque;
+  constexpr double MEAN = 10.0;  // [N.m]
+  joint_.load = [](double time) { return MEAN + 40.0 * std::sin(TWO_PI * time / 7.3); };
+  joint_.ripple = [&](double angle, double load, double)
+  { return 4.0 * RIPPLE * load / rated * joint_.line(Line::WAVE_GENERATOR_6, 1.0, 0.3, angle); };
+  joint_.nextWindow();
+  const auto [stays, turns] = left(Line::WAVE_GENERATOR_6);
+  // The load spreads by 0.4 of the rated torque: the tolerance at that torque is larger by as much.
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6_LOAD), 4.0 * RIPPLE * stays, 2.4 * TOLERANCE);
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6_LOAD_LAG), 4.0 * RIPPLE * turns, 2.4 * TOLERANCE);
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6), 4.0 * RIPPLE * stays * MEAN / rated, TOLERANCE);
+  EXPECT_LT(found(Line::WAVE_GENERATOR_4_LOAD), 2.4 * TOLERANCE);
+  EXPECT_LT(found(Line::WAVE_GENERATOR_8_LOAD), 2.4 * TOLERANCE);
+}
+
+TEST_F(Strokes, ALoadThatStaysShowsNoLineInProportionToIt)
+{
+  joint_.load = [](double) { return 30.0; };
+  joint_.nextWindow();
+  EXPECT_TRUE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD)));
+  EXPECT_FALSE(std::isnan(found(Line::WAVE_GENERATOR_6)));
+}
+
+TEST_F(Strokes, AMotionOneWayShowsNoLag)
+{
+  joint_.speed = [](double) { return SPEED; };
+  joint_.load = [](double time) { return 40.0 * std::sin(TWO_PI * time / 7.3); };
+  joint_.nextWindow();
+  EXPECT_FALSE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD)));
+  EXPECT_TRUE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD_LAG)));
 }
 
 TEST(SignalMonitor, FindsLinesInTheTorque)
@@ -703,13 +776,12 @@ protected:
       put(i, change[i], spread_[i]);
       window.sound[i] = 1.0;  // shares of it are in its unit
     }
-    for (std::size_t s = 0; s < LINE_SIGNALS; ++s)
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
-      for (std::size_t line = 0; line < LINE_COUNT; ++line)
+      for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
       {
-        const auto signal = static_cast<LineSignal>(s);
-        const std::size_t number = SCALAR_COUNT + s * LINE_COUNT + line;
-        if (line < PHASE_LOCKED)
+        const std::size_t number = signatureNumber(signal, line);
+        if (isPhaseLocked(line))
         {
           const double phase = TWO_PI * phase_(random_);
           put(cosineIndex(signal, line), change[number] * std::cos(phase), spread_[number]);

@@ -11,7 +11,7 @@ sys.path.insert(0, tool.CHECKOUT + "/scripts")
 import health_signatures  # noqa: E402  (after its folder)
 
 ARCSEC = math.pi / 180.0 / 3600.0
-SMALL_WINDOWS = ["--set", "indicators.window_turns=20.0", "--set", "indicators.baseline_windows=8"]
+SMALL_WINDOWS = ["--set", "indicators.window_turns=25.0", "--set", "indicators.baseline_windows=8"]
 
 
 def recording(line_after=None, seconds=30.0, rate=500.0, line=4.0):

@@ -72,7 +72,13 @@ FeatureScores featureScores(const Deviations& deviations) noexcept;
 
 /// Numbers of a signature: the scalar indicators, then the amplitudes of each signal's lines. Of a line whose phase
 /// stays the amplitude is the length of its change: the phase depends on the fault's place.
-constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * LINE_COUNT;
+constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * FIRST_LOADED + LOADED_COUNT;
+
+constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< hasLine
+{
+  return SCALAR_COUNT + static_cast<std::size_t>(signal) * FIRST_LOADED + line;
+}
+static_assert(signatureNumber(LineSignal::MOTOR_RIPPLE, LINE_COUNT) == SIGNATURE_SIZE);
 
 /// Whether a signature gives a change as a share of the sound value: stiffness and play go with the size of the cup,
 /// and thicker grease multiplies the friction there is.

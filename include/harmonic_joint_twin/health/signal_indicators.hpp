@@ -42,21 +42,30 @@ inline constexpr std::array ALL_LINE_SIGNALS{ LineSignal::KINEMATIC_ERROR, LineS
                                               LineSignal::MOTOR_RIPPLE };
 constexpr std::size_t LINE_SIGNALS = ALL_LINE_SIGNALS.size();
 
+/// Lines in proportion to the load are sought in the ripple alone: torsion and current show less of them than noise.
+constexpr bool hasLine(LineSignal signal, std::size_t line)
+{
+  return line < FIRST_LOADED || signal == LineSignal::MOTOR_RIPPLE;
+}
+
 constexpr auto SCALAR_COUNT = static_cast<std::size_t>(ScalarIndicator::COUNT);
-constexpr std::size_t LINE_BLOCK = LINE_COUNT + 2 * PHASE_LOCKED;
-constexpr std::size_t INDICATOR_COUNT = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;
+constexpr std::size_t LINE_BLOCK = FIRST_LOADED + 2 * FIRST_LOCKED;
+constexpr std::size_t LOADED_BLOCK = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;  ///< where it begins
+constexpr std::size_t INDICATOR_COUNT = LOADED_BLOCK + 3 * LOADED_COUNT;
 
 constexpr std::size_t indexOf(ScalarIndicator indicator)
 {
   return static_cast<std::size_t>(indicator);
 }
-constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< hasLine
 {
-  return SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line;
+  return line < FIRST_LOADED ? SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line :
+                               LOADED_BLOCK + line - FIRST_LOADED;
 }
-constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< line < PHASE_LOCKED
+constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< hasLine, isPhaseLocked
 {
-  return amplitudeIndex(signal, LINE_COUNT + 2 * line);
+  return line < FIRST_LOADED ? amplitudeIndex(signal, 0) + FIRST_LOADED + 2 * line :
+                               LOADED_BLOCK + LOADED_COUNT + 2 * (line - FIRST_LOADED);
 }
 constexpr std::size_t sineIndex(LineSignal signal, std::size_t line)
 {
@@ -66,8 +75,9 @@ constexpr std::size_t sineIndex(LineSignal signal, std::size_t line)
 /// Whether it is the amplitude of a line whose phase is free.
 constexpr bool isFreeAmplitude(std::size_t indicator)
 {
-  return indicator >= SCALAR_COUNT && (indicator - SCALAR_COUNT) % LINE_BLOCK >= PHASE_LOCKED &&
-         (indicator - SCALAR_COUNT) % LINE_BLOCK < LINE_COUNT;
+  return indicator >= SCALAR_COUNT && indicator < LOADED_BLOCK &&
+         (indicator - SCALAR_COUNT) % LINE_BLOCK >= FIRST_LOCKED &&
+         (indicator - SCALAR_COUNT) % LINE_BLOCK < FIRST_LOADED;
 }
 
 /// Snake case, as in Indicators.msg: "torsional_stiffness", "error_wave_generator_2", "torque_wave_generator_2_cos".

@@ -8,9 +8,13 @@
 
 namespace hjt
 {
-/// Lines by cycles per turn of the motor, flexspline held, circular spline turning. The first PHASE_LOCKED of them
-/// follow from the two angles alone, so that their phase stays from window to window; rolling elements creep, theirs
-/// does not.
+/// Lines by cycles per turn of the motor, flexspline held, circular spline turning. Those that isPhaseLocked follow
+/// from the two angles alone, so that their phase stays from window to window; rolling elements creep, theirs does not.
+///
+/// A cracked tooth or rim gives way under load alone, to the side that the load pushes it to: its line changes sign
+/// with the load and vanishes in the mean of a motion through both. The share of a line that is in proportion to the
+/// load, as it is at the rated torque, is therefore a line of its own, from FIRST_LOADED on. A share that lags in time
+/// behind its cause also changes sign with the direction; that is another one.
 enum class Line : std::size_t
 {
   WAVE_GENERATOR_1,  ///< once a turn: eccentric wave generator
@@ -31,10 +35,25 @@ enum class Line : std::size_t
   OUTER_ABOVE,
   INNER,  ///< balls over a place of the inner race, which stands still against the lobes: no lines beside it
   INNER_DOUBLE,
+  WAVE_GENERATOR_4_LOAD,  ///< in proportion to the load
+  WAVE_GENERATOR_6_LOAD,
+  WAVE_GENERATOR_8_LOAD,
+  WAVE_GENERATOR_4_LOAD_LAG,  ///< and to the sign of the speed
+  WAVE_GENERATOR_6_LOAD_LAG,
+  WAVE_GENERATOR_8_LOAD_LAG,
   COUNT
 };
 constexpr auto LINE_COUNT = static_cast<std::size_t>(Line::COUNT);
-constexpr std::size_t PHASE_LOCKED = 6;
+constexpr auto FIRST_LOADED = static_cast<std::size_t>(Line::WAVE_GENERATOR_4_LOAD);
+constexpr std::size_t LOADED_ORDERS = 3;  ///< those of the lines from WAVE_GENERATOR_4 on
+constexpr std::size_t LOADED_COUNT = 2 * LOADED_ORDERS;
+constexpr std::size_t FIRST_LOCKED = 6;  ///< so many of those without load
+static_assert(FIRST_LOADED + LOADED_COUNT == LINE_COUNT);
+
+constexpr bool isPhaseLocked(std::size_t line)
+{
+  return line < FIRST_LOCKED || line >= FIRST_LOADED;
+}
 
 constexpr std::size_t index(Line line)
 {

@@ -227,7 +227,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
   const MotionReach& reach = comparison.evidence().reach();
   Json orders;
   const LineOrders tracked = trackedOrders(parameters.gear, parameters.bearing);
-  for (std::size_t i = 0; i < LINE_COUNT; ++i)
+  for (std::size_t i = 0; i < FIRST_LOADED; ++i)
   {
     const std::string name = indicatorName(amplitudeIndex(LineSignal::MOTOR_TORQUE, i));
     orders[name.substr(std::string("torque_").size())] = tracked[i];
