@@ -209,10 +209,7 @@ protected:
     };
   }
 
-  double found(Line line) const
-  {
-    return joint_.monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, line);
-  }
+  double found(Line line) const { return joint_.monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, line); }
 
   /// Of a line's ripple, after the filter: what stays with the motor angle whichever way it turns (first), and what
   /// changes its sign with the direction, as the filter leads.
