@@ -24,10 +24,8 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
 SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis_area"]
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
-THRESHOLD = 4.5       # of an indicator's score, as shipped
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
-SOUND_STRENGTHS = [0.0, 0.5, 1.0]
 
 Table = collections.namedtuple("Table", "causes motions severities changes")  # a row each
 # Of the law in fault_signatures.hpp, by its letters: r e l b.
@@ -125,8 +123,7 @@ def table_of(layout, kinds, found):
 
 
 class Hypotheses:
-    """What a window says of a sound drive, of every row of the table and of what is in none; the law is in
-    fault_signatures.hpp."""
+    """What a window says of every row of the table and of what is in none; the law is in fault_signatures.hpp."""
 
     def __init__(self, layout, window, table):
         number, phase, line, residual = zip(*layout.terms(window))
@@ -140,17 +137,15 @@ class Hypotheses:
         change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], sound, 1.0)
         free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
         change = numpy.where(free, amplitude_change(sound, change), change)
-        sound_rows, unknown_rows = len(SOUND_STRENGTHS), len(UNKNOWN_STRENGTHS)
-        self.change = numpy.pad(change, [(sound_rows, unknown_rows), (0, 0)])
-        self.severity = numpy.pad(table.severities, (sound_rows, unknown_rows))
-        self.faults = slice(sound_rows, sound_rows + len(table.severities))
+        self.rows = len(table.severities)
+        self.change = numpy.pad(change, [(0, len(UNKNOWN_STRENGTHS)), (0, 0)])
+        self.severity = numpy.pad(table.severities, (0, len(UNKNOWN_STRENGTHS)))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
         self.left = difference - numpy.where(phase, 0.0, self.change)
 
     def log_likelihoods(self, errors):
         strength = self.square * errors.length ** 2
-        strength[:self.faults.start] = numpy.square(SOUND_STRENGTHS)
-        strength[self.faults.stop:] = numpy.square(UNKNOWN_STRENGTHS)
+        strength[self.rows:] = numpy.square(UNKNOWN_STRENGTHS)
         variance = self.own * (1.0 + strength[:, None])
         variance += numpy.where(self.phase, 0.5, errors.number ** 2) * self.change ** 2
         variance += (errors.line * self.severity[:, None]) ** 2 * self.line
@@ -164,36 +159,31 @@ class Hypotheses:
                        numpy.log1p(numpy.maximum(square, 0.0) / self.freedom))
 
     def posterior(self, errors):
-        """(probability by cause, severity by cause, log odds against a sound drive)."""
+        """(probability by cause, severity by cause)."""
         found = self.log_likelihoods(errors)
-        likelihoods = numpy.exp(found - found.max())
-        rows = likelihoods[self.faults]
         names = list(dict.fromkeys(self.table.causes))
-        odds = (math.log(max(numpy.mean([numpy.mean(rows[self.causes == cause]) for cause in names]), 1e-300))
-                - math.log(max(numpy.mean(likelihoods[:self.faults.start]), 1e-300)))
         weights = numpy.exp(errors.weight * (found - found.max()))
-        faults = weights[self.faults]
+        faults = weights[:self.rows]
         means = {cause: numpy.mean(faults[self.causes == cause]) for cause in names}
         severity = {cause: numpy.average(self.table.severities[self.causes == cause],
                                          weights=faults[self.causes == cause] + 1e-300) for cause in names}
-        means["none"] = numpy.mean(weights[self.faults.stop:])
+        means["none"] = numpy.mean(weights[self.rows:])
         total = sum(means.values())
-        return {cause: mean / total for cause, mean in means.items()}, severity, odds
+        return {cause: mean / total for cause, mean in means.items()}, severity
 
 
 def calibration_windows(bench):
-    """(kind, severity, window as the tool reports it) of faulty and sound runs of other gears."""
+    """(kind, severity, window as the tool reports it) of faulty runs of other gears."""
     drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     found = []
     for trial in CALIBRATED:
         for motion in trial.motions:
             bags = bench.faulty(trial, motion, drawn)
-            bags += bench.sound("sound_calibrated", trial.gear, motion, drawn, 20, 4)
             report = bench.indicators([bag for bag, _ in bags],
                                       ["--baseline", bench.reference(trial.gear, motion), *ONCE])
             rows = {str(bag): row for bag, row in bags}
-            found += [(rows[window["recording"]]["class"], float(rows[window["recording"]]["fault_severity"] or 0.0),
-                       window) for window in report["windows"] if window["assessment"]["state"] == "assessed"]
+            found += [(rows[window["recording"]]["class"], float(rows[window["recording"]]["fault_severity"]), window)
+                      for window in report["windows"]]
     return found
 
 
@@ -201,12 +191,8 @@ Alarm = collections.namedtuple("Alarm", "kind severity hypotheses")
 
 
 def alarms_of(layout, windows, table):
-    """Of the faulty windows: those with an indicator beyond the threshold, or the odds of a fault at START."""
-    found = [(Alarm(kind, severity, Hypotheses(layout, window, table)), window)
-             for kind, severity, window in windows if kind != "healthy"]
-    return [alarm for alarm, window in found
-            if any(abs(score) > THRESHOLD for score in window["scores"].values() if score)
-            or alarm.hypotheses.posterior(START)[2] > math.log(1000.0)]
+    return [Alarm(kind, severity, Hypotheses(layout, window, table)) for kind, severity, window in windows
+            if window["assessment"]["level"] != "OK"]
 
 
 def loss(alarms, errors):
@@ -241,7 +227,7 @@ def severity_error(alarms, errors):
     """Of the estimate, as a share of it, rms over the alarms with the right cause."""
     shares_off = []
     for alarm in alarms:
-        probability, severity, _ = alarm.hypotheses.posterior(errors)
+        probability, severity = alarm.hypotheses.posterior(errors)
         if max(probability, key=probability.get) == alarm.kind:
             shares_off.append(1.0 - alarm.severity / severity[alarm.kind])
     return math.sqrt(numpy.mean(numpy.square(shares_off)))

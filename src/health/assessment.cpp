@@ -22,7 +22,6 @@ const char* levelName(HealthLevel level) noexcept
 Assessor::Assessor(const Parameters& parameters)
   : least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
   , error_factor_(parameters.indicators.error_factor)
-  , log_odds_threshold_(-std::log(parameters.indicators.false_alarm_rate))
   , baseline_(parameters)
 {
 }
@@ -52,15 +51,9 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
       break;
   }
   assessment_.state = AssessmentState::ASSESSED;
-  const FeatureScores plain = featureScores(deviations_.plain);
-  const FeatureScores conditional = featureScores(deviations_.conditional);
-  assessment_.shows_play = plain[static_cast<std::size_t>(Feature::LOST_MOTION)].compared;
-  const CausePosterior posterior = causePosterior(baseline_.residual());
-  assessment_.largest_score = std::max(posterior.log_odds / log_odds_threshold_, 0.0);
-  const HealthLevel odds = posterior.log_odds > log_odds_threshold_ ? HealthLevel::WARN : HealthLevel::OK;
-  const HealthLevel level = levelOf(plain);
-  const HealthLevel given_others = levelOf(conditional);
-  updateLevel(std::max({ level, given_others, odds }));
+  const FeatureScores scores = featureScores(deviations_);
+  assessment_.shows_play = scores[static_cast<std::size_t>(Feature::LOST_MOTION)].compared;
+  updateLevel(levelOf(scores));
   if (assessment_.level == HealthLevel::OK)
   {
     assessment_.cause = Cause::NONE;
@@ -72,10 +65,8 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   }
   else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
-    explain(posterior);
-    const bool by_itself = level != HealthLevel::OK || given_others == HealthLevel::OK;
-    by_itself ? listEvidence(indicators, plain, deviations_.plain) :
-                listEvidence(indicators, conditional, deviations_.conditional);
+    explain(causePosterior(baseline_.residual()));
+    listEvidence(indicators, scores);
   }
   return assessment_;
 }
@@ -89,7 +80,7 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
     largest = std::max(largest, std::abs(feature.score));
     factor = std::max(factor, feature.threshold_factor);
   }
-  assessment_.largest_score = std::max(assessment_.largest_score, largest / baseline_.threshold());
+  assessment_.largest_score = largest / baseline_.threshold();
   if (largest <= baseline_.threshold())
   {
     return HealthLevel::OK;
@@ -159,23 +150,21 @@ void Assessor::explain(const CausePosterior& posterior) noexcept
   }
 }
 
-/// Those beyond the threshold; if the odds alone are beyond theirs, the strongest.
-void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores,
-                            const Deviations& deviations) noexcept
+/// Those beyond the threshold.
+void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
 {
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;
   std::sort(sorted.begin(), sorted.end(),
             [](const FeatureScore& a, const FeatureScore& b) { return std::abs(a.score) > std::abs(b.score); });
-  const double least = std::abs(sorted.front().score) > baseline_.threshold() ? baseline_.threshold() : 0.0;
   assessment_.evidence_count = 0;
   for (const FeatureScore& feature : sorted)
   {
-    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= least)
+    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
     {
       break;
     }
     assessment_.evidence[assessment_.evidence_count++] = { feature.indicator, indicators.values[feature.indicator],
-                                                           deviations[feature.indicator].expected, feature.score };
+                                                           deviations_[feature.indicator].expected, feature.score };
   }
 }
 }  // namespace hjt

@@ -28,6 +28,7 @@ constexpr int MIN_COUNT = 8;         // windows before a spread means anything; 
 constexpr int MIN_STEPS = 8;         // pairs of windows before what they differ by means anything
 constexpr std::size_t TRIMMED = 5;   // one of so many is left out at either end
 constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
+constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
 
 int stepOf(double value, double step) noexcept
 {
@@ -159,7 +160,7 @@ Baseline::Baseline(const Parameters& parameters)
   , least_spread_(parameters.indicators.least_spread)
   , load_step_(hjt::loadStep(parameters))
 {
-  const double share = parameters.indicators.false_alarm_rate / static_cast<double>(4 * INDICATOR_COUNT);
+  const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / std::exp2(parameters.sensors.output_bits));
@@ -284,7 +285,7 @@ void fitReference(ReferenceBin& bin) noexcept
 }
 
 BaselineState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
-                               WindowDeviations& deviations) noexcept
+                               Deviations& deviations) noexcept
 {
   deviations = {};
   residual_ = {};
@@ -369,11 +370,13 @@ void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) cons
   }
 }
 
-double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, double error_square, double left,
-                          double widening) const noexcept
+double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
+                          const Widening& widening) const noexcept
 {
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
-  return std::max(left, error_square) * widening + least * least + floor_[indicator] * floor_[indicator];
+  const double square = std::max(left, average.error_square);
+  return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
+         least * least + floor_[indicator] * floor_[indicator];
 }
 
 Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
@@ -423,6 +426,7 @@ void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators,
 Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept
 {
   std::array<double, MAX_EVIDENCE> differences;  // of which the first `found` count
+  std::array<double, MAX_EVIDENCE> steps;        // half the square from each to the next
   std::size_t found = 0;
   Average average;
   for (std::size_t i = first; i < first + count; ++i)
@@ -430,6 +434,11 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
     const double difference = compared_[i].difference[indicator];
     if (std::isfinite(difference))
     {
+      if (found > 0)
+      {
+        const double step = difference - differences[found - 1];
+        steps[found - 1] = 0.5 * step * step;
+      }
       differences[found++] = difference;
       average.error_square += compared_[i].error[indicator] * compared_[i].error[indicator];
     }
@@ -444,18 +453,20 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
                                      differences.begin() + static_cast<std::ptrdiff_t>(found - left_out), 0.0);
   average.difference = sum / static_cast<double>(found - 2 * left_out);
   average.error_square /= static_cast<double>(found);
+  if (found > JUMPS + 1)
+  {
+    const std::size_t used = found - 1 - JUMPS;
+    std::sort(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(found - 1));
+    average.scatter_square = std::accumulate(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(used), 0.0) /
+                             static_cast<double>(used);
+  }
   average.weight = static_cast<double>(found - left_out);
   return average;
 }
 
-void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t count,
-                       WindowDeviations& deviations) noexcept
+void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept
 {
-  // Woodbury's identity: C^-1 = D^-1 - D^-1 F (1 + F' D^-1 F)^-1 F' D^-1, F with a row for each indicator.
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
-  Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES> inner;
-  inner.setIdentity();
-  Causes projected = Causes::Zero();
   double causes = 0.0;
   double freedoms = 0.0;
   double compared = 0.0;
@@ -478,47 +489,21 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const double fitted = reference.fitted ? PLACES : 0.0;
     const double freedom = std::max(persistence.independent * n - 1.0 - fitted, 1.0);
     const double h = (1.0 / n + (reference.fitted ? leverage : 0.0)) / persistence.independent;
-    const double widening = persistence.stays + (1.0 - persistence.stays) / average.weight + h;
+    const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight };
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;
-    deviations.plain[i] =
-        deviation(average.difference, expected_[i],
-                  std::sqrt(variance(i, bin, average.error_square, reference.variance, widening)), freedom);
+    deviations[i] = deviation(average.difference, expected_[i],
+                              std::sqrt(variance(i, bin, average, reference.variance, widening)), freedom);
     const Causes common = Eigen::Map<const Causes>(reference.common.data());
     const double found = static_cast<double>((common.array() != 0.0).count());
     const double left =
         std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, average.error_square, left * reference.variance, widening);
-    if (residual_.own[i] > 0.0)
-    {
-      Eigen::Map<Causes> row(residual_.common[i].data());
-      row = std::sqrt(reference.variance * widening) * common;
-      inner += row * row.transpose() / residual_.own[i];
-      projected += row * (residual_.difference[i] / residual_.own[i]);
-    }
+    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening);
+    Eigen::Map<Causes>(residual_.common[i].data()) =
+        std::sqrt(reference.variance * (widening.stays + widening.varies)) * common;
   }
   residual_.freedom = compared > 0.0 ? std::max(freedoms / compared - causes, 1.0) : 0.0;
-  if (causes == 0.0)
-  {
-    return;
-  }
-  inner = inner.inverse().eval();
-  const Causes explained = inner * projected;
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    const double own = residual_.own[i];
-    if (own > 0.0)
-    {
-      const Eigen::Map<const Causes> row(residual_.common[i].data());
-      const double weighted = (residual_.difference[i] - row.dot(explained)) / own;  // of C^-1 (x - m)
-      const double precision = (1.0 - row.dot(inner * row) / own) / own;             // of C^-1
-      const double spread = 1.0 / std::sqrt(precision);
-      const double unexpected = weighted / precision;
-      const double expected = deviations.plain[i].expected + (residual_.difference[i] - unexpected);
-      deviations.conditional[i] = deviation(unexpected, expected, spread, residual_.freedom);
-    }
-  }
 }
 }  // namespace hjt

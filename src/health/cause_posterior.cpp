@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Dense>
@@ -17,7 +18,6 @@ using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
 
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
-constexpr std::array SOUND_STRENGTHS{ 0.0, 0.5, 1.0 };             // of what a sound drive differs by
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
@@ -125,21 +125,6 @@ public:
            (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
   }
 
-  /// As likely with the reference's spreads as with larger ones: each of a hundred is known from some tens of windows.
-  double soundLogLikelihood() const noexcept
-  {
-    std::array<double, SOUND_STRENGTHS.size()> logarithms{};
-    std::transform(SOUND_STRENGTHS.begin(), SOUND_STRENGTHS.end(), logarithms.begin(),
-                   [this](double strength) { return logLikelihood(nullptr, strength); });
-    const double largest = *std::max_element(logarithms.begin(), logarithms.end());
-    double sum = 0.0;
-    for (const double logarithm : logarithms)
-    {
-      sum += std::exp(logarithm - largest);
-    }
-    return largest + std::log(sum / static_cast<double>(logarithms.size()));
-  }
-
 private:
   static double changeBy(const Signature& signature, const Term& term) noexcept
   {
@@ -178,13 +163,11 @@ struct Sum
   {
     const double weight = std::exp(EVIDENCE_WEIGHT * logarithm);
     ++rows;
-    likelihood += std::exp(logarithm);
     total += weight;
     first += weight * severity;
     second += weight * severity * severity;
   }
   double rows{};
-  double likelihood{};
   double total{};   // by the weight of the evidence
   double first{};   // of the severity
   double second{};  // of its square
@@ -194,10 +177,9 @@ struct Sum
 CausePosterior causePosterior(const WindowResidual& residual) noexcept
 {
   const Terms terms(residual);
-  const double sound = terms.soundLogLikelihood();
   std::array<double, std::size(FITTED_SIGNATURES)> likelihoods{};
   std::array<double, UNKNOWN_STRENGTHS.size()> unknown{};
-  double largest = sound;
+  double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < likelihoods.size(); ++i)
   {
     likelihoods[i] = terms.logLikelihood(&FITTED_SIGNATURES[i], 0.0);
@@ -221,7 +203,6 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
   }
   CausePosterior posterior;
   double all = 0.0;
-  double faults = 0.0;
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
     const Sum& sum = sums[cause];
@@ -229,14 +210,12 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
     {
       posterior.probability[cause] = sum.total / sum.rows;
       all += posterior.probability[cause];
-      faults += cause != static_cast<std::size_t>(Cause::NONE) ? sum.likelihood / sum.rows : 0.0;
       posterior.severity[cause] = sum.first / sum.total;
       const double mean = posterior.severity[cause];
       const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
       posterior.severity_deviation[cause] = std::sqrt(square + SEVERITY_ERROR * SEVERITY_ERROR * mean * mean);
     }
   }
-  posterior.log_odds = std::log(faults / static_cast<double>(CAUSE_COUNT - 1)) + largest - sound;
   for (double& probability : posterior.probability)
   {
     probability /= all;

@@ -36,7 +36,7 @@ COLUMNS = ["--time", "t", "--motor-angle", "theta", "--output-angle", "phi", "--
 
 class Indicators(tool.ToolTest):
     def test_a_line_that_appears_is_found_and_named(self):
-        self.write("a.csv", recording(line_after=20.0))
+        self.write("a.csv", recording(line_after=20.0, seconds=40.0))
         report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--out", "windows.csv")
         # Lines begin once the motion is known to be calm: the first window has too few turns for orders 2 and 1.98.
         first, last = report["windows"][1], report["windows"][-1]
@@ -65,17 +65,19 @@ class Indicators(tool.ToolTest):
             pathlib.Path(tool.CHECKOUT) / "src" / "health" / "fitted_signatures.hpp")
         self.write("healthy.csv", recording())
         self.succeed("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
-        for line in (0.2, 4.0):
+        for line in (1.0, 4.0):
             self.write("faulty.csv", recording(line_after=0.0, seconds=12.0, line=line))
-            for window in self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline",
-                                            "b.yaml", "--set", "indicators.evidence_windows=1", "--set",
-                                            "indicators.false_alarm_rate=1e-3")["windows"]:
+            windows = self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml",
+                                        "--set", "indicators.evidence_windows=1", "--set",
+                                        "indicators.false_alarm_rate=1e-3")["windows"]
+            alarms = [window for window in windows if window["assessment"]["level"] != "OK"]
+            self.assertTrue(alarms)
+            for window in alarms:
                 layout = health_signatures.Layout(window["indicators"])
-                probability, _, log_odds = health_signatures.Hypotheses(layout, window, table).posterior(errors)
+                probability, _ = health_signatures.Hypotheses(layout, window, table).posterior(errors)
                 found = window["assessment"]
                 self.assertEqual(found["cause"], max(probability, key=probability.get))
                 self.assertAlmostEqual(found["confidence"], probability[found["cause"]], delta=1e-6)
-                self.assertGreaterEqual(found["largest_score"], 0.99999 * log_odds / math.log(1e3))
 
     def test_what_a_model_shows_too_is_taken_off(self):
         self.write("a.csv", recording(line_after=0.0, seconds=12.0))

@@ -71,12 +71,10 @@ struct Assessment
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
 /// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator beyond the baseline's
-/// threshold, by itself or given all others; or odds of any fault of the table against none of
-/// 1 / indicators.false_alarm_rate, which sound windows of the reference's distribution exceed no more often than at
-/// this rate (Markov's inequality). ERROR: an indicator beyond indicators.error_factor times the threshold. The level
-/// rises after three such means in a row, each of three windows at least, that show the higher level. It falls after
-/// three that show a lower one at the operating point that last showed the level. With indicators.evidence_windows
-/// below three, that many do. While the operating point has no reference, the last verdict stands.
+/// threshold. ERROR: beyond indicators.error_factor times the threshold. The level rises
+/// after three such means in a row, each of three windows at least, that show the higher level. It falls after three
+/// that show a lower one at the operating point that last showed the level. With indicators.evidence_windows below
+/// three, that many do. While the operating point has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -90,20 +88,18 @@ public:
 
   const Assessment& assessment() const noexcept { return assessment_; }
   const Baseline& baseline() const noexcept { return baseline_; }
-  const Deviations& deviations() const noexcept { return deviations_.plain; }  ///< of the last window
+  const Deviations& deviations() const noexcept { return deviations_; }  ///< of the last window
 
 private:
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
   void updateLevel(HealthLevel level) noexcept;
   void explain(const CausePosterior& posterior) noexcept;
-  void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores,
-                    const Deviations& deviations) noexcept;
+  void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
 
   const int least_windows_;
   const double error_factor_;
-  const double log_odds_threshold_;
   Baseline baseline_;
-  WindowDeviations deviations_;
+  Deviations deviations_;
   Assessment assessment_;
   OperatingBin shown_in_;  // class that the level was last seen in
   int worse_{};            // windows in a row that say worse than the level

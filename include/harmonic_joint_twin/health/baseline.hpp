@@ -108,13 +108,6 @@ struct Deviation
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 
-/// All indicators of a window against their references.
-struct WindowDeviations
-{
-  Deviations plain;        ///< each by itself
-  Deviations conditional;  ///< each given all others: what the common causes explain is none
-};
-
 /// What an amplitude changes by, as a nearly normal number. An amplitude of noise alone is Rayleigh's, whose tail is
 /// far longer than the normal one; that of its power 2/3 is not (Wilson and Hilferty 1931).
 ///
@@ -122,7 +115,8 @@ struct WindowDeviations
 /// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-/// What the last windows of a class differ from their reference by, and what sound ones differ by: covariance D + F F'.
+/// What the last windows of a class differ from their reference by, and what sound ones differ by: covariance D + F F',
+/// F  Reference::common times the reference's share of a score's spread, D  that spread squared, of what F leaves.
 struct WindowResidual
 {
   int windows{};                                     ///< that were averaged [-]
@@ -144,26 +138,23 @@ enum class BaselineState : std::uint8_t
 /// trimmed mean over the last indicators.evidence_windows windows of a class: a fifth of them, one at least of three or
 /// more, is left out at either end.
 ///
-/// Law:   t = mean(x - m - b (z - z_0)) / sqrt(max(s^2, u^2) (r + (1 - r) / k + h) + (f m)^2 + q^2)
+/// Law:   t = mean(x - m - b (z - z_0)) / sqrt(p (r + h) + max(p (1 - r), w^2) / k + (f m)^2 + q^2),  p = max(s^2, u^2)
 ///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - PLACES, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
 ///                 leave, by least squares;  L  inverse of the places' sums of squares
 ///        h        (1/n + (z - z_0)' L (z - z_0)) / e: grows beyond what was learned
 ///        k        windows averaged, less those left out at one end
+///        w^2      half the mean square of what they differ by, each from the next, without the two largest: of more than
+///                 three windows
 ///        r        share of s^2 that stays from one window to the next: 1 less half the mean square of what successive
 ///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
 ///                 r' as r, less the error; 1 if none followed another
 ///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
 ///          0.3 for kurtosis, 0.5 for crest
-/// Given the others, with what moves all of them together:
-///        t_i = (C^-1 d)_i / sqrt((C^-1)_ii),  C = D + F F',  of the mean v less columns of F;  d  numerators as above
-/// where  F    Reference::common times s sqrt(r + (1 - r) / k + h);  D  diagonal: variance as above, of what F leaves
-///             of s
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
-/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators in both ways, two-sided
-/// (Bonferroni).
+/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
 class Baseline
 {
 public:
@@ -179,7 +170,7 @@ public:
 
   /// `model`: indicators of a model that were subtracted from these; nullptr: none were.
   BaselineState update(const SignalIndicators& indicators, const SignalIndicators* model,
-                       WindowDeviations& deviations) noexcept;
+                       Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
   const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
@@ -210,7 +201,15 @@ private:
   {
     double difference{};
     double error_square{};
-    double weight{};  // k
+    double scatter_square{};  // w^2
+    double weight{};          // k
+  };
+
+  /// Of the reference's variance: what stays from window to window, and what is left of the rest in a mean.
+  struct Widening
+  {
+    double stays{};
+    double varies{};
   };
 
   ReferenceBin* find(const OperatingBin& bin) noexcept;
@@ -220,10 +219,10 @@ private:
             Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
   /// Of a difference; `left`: of the reference [unit of the indicator squared].
-  double variance(std::size_t indicator, const ReferenceBin& bin, double error_square, double left,
-                  double widening) const noexcept;
+  double variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
+                  const Widening& widening) const noexcept;
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
-  void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, WindowDeviations& deviations) noexcept;
+  void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
 
   const int windows_;
   const std::size_t evidence_windows_;

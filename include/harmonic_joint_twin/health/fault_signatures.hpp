@@ -136,7 +136,6 @@ std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double
 /// What a window says of the causes.
 struct CausePosterior
 {
-  double log_odds{};  ///< of any fault of the table against none, natural [-]
   /// Given that something is wrong; of NONE: that it is nothing of the table [-]
   std::array<double, CAUSE_COUNT> probability{};
   std::array<double, CAUSE_COUNT> severity{};            ///< mean, given the cause [-]
@@ -154,8 +153,7 @@ struct CausePosterior
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
-/// The odds are of b = 1.
-/// No fault: mu = 0, e S = 0, 0.5 or 1, as likely. Something else: mu = 0, e S = 3, 10, 30, 100.
+/// Something of no signature: mu = 0, e S = 3, 10, 30, 100.
 /// Does not allocate.
 CausePosterior causePosterior(const WindowResidual& residual) noexcept;
 }  // namespace hjt
