@@ -145,7 +145,7 @@ enum class BaselineState : std::uint8_t
 ///                 leave, by least squares;  L  inverse of the places' sums of squares
 ///        h        (1/n + (z - z_0)' L (z - z_0)) / e: grows beyond what was learned
 ///        k        windows averaged, less those left out at one end
-///        w^2      half the mean square of what they differ by, each from the next, without the two largest: of more than
+///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
 ///                 three windows
 ///        r        share of s^2 that stays from one window to the next: 1 less half the mean square of what successive
 ///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
