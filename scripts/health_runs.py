@@ -39,9 +39,9 @@ SEAM = Motion("seam", "seam", 20.0, True, [(35, 45), (15, 25), (40, 70), (-30, 5
 LOADING = Motion("loading", "loading", 20.0, True, [(40, 60), (-15, 110), (10, 35), (-45, 80)])
 SORTING = Motion("sorting", "sorting", 20.0, True, [(-30, 80), (10, 55), (-5, 95), (45, 65)])
 TENDING = Motion("tending", "tending", 20.0, True, [(55, 105), (5, 60), (-35, 85), (15, 45)])
-GLUING = Motion("gluing", "gluing", 20.0, True, [(20, 30), (50, 50), (-20, 45), (10, 25)])
-ASSEMBLY = Motion("assembly", "assembly", 20.0, True, [(-35, 75), (-5, 100), (40, 85), (20, 30)])
-POLISHING = Motion("polishing", "polishing", 20.0, True, [(15, 60), (-25, 65), (30, 90), (-40, 40)])
+SCREWDRIVING = Motion("screwdriving", "screwdriving", 20.0, True, [(-15, 80), (25, 40), (5, 90), (-40, 60)])
+INSPECTION = Motion("inspection", "inspection", 20.0, True, [(45, 35), (-5, 70), (30, 110), (-30, 50)])
+KITTING = Motion("kitting", "kitting", 20.0, True, [(-20, 100), (15, 30), (50, 75), (-45, 120)])
 
 WORK_WINDOWS = 12         # of a run at work with a fault
 SOUND_WINDOWS = 30        # of one without
@@ -107,13 +107,13 @@ CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, STACKING, turn(33)], [0.25, 
               Trial("calibrated", drawn(704), [CHECK_UP, turn(60)], [0.2, 0.5], 150, 33),
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5),
               Trial("calibrated", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
-JUDGED = [Trial("judged", drawn(840), [CHECK_UP, at_work(GLUING)], [0.2, 0.5], 22, 71),
-          Trial("judged", drawn(841), [CHECK_UP, at_work(ASSEMBLY)], [0.2, 0.5], 73, 72),
-          Trial("judged", drawn(842), [CHECK_UP, at_work(POLISHING)], [0.2, 0.5], 121, 73),
-          Trial("judged", drawn(843), [CHECK_UP, at_work(turn(70))], [0.2, 0.5], 166, 74),
-          Trial("judged", uneven(4181), [CHECK_UP], [0.2, 0.5], 50, 75),
-          Trial("judged", uneven(28657), [CHECK_UP], [0.2, 0.5], 185, 76)]
-SERIES_FIRST = 122  # gears of lower numbers were looked at while the assessment was made
+JUDGED = [Trial("judged", drawn(850), [CHECK_UP, at_work(SCREWDRIVING)], [0.2, 0.5], 31, 81),
+          Trial("judged", drawn(851), [CHECK_UP, at_work(INSPECTION)], [0.2, 0.5], 88, 82),
+          Trial("judged", drawn(852), [CHECK_UP, at_work(KITTING)], [0.2, 0.5], 140, 83),
+          Trial("judged", drawn(853), [CHECK_UP, at_work(turn(80))], [0.2, 0.5], 177, 84),
+          Trial("judged", uneven(6765), [CHECK_UP], [0.2, 0.5], 12, 85),
+          Trial("judged", uneven(46368), [CHECK_UP], [0.2, 0.5], 133, 86)]
+SERIES_FIRST = 130  # gears of lower numbers were looked at while the assessment was made
 SERIES_MOTIONS = [at_work(motion) for motion in (PICK_AND_PLACE, SEAM, TENDING, SORTING)]  # one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, at_work(PICK_AND_PLACE)], [0.5], 60, 5)]
 

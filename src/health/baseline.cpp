@@ -5,28 +5,24 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <boost/math/distributions/normal.hpp>
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "health/indicator_table.hpp"
+#include "health/reference_fit.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEP = 0.375;        // of the rated torque
-constexpr double TEMPERATURE_STEP = 10.0;  // [K]
-constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr int MIN_FITTED = 16;             // windows before slopes and correlations mean anything
-// Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
-constexpr double PLACE_ERROR = 0.005;
-constexpr double LEAST_LEFT = 1e-4;  // of a variance by the common causes: they are known no better
-constexpr int ITERATIONS = 30;       // for a principal component: its line is narrow enough long before it is exact
-constexpr int MIN_COUNT = 8;         // windows before a spread means anything; as least of indicators.baseline_windows
-constexpr int MIN_STEPS = 8;         // pairs of windows before what they differ by means anything
-constexpr std::size_t TRIMMED = 5;   // one of so many is left out at either end
+constexpr double LOAD_STEP = 0.375;           // of the rated torque
+constexpr double TEMPERATURE_STEP = 10.0;     // [K]
+constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
+constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
+constexpr int MIN_COUNT = 8;        // windows before a spread means anything; as least of indicators.baseline_windows
+constexpr std::size_t TRIMMED = 5;  // one of so many is left out at either end
 constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
 constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
 
@@ -83,36 +79,6 @@ std::size_t sizeOf(std::size_t indicator) noexcept
   return indicator < PARTS ? indicator :
                              amplitudeIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED) + (indicator - PARTS) / 2;
 }
-
-/// Adds what a window differs from the one before it by.
-void learnStep(StepSums& steps, const SignalIndicators& indicators, const Place& place) noexcept
-{
-  Place moved{};
-  for (std::size_t i = 0; i < PLACES; ++i)
-  {
-    moved[i] = place[i] - steps.last_place[i];
-  }
-  for (std::size_t i = 0; i < PLACES; ++i)
-  {
-    for (std::size_t j = 0; j < PLACES; ++j)
-    {
-      steps.places[i][j] += moved[i] * moved[j];
-    }
-  }
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    const double step = indicators.values[i] - steps.last[i];
-    if (std::isfinite(step))
-    {
-      ++steps.count[i];
-      steps.indicators[i] += step * step;
-      for (std::size_t j = 0; j < PLACES; ++j)
-      {
-        steps.mixed[i][j] += step * moved[j];
-      }
-    }
-  }
-}
 }  // namespace
 
 double amplitudeChange(double sound, double change) noexcept
@@ -149,9 +115,10 @@ Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_
   return { temperature,
            temperature * temperature,
            place(point.load, bin.load, load_step, 1.0),
-           place(point.load_rms, bin.load, load_step, FARTHEST),
-           place(point.load_mean, 0, load_step, FARTHEST),
-           place(point.inertia_torque, 0, load_step, FARTHEST) };
+           place(point.load_constant, 0, load_step, FARTHEST),
+           place(point.load_sine, 0, load_step, FARTHEST),
+           place(point.load_cosine, 0, load_step, FARTHEST),
+           place(INERTIA_ACCELERATION * point.inertia, 0, load_step, FARTHEST) };
 }
 
 Baseline::Baseline(const Parameters& parameters)
@@ -213,77 +180,6 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   return &bins_.back();
 }
 
-void fitReference(ReferenceBin& bin) noexcept
-{
-  using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
-  using Square = Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT, Eigen::RowMajor>;
-  using Places = Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>;
-  using Mixed = Eigen::Matrix<double, PLACES, INDICATOR_COUNT, Eigen::RowMajor>;
-  const double freedom = bin.windows - 1.0 - PLACES;
-  if (bin.windows < MIN_FITTED)
-  {
-    return;
-  }
-  const Eigen::Map<const Mixed> mixed(bin.sums.mixed.front().data());
-  Eigen::Map<Places> leverage(bin.leverage.front().data());
-  leverage = Eigen::Map<const Places>(bin.sums.places.front().data());
-  leverage.diagonal().array() += bin.windows * PLACE_ERROR * PLACE_ERROR;
-  leverage = leverage.inverse().eval();
-  const Mixed slopes = leverage * mixed;
-  Square left = Eigen::Map<const Square>(bin.sums.indicators.front().data());
-  left.noalias() -= mixed.transpose() * slopes;
-  Vector scale = Vector::Zero();  // 0: left out
-  int used = 0;
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    const auto column = static_cast<Eigen::Index>(i);
-    Reference& reference = bin.references[i];
-    reference.common = {};
-    reference.fitted = reference.count == bin.windows && left(column, column) > 0.0;
-    using Step = Eigen::Matrix<double, PLACES, 1>;
-    double steps = bin.steps.indicators[i];
-    if (reference.fitted)
-    {
-      const Step slope = slopes.col(column);
-      steps += slope.dot(Eigen::Map<const Places>(bin.steps.places.front().data()) * slope -
-                         2.0 * Eigen::Map<const Step>(bin.steps.mixed[i].data()));
-      Eigen::Map<Step>(reference.slopes.data()) = slope;
-      reference.variance = left(column, column) / freedom;
-      scale[column] = 1.0 / std::sqrt(left(column, column));
-      ++used;
-    }
-    const int count = bin.steps.count[i];
-    reference.within = count >= MIN_STEPS && reference.variance > 0.0 ?
-                           std::clamp(0.5 * steps / count, LEAST_LEFT * reference.variance, reference.variance) :
-                           0.0;
-  }
-  left = scale.asDiagonal() * left * scale.asDiagonal();
-  const double edge = std::pow(1.0 + std::sqrt(used / freedom), 2);
-  for (std::size_t cause = 0; cause < COMMON_CAUSES && used > 0; ++cause)
-  {
-    Eigen::Index widest = 0;
-    left.diagonal().maxCoeff(&widest);
-    Vector direction = left.col(widest);
-    double size = 0.0;
-    for (int i = 0; i < ITERATIONS && direction.squaredNorm() > 0.0; ++i)
-    {
-      direction.normalize();
-      direction = left * direction;
-      size = direction.norm();
-    }
-    if (!(size > edge))
-    {
-      return;
-    }
-    direction.normalize();
-    left -= size * direction * direction.transpose();
-    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-    {
-      bin.references[i].common[cause] = std::sqrt(size) * direction[static_cast<Eigen::Index>(i)];
-    }
-  }
-}
-
 BaselineState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
                                Deviations& deviations) noexcept
 {
@@ -296,7 +192,11 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   }
   if (!given_ && bin->windows < windows_)
   {
-    learn(*bin, indicators);
+    learnWindow(*bin, indicators, placeIn(bin->bin, indicators.point, load_step_));
+    if (bin->windows == windows_)
+    {
+      fitReference(*bin, bins_);
+    }
     return BaselineState::LEARNING;
   }
   const auto index = static_cast<std::size_t>(bin - bins_.data());
@@ -308,66 +208,6 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   bin_ = bin->bin;
   compare(*bin, first, recent.count, deviations);
   return BaselineState::COMPARED;
-}
-
-void Baseline::learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept
-{
-  ++bin.windows;
-  const bool follows = bin.windows > 1 && indicators.windows == bin.steps.last_window + 1;
-  bin.runs += follows ? 0 : 1;
-  const Place here = placeIn(bin.bin, indicators.point, load_step_);
-  if (follows)
-  {
-    learnStep(bin.steps, indicators, here);
-  }
-  bin.steps.last_window = indicators.windows;
-  bin.steps.last = indicators.values;
-  bin.steps.last_place = here;
-  const double weight = (bin.windows - 1.0) / bin.windows;
-  Place place = here;  // less the mean so far
-  for (std::size_t i = 0; i < PLACES; ++i)
-  {
-    place[i] -= bin.mean_place[i];
-    bin.mean_place[i] += place[i] / bin.windows;
-  }
-  std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    Reference& reference = bin.references[i];
-    if (!std::isfinite(indicators.values[i]))
-    {
-      continue;
-    }
-    ++reference.count;
-    before[i] = indicators.values[i] - reference.mean;
-    reference.mean += before[i] / reference.count;
-    if (reference.count > 1)
-    {
-      reference.variance += before[i] * before[i] / reference.count - reference.variance / (reference.count - 1.0);
-    }
-  }
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    for (std::size_t j = 0; j < INDICATOR_COUNT; ++j)
-    {
-      bin.sums.indicators[i][j] += weight * before[i] * before[j];
-    }
-  }
-  for (std::size_t i = 0; i < PLACES; ++i)
-  {
-    for (std::size_t j = 0; j < INDICATOR_COUNT; ++j)
-    {
-      bin.sums.mixed[i][j] += weight * place[i] * before[j];
-    }
-    for (std::size_t j = 0; j < PLACES; ++j)
-    {
-      bin.sums.places[i][j] += weight * place[i] * place[j];
-    }
-  }
-  if (bin.windows == windows_)
-  {
-    fitReference(bin);
-  }
 }
 
 double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
@@ -396,18 +236,15 @@ Deviation Baseline::deviation(double difference, double expected, double spread,
 void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
                     Compared& window) noexcept
 {
-  using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
   const Place here = placeIn(bin.bin, indicators.point, load_step_);
-  const PlaceVector place =
-      Eigen::Map<const PlaceVector>(here.data()) - Eigen::Map<const PlaceVector>(bin.mean_place.data());
-  window.leverage = place.dot(
-      Eigen::Map<const Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>>(bin.leverage.front().data()) * place);
+  const PlaceVector place = mapped(here) - mapped(bin.mean_place);
+  window.leverage = place.dot(mapped(bin.leverage) * place);
   window.error = indicators.uncertainty;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
     window.difference[i] = std::numeric_limits<double>::quiet_NaN();
-    expected_[i] = reference.mean + place.dot(Eigen::Map<const PlaceVector>(reference.slopes.data()));
+    expected_[i] = reference.mean + place.dot(mapped(reference.slopes));
     residual_.sound[i] = reference.count < MIN_COUNT ? 0.0 : expected_[i] + (model != nullptr ? model->values[i] : 0.0);
     if (reference.count < MIN_COUNT || !std::isfinite(indicators.values[i]))
     {
@@ -486,9 +323,9 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Reference& reference = bin.references[i];
     const Persistence persistence = persistenceOf(bin, reference);
     const double n = reference.count;
-    const double fitted = reference.fitted ? PLACES : 0.0;
+    const double fitted = reference.fitted ? bin.slopes_freedom : 0.0;
     const double freedom = std::max(persistence.independent * n - 1.0 - fitted, 1.0);
-    const double h = (1.0 / n + (reference.fitted ? leverage : 0.0)) / persistence.independent;
+    const double h = (1.0 + (reference.fitted ? leverage * bin.windows : 0.0)) / n / persistence.independent;
     const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight };
     freedoms += freedom;
     compared += 1.0;

@@ -10,6 +10,7 @@
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "health/reference_fit.hpp"
 
 namespace hjt
 {
@@ -37,7 +38,8 @@ ReferenceBin readBin(const YAML::Node& node)
   if (node["place"])
   {
     bin.mean_place = node["place"].as<Place>();
-    bin.leverage = node["leverage"].as<std::array<Place, PLACES>>();
+    bin.leverage = node["leverage"].as<PlaceSquares>();
+    bin.slopes_freedom = node["slopes_freedom"].as<double>();
   }
   for (const auto& entry : node["indicators"])
   {
@@ -117,7 +119,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
   text
       << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
          "K.\n"
-         "# Place in it: temperature, its square, mean magnitude, rms and mean of the load, torque of inertia.\n"
+         "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
+         "parts over sine\n# and cosine of the angle, inertia.\n"
          "# Each indicator: [windows, mean, spread, spread from one window to the next (0: not known), slopes over the "
          "place, share\n# of the spread that goes with each common cause], units as in docs/indicators.md.\n"
          "load_step: "
@@ -126,11 +129,12 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
   {
     if (!baseline.given())
     {
-      fitReference(bin);
+      fitReference(bin, baseline.bins());
     }
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows
-         << "\n    runs: " << bin.runs << "\n    place: [" << list(bin.mean_place) << "]\n    leverage:\n";
+         << "\n    runs: " << bin.runs << "\n    place: [" << list(bin.mean_place)
+         << "]\n    slopes_freedom: " << numberText(bin.slopes_freedom) << "\n    leverage:\n";
     for (const Place& row : bin.leverage)
     {
       text << "      - [" << list(row) << "]\n";

@@ -18,13 +18,14 @@ constexpr double SETTLING_TIME = 0.1;            // after it was larger or the s
 constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
 // After a change of speed the drive rings on, in a shoulder at 33 to 45 Hz. The filters' pulse at the change is some
 // six times as large as the ringing, and ten times or more as large as the ripple of lines.
-constexpr double RINGING_SHARE = 0.15;      // of the ripple [-]
-constexpr double RINGING_TIME = 0.45;       // in which it dies down by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;     // as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;       // of a sample whose residual counts: 1.5 mrad of it [-]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;  // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
+constexpr double RINGING_SHARE = 0.15;       // of the ripple [-]
+constexpr double RINGING_TIME = 0.45;        // in which it dies down by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;      // as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;        // of a sample whose residual counts: 1.5 mrad of it [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;   // over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;           // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;    // memory of the friction estimate
+constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor, for the inertia [rad/s^2]
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
@@ -115,6 +116,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
   const bool even = std::abs(velocity - mean_velocity_) <=
                     parameters_.speed_change * std::abs(mean_velocity_) + parameters_.least_speed;
+  const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const bool load_known = std::isfinite(sample.load_torque);
   const double joint_torque = load_known ? sample.load_torque : ratio_ * sample.motor_torque;
   if (both)
@@ -136,7 +138,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   waiting_count_ = calm ? waiting_count_ : 0;
   if (moving && even)
   {
-    addSteady(sample, motor_angle, travel, torsion);
+    addSteady(sample, motor_angle, output_angle, travel, torsion);
   }
   const double acceleration = speed_.acceleration();
   window_.acceleration_square += acceleration * acceleration;
@@ -145,8 +147,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   if (load_known)
   {
     window_.load.add(std::abs(joint_torque), seconds);
-    window_.load_signed.add(joint_torque, seconds);
-    window_.load_square.add(joint_torque * joint_torque, seconds);
+    window_.load_over_angle.add(output_angle, joint_torque, seconds);
   }
   if (std::isfinite(sample.temperature))
   {
@@ -162,10 +163,10 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   return true;
 }
 
-void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, double travel, double torsion) noexcept
+void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,
+                              double torsion) noexcept
 {
   const double direction = std::copysign(1.0, mean_velocity_);
-  const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const double load = std::isfinite(sample.load_torque) ? sample.load_torque : 0.0;
   if (calm_ > SETTLING_TIME || !window_.motor_encoder)
   {
@@ -242,15 +243,17 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   indicators_.stamp = stamp;
   indicators_.windows = windows;
   indicators_.turns = window_.travel / TWO_PI;
+  const LoadOverAngle::Coefficients load = window_.load_over_angle.coefficients();
   indicators_.point = { window_.samples > 0 ? window_.speed.value() : 0.0,
                         window_.samples > 0 ? window_.direction.value() : 0.0,
                         window_.load.value(),
                         window_.temperature.value(),
-                        window_.load_signed.value(),
-                        std::sqrt(window_.load_square.value()),
-                        window_.acceleration_square > 0.0 ?
-                            window_.acceleration_torque / std::sqrt(window_.acceleration_square * window_.all_samples) :
-                            0.0 };
+                        load[0],
+                        load[1],
+                        load[2],
+                        ratio_ * window_.acceleration_torque /
+                            (window_.acceleration_square +
+                             window_.all_samples * LEAST_ACCELERATION * LEAST_ACCELERATION) };
   set(ScalarIndicator::RATIO_DEVIATION, window_.ratio.value());
   set(ScalarIndicator::KINEMATIC_ERROR, window_.kinematic_error.value());
   set(ScalarIndicator::RUNNING_TORQUE, window_.running_torque.value());

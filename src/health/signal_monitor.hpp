@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
 #include "health/friction_estimate.hpp"
+#include "health/load_over_angle.hpp"
 #include "health/order_tracker.hpp"
 #include "health/ripple_filter.hpp"
 #include "health/signal_sample.hpp"
@@ -67,8 +68,7 @@ private:
     Mean speed;
     Mean direction;
     Mean load;
-    Mean load_signed;
-    Mean load_square;
+    LoadOverAngle load_over_angle;
     double acceleration_square{};  // sums over the samples [rad^2/s^4]
     double acceleration_torque{};  // [N.m rad/s^2]
     double all_samples{};          // number
@@ -91,7 +91,8 @@ private:
   };
 
   void start(const SignalSample& sample, double motor_angle) noexcept;
-  void addSteady(const SignalSample& sample, double motor_angle, double travel, double torsion) noexcept;
+  void addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,
+                 double torsion) noexcept;
   void addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept;
   void addTurn(double motor_angle, double travel, double torsion) noexcept;
   void addResidual(double travel) noexcept;

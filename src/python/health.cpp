@@ -130,14 +130,17 @@ void bindIndicators(py::module& module)
           "load", [](const SignalIndicators& self) { return self.point.load; },
           "magnitude of the load torque, mean; nan: unknown [N.m]")
       .def_property_readonly(
-          "load_mean", [](const SignalIndicators& self) { return self.point.load_mean; },
-          "of the load torque with its sign; nan: unknown [N.m]")
+          "load_constant", [](const SignalIndicators& self) { return self.point.load_constant; },
+          "of the load torque, what does not depend on the output angle; nan: unknown [N.m]")
       .def_property_readonly(
-          "load_rms", [](const SignalIndicators& self) { return self.point.load_rms; },
-          "of the load torque; nan: unknown [N.m]")
+          "load_sine", [](const SignalIndicators& self) { return self.point.load_sine; },
+          "of the load torque over the sine of the output angle; nan: unknown [N.m]")
       .def_property_readonly(
-          "inertia_torque", [](const SignalIndicators& self) { return self.point.inertia_torque; },
-          "rms of the motor torque that goes with the acceleration, at the joint [N.m]")
+          "load_cosine", [](const SignalIndicators& self) { return self.point.load_cosine; },
+          "of the load torque over the cosine of the output angle; nan: unknown [N.m]")
+      .def_property_readonly(
+          "inertia", [](const SignalIndicators& self) { return self.point.inertia; },
+          "motor torque over the acceleration, the drive's own included, at the joint [kg.m^2]")
       .def_property_readonly(
           "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
           "mean; nan: not measured [degC]")

@@ -342,10 +342,11 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   message.speed = indicators.point.speed;
   message.direction = indicators.point.direction;
   fillOptional(indicators.point.load, message.load, message.load_valid);
-  message.load_mean = message.load_valid ? indicators.point.load_mean : 0.0;
-  message.load_rms = message.load_valid ? indicators.point.load_rms : 0.0;
+  message.load_constant = message.load_valid ? indicators.point.load_constant : 0.0;
+  message.load_sine = message.load_valid ? indicators.point.load_sine : 0.0;
+  message.load_cosine = message.load_valid ? indicators.point.load_cosine : 0.0;
   fillOptional(indicators.point.temperature, message.temperature, message.temperature_valid);
-  message.inertia_torque = indicators.point.inertia_torque;
+  message.inertia = indicators.point.inertia;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     fillOptional(indicators.values[i], message.values[i], message.valid[i]);
@@ -362,9 +363,10 @@ SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message)
                        message.direction,
                        optionalValue(message.load, message.load_valid),
                        optionalValue(message.temperature, message.temperature_valid),
-                       optionalValue(message.load_mean, message.load_valid),
-                       optionalValue(message.load_rms, message.load_valid),
-                       message.inertia_torque };
+                       optionalValue(message.load_constant, message.load_valid),
+                       optionalValue(message.load_sine, message.load_valid),
+                       optionalValue(message.load_cosine, message.load_valid),
+                       message.inertia };
   const std::size_t count = std::min({ message.names.size(), message.values.size(), message.valid.size() });
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {

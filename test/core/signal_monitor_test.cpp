@@ -92,6 +92,52 @@ private:
   std::int64_t stamp_{};
 };
 
+/// A joint that swings about its zero at `rate` [rad/s], a weight and an inertia on it.
+OperatingPoint swing(double rate)
+{
+  constexpr double INERTIA = 3.5;
+  constexpr double PEAK = 150.0;  // motor [rad/s]
+  Synthetic joint(shippedParameters({ "indicators.window_turns=1e5", "indicators.window_time=20.0" }));
+  double now = 0.0;
+  joint.speed = [&](double time)
+  {
+    now = time;
+    return PEAK * std::cos(rate * time);
+  };
+  joint.load = [&](double time)
+  {
+    const double angle = PEAK / rate * std::sin(rate * time) / RATIO;
+    return 4.0 + 30.0 * std::sin(angle) - 20.0 * std::cos(angle);
+  };
+  joint.torque = [&](double /*angle*/, double /*speed*/)
+  { return (joint.load(now) - INERTIA * PEAK * rate * std::sin(rate * now) / RATIO) / RATIO; };
+  return joint.nextWindow().point;
+}
+
+TEST(OperatingPoint, HoldsWhatTheJointCarriesWhateverThePath)
+{
+  for (const double rate : { 1.2, 2.5 })
+  {
+    const OperatingPoint point = swing(rate);
+    EXPECT_NEAR(point.load_constant, 4.0, 0.3) << rate;
+    EXPECT_NEAR(point.load_sine, 30.0, 0.3) << rate;
+    EXPECT_NEAR(point.load_cosine, -20.0, 0.3) << rate;
+    EXPECT_NEAR(point.inertia, 3.5, 0.1) << rate;
+  }
+}
+
+TEST(LoadOverAngle, IsConstantAtOneAngle)
+{
+  LoadOverAngle load;
+  for (int i = 0; i < 100; ++i)
+  {
+    load.add(0.7, 12.0, 0.1);
+  }
+  EXPECT_NEAR(load.coefficients()[0], 12.0, 1e-9);
+  EXPECT_NEAR(load.coefficients().tail<2>().norm(), 0.0, 1e-9);
+  EXPECT_TRUE(std::isnan(LoadOverAngle().coefficients()[0]));
+}
+
 TEST(AngleMultiples, AreCosineAndSineOfEveryTrackedOrder)
 {
   const Parameters parameters = shippedParameters();
@@ -671,6 +717,65 @@ TEST(Reference, OfOneTemperatureCallsNothingAFaultAtAnother)
 {
   EXPECT_LT(scoreAt(28.0, 0.0, 0.05), 1.0);
   EXPECT_GT(scoreAt(25.0, 0.002, 0.05), 1.0);
+}
+
+/// Running torques that rise with the payload, with 1e-4 N.m of noise; every sixth window may lack them.
+class WithPayloads : public testing::Test
+{
+protected:
+  static constexpr double RISE = 2e-4;  // [1]
+
+  double scoreAt(double temperature, double payload, double off)
+  {
+    SignalIndicators window;
+    window.windows = ++windows_;
+    window.point = { 100.0, 1.0, 30.0, temperature, 0.0, payload, 0.0, 4.0 };
+    if (!lacking || windows_ % 6 != 3)
+    {
+      window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + RISE * payload + 1e-4 * normal_(random_) + off;
+    }
+    assessor_.update(window);
+    return assessor_.assessment().largest_score;
+  }
+
+  void learn(double temperature, double range)
+  {
+    std::uniform_real_distribution<double> between(-range, range);
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      scoreAt(temperature, between(random_), 0.0);
+    }
+  }
+
+  bool lacking{};
+
+private:
+  Assessor assessor_{ shippedParameters() };
+  std::uint64_t windows_{};
+  std::mt19937 random_{ 3 };
+  std::normal_distribution<double> normal_;
+};
+
+TEST_F(WithPayloads, ThoseLearnedAtOneTemperatureServeAtAnother)
+{
+  learn(25.0, 10.0);
+  learn(35.0, 0.5);
+  EXPECT_LT(scoreAt(35.0, 10.0, 0.0), 1.0);
+  EXPECT_GT(scoreAt(35.0, 10.0, 15.0 * RISE), 1.0);
+}
+
+TEST_F(WithPayloads, ThoseNeverLearnedCallNothingAFault)
+{
+  learn(35.0, 0.5);
+  EXPECT_LT(scoreAt(35.0, 10.0, 15.0 * RISE), 1.0);
+}
+
+TEST_F(WithPayloads, CountForAnIndicatorThatSomeWindowsLack)
+{
+  lacking = true;
+  learn(25.0, 10.0);
+  EXPECT_LT(scoreAt(25.0, 9.0, 0.0), 1.0);
+  EXPECT_GT(scoreAt(25.0, 9.0, 15.0 * RISE), 1.0) << "less than from one payload to another";
 }
 
 /// Variance of the mean of ten sound windows, over that of one, of a reference of `runs` stretches of ten windows whose

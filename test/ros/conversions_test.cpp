@@ -209,7 +209,7 @@ SignalIndicators someIndicators()
   indicators.stamp = 5'000'000'001;
   indicators.windows = 7;
   indicators.turns = 101.0;
-  indicators.point = { 100.0, -1.0, std::nan(""), 25.0, std::nan(""), std::nan(""), 7.0 };
+  indicators.point = { 100.0, -1.0, std::nan(""), 25.0, std::nan(""), std::nan(""), std::nan(""), 7.0 };
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     indicators.values[i] = 1.0 + 0.01 * static_cast<double>(i);
@@ -229,8 +229,8 @@ TEST(Indicators, GoIntoTheMessageAndBack)
   EXPECT_EQ(back.turns, indicators.turns);
   EXPECT_EQ(back.point.temperature, 25.0);
   EXPECT_TRUE(std::isnan(back.point.load));
-  EXPECT_TRUE(std::isnan(back.point.load_rms));
-  EXPECT_EQ(back.point.inertia_torque, 7.0);
+  EXPECT_TRUE(std::isnan(back.point.load_sine));
+  EXPECT_EQ(back.point.inertia, 7.0);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const bool given = std::isfinite(indicators.values[i]);

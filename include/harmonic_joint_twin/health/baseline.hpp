@@ -32,13 +32,16 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 /// That of this gear [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// What healthy indicators follow within a class: temperature, its square, the load's mean magnitude, its rms, its mean
-/// with the sign, and the torque of inertia. A payload and how it is moved show in the last four.
-constexpr std::size_t PLACES = 6;
+/// What healthy indicators follow within a class: temperature, its square, the load's mean magnitude, and what the
+/// joint carries, which stays over a job and is the same on any path: the load's constant part and its parts over sine
+/// and cosine of the output angle, and the inertia.
+constexpr std::size_t PLACES = 7;
+constexpr std::size_t OWN_PLACES = 2;  ///< the first ones, over which each class has slopes of its own
 using Place = std::array<double, PLACES>;
+using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
 
-/// Temperature and load -1 ... 1 from one edge of the class to the other, the others in the same steps; 0 of what is
-/// not measured [-].
+/// Temperature and load -1 ... 1 from one edge of the class to the other, the others in the same steps, the inertia by
+/// its torque at 5 rad/s^2; 0 of what is not measured [-].
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
 /// What else moves healthy indicators together from one window to another.
@@ -48,30 +51,39 @@ constexpr std::size_t COMMON_CAUSES = 3;
 struct Reference
 {
   int count{};
-  double mean{};      // unit of the indicator
+  double mean{};      // unit of the indicator; from fitReference on at the mean place of the class
   double variance{};  // about the mean, from fitReference on about what the place makes of it
   double within{};    // half the mean square of what successive windows differ by; 0: not known
-  bool fitted{};      // has slopes and common causes
+  bool fitted{};      // has slopes and shares of common causes
   Place slopes{};     // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums over the windows learned, of products of differences from the means.
-struct ReferenceSums
+/// Sums of products of differences of an indicator and the place, over the windows or pairs of windows that have it.
+struct IndicatorSums
 {
-  std::array<std::array<double, INDICATOR_COUNT>, INDICATOR_COUNT> indicators{};
-  std::array<std::array<double, INDICATOR_COUNT>, PLACES> mixed{};  // place and indicator
-  std::array<Place, PLACES> places{};
+  int count{};
+  double square{};  // of the indicator
+  Place mixed{};
+  PlaceSquares places{};
 };
 
-/// Sums over pairs of windows of which one follows the other, of products of what they differ by.
+/// Over the windows learned, from the means.
+struct ReferenceSums
+{
+  std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
+  std::array<double, INDICATOR_COUNT> means{};
+  std::array<Place, INDICATOR_COUNT> mean_places{};
+  PlaceSquares places{};  // of all windows
+  /// Of all windows, row by row up to the diagonal.
+  std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
+};
+
+/// Over pairs of windows of which one follows the other, from one to the other.
 struct StepSums
 {
-  std::array<int, INDICATOR_COUNT> count{};
-  std::array<double, INDICATOR_COUNT> indicators{};
-  std::array<Place, INDICATOR_COUNT> mixed{};
-  std::array<Place, PLACES> places{};
+  std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
   std::uint64_t last_window{};  // SignalIndicators::windows, of the last one learned
   std::array<double, INDICATOR_COUNT> last{};
   Place last_place{};
@@ -83,17 +95,12 @@ struct ReferenceBin
   int windows{};
   int runs{};  // stretches of windows that follow each other
   Place mean_place{};
-  std::array<Place, PLACES> leverage{};  // inverse of the places' sums, from fitReference
+  PlaceSquares leverage{};  // covariance of the slopes, of unit variance; from fitReference
+  double slopes_freedom{};  // degrees of freedom that the slopes take; from fitReference
   std::array<Reference, INDICATOR_COUNT> references;
   ReferenceSums sums;
   StepSums steps;
 };
-
-/// Makes of the sums what windows are compared with: the straight line over the place by least squares, and of what it
-/// leaves the first principal components of the correlations, as many as stand out of noise, COMMON_CAUSES at most:
-/// eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967).
-/// Of indicators that every window determined; neither from fewer than 16 windows. Does not allocate.
-void fitReference(ReferenceBin& bin) noexcept;
 
 /// One indicator against its reference.
 struct Deviation
@@ -139,10 +146,10 @@ enum class BaselineState : std::uint8_t
 /// more, is left out at either end.
 ///
 /// Law:   t = mean(x - m - b (z - z_0)) / sqrt(p (r + h) + max(p (1 - r), w^2) / k + (f m)^2 + q^2),  p = max(s^2, u^2)
-///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - PLACES, at least 1
+///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - d, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
-///                 leave, by least squares;  L  inverse of the places' sums of squares
+///                 leave, by least squares;  L, d  covariance of the slopes where s = 1, degrees of freedom they take
 ///        h        (1/n + (z - z_0)' L (z - z_0)) / e: grows beyond what was learned
 ///        k        windows averaged, less those left out at one end
 ///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
@@ -214,7 +221,6 @@ private:
 
   ReferenceBin* find(const OperatingBin& bin) noexcept;
   void makeRoom();
-  void learn(ReferenceBin& bin, const SignalIndicators& indicators) const noexcept;
   void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
             Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;

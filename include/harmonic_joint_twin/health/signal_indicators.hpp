@@ -88,13 +88,14 @@ const char* indicatorUnit(std::size_t indicator) noexcept;
 /// How the joint was run during a window; means over it.
 struct OperatingPoint
 {
-  double speed{};           ///< magnitude, motor [rad/s]
-  double direction{};       ///< share of travel forward less share back: -1 ... 1 [-]
-  double load{};            ///< magnitude of the load torque; NaN: no estimate of it [N.m]
-  double temperature{};     ///< NaN: not measured [degC]
-  double load_mean{};       ///< of the load torque with its sign; NaN as load [N.m]
-  double load_rms{};        ///< of the load torque; NaN as load [N.m]
-  double inertia_torque{};  ///< rms of the motor torque that goes with the acceleration, at the joint [N.m]
+  double speed{};          ///< magnitude, motor [rad/s]
+  double direction{};      ///< share of travel forward less share back: -1 ... 1 [-]
+  double load{};           ///< magnitude of the load torque; NaN: no estimate of it [N.m]
+  double temperature{};    ///< NaN: not measured [degC]
+  double load_constant{};  ///< of the load torque, what does not depend on the output angle; NaN as load [N.m]
+  double load_sine{};      ///< of the load torque over the sine of the output angle; NaN as load [N.m]
+  double load_cosine{};    ///< and over its cosine; NaN as load [N.m]
+  double inertia{};        ///< motor torque over the acceleration, the drive's own included, at the joint [kg.m^2]
 };
 
 /// All indicators of one window. NaN: the window did not tell.

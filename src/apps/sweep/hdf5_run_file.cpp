@@ -335,9 +335,10 @@ void Hdf5RunFile::writeIndicators()
   write("window_speed", "rad/s", [](W w) { return w.point.speed; });
   write("window_direction", "-", [](W w) { return w.point.direction; });
   write("window_load", "N.m", [](W w) { return w.point.load; });
-  write("window_load_mean", "N.m", [](W w) { return w.point.load_mean; });
-  write("window_load_rms", "N.m", [](W w) { return w.point.load_rms; });
-  write("window_inertia_torque", "N.m", [](W w) { return w.point.inertia_torque; });
+  write("window_load_constant", "N.m", [](W w) { return w.point.load_constant; });
+  write("window_load_sine", "N.m", [](W w) { return w.point.load_sine; });
+  write("window_load_cosine", "N.m", [](W w) { return w.point.load_cosine; });
+  write("window_inertia", "kg.m^2", [](W w) { return w.point.inertia; });
   write("window_temperature", "degC", [](W w) { return w.point.temperature; });
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {

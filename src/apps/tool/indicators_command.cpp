@@ -124,9 +124,10 @@ const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "speed", [](const WindowResult& window) { return window.indicators.point.speed; } },
   { "direction", [](const WindowResult& window) { return window.indicators.point.direction; } },
   { "load", [](const WindowResult& window) { return window.indicators.point.load; } },
-  { "load_mean", [](const WindowResult& window) { return window.indicators.point.load_mean; } },
-  { "load_rms", [](const WindowResult& window) { return window.indicators.point.load_rms; } },
-  { "inertia_torque", [](const WindowResult& window) { return window.indicators.point.inertia_torque; } },
+  { "load_constant", [](const WindowResult& window) { return window.indicators.point.load_constant; } },
+  { "load_sine", [](const WindowResult& window) { return window.indicators.point.load_sine; } },
+  { "load_cosine", [](const WindowResult& window) { return window.indicators.point.load_cosine; } },
+  { "inertia", [](const WindowResult& window) { return window.indicators.point.inertia; } },
   { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
 };
 

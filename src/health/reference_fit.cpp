@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/reference_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace hjt
+{
+namespace
+{
+constexpr int MIN_FITTED = 16;  // windows before slopes and correlations mean anything
+constexpr int MIN_STEPS = 8;    // pairs of windows before what they differ by means anything
+// Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
+constexpr double PLACE_ERROR = 0.005;
+constexpr int ITERATIONS = 30;  // for a principal component: its line is narrow enough long before it is exact
+
+/// Adds the products of differences.
+void add(double indicator, const PlaceVector& place, double weight, IndicatorSums& sums) noexcept
+{
+  ++sums.count;
+  sums.square += weight * indicator * indicator;
+  mapped(sums.mixed) += weight * indicator * place;
+  mapped(sums.places).noalias() += weight * place * place.transpose();
+}
+
+/// Of the indicator's square, what slopes over the place leave.
+double squareLeft(const IndicatorSums& sums, const PlaceVector& slopes) noexcept
+{
+  return sums.square + slopes.dot(mapped(sums.places) * slopes - 2.0 * mapped(sums.mixed));
+}
+
+constexpr int OWN = OWN_PLACES;
+constexpr int SHARED = PLACES - OWN_PLACES;
+using SharedSquares = Eigen::Matrix<double, SHARED, SHARED>;
+using SharedVector = Eigen::Matrix<double, SHARED, 1>;
+
+/// The shared coordinates of the place, less what goes with the own ones.
+struct SharedPlaces
+{
+  SharedPlaces(const PlaceSquares& places, int windows) noexcept
+  {
+    Squares whole = mapped(places);
+    whole.diagonal().array() += windows * PLACE_ERROR * PLACE_ERROR;
+    own_inverse = whole.topLeftCorner<OWN, OWN>().inverse();
+    by_own.noalias() = own_inverse * whole.topRightCorner<OWN, SHARED>();
+    squares = whole.bottomRightCorner<SHARED, SHARED>() - whole.bottomLeftCorner<SHARED, OWN>() * by_own;
+  }
+
+  SharedVector mixed(const Place& with) const noexcept
+  {
+    return mapped(with).tail<SHARED>() - by_own.transpose() * mapped(with).head<OWN>();
+  }
+
+  Eigen::Matrix<double, OWN, OWN> own_inverse;  // of the squares of the own coordinates
+  Eigen::Matrix<double, OWN, SHARED> by_own;    // slopes of the shared ones over the own ones
+  SharedSquares squares;
+};
+
+bool isAlikeButForTemperature(OperatingBin one, const OperatingBin& other) noexcept
+{
+  one.temperature = other.temperature;
+  return one == other;
+}
+
+void fitLeverage(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexcept
+{
+  SharedSquares squares = SharedSquares::Zero();
+  for (const ReferenceBin& other : bins)
+  {
+    if (isAlikeButForTemperature(other.bin, bin.bin) && other.windows >= MIN_FITTED)
+    {
+      squares += SharedPlaces(other.sums.places, other.windows).squares;
+    }
+  }
+  const SharedSquares inverse = squares.inverse();
+  const SharedPlaces own(bin.sums.places, bin.windows);
+  Eigen::Map<Squares> leverage = mapped(bin.leverage);
+  leverage.bottomRightCorner<SHARED, SHARED>() = inverse;
+  leverage.topRightCorner<OWN, SHARED>() = -own.by_own * inverse;
+  leverage.bottomLeftCorner<SHARED, OWN>() = leverage.topRightCorner<OWN, SHARED>().transpose();
+  leverage.topLeftCorner<OWN, OWN>() = own.own_inverse + own.by_own * inverse * own.by_own.transpose();
+  bin.slopes_freedom = OWN + (inverse * own.squares).trace();
+}
+
+void fitSlopes(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, std::size_t indicator) noexcept
+{
+  Reference& reference = bin.references[indicator];
+  const IndicatorSums& sums = bin.sums.by_indicator[indicator];
+  const IndicatorSums& steps = bin.steps.by_indicator[indicator];
+  PlaceVector slopes = PlaceVector::Zero();
+  reference.fitted = sums.count >= MIN_FITTED && sums.square > 0.0;
+  if (reference.fitted)
+  {
+    SharedSquares squares = SharedSquares::Zero();
+    SharedVector mixed = SharedVector::Zero();
+    for (const ReferenceBin& other : bins)
+    {
+      const IndicatorSums& others = other.sums.by_indicator[indicator];
+      if (isAlikeButForTemperature(other.bin, bin.bin) && others.count >= MIN_FITTED)
+      {
+        const SharedPlaces places(others.places, others.count);
+        squares += places.squares;
+        mixed += places.mixed(others.mixed);
+      }
+    }
+    const SharedSquares inverse = squares.inverse();
+    const SharedPlaces own(sums.places, sums.count);
+    slopes.tail<SHARED>() = inverse * mixed;
+    slopes.head<OWN>() = own.own_inverse * mapped(sums.mixed).head<OWN>() - own.by_own * slopes.tail<SHARED>();
+    const double freedom = sums.count - 1.0 - OWN - (inverse * own.squares).trace();
+    reference.variance = std::max(squareLeft(sums, slopes), 0.0) / freedom;
+    reference.mean =
+        bin.sums.means[indicator] + slopes.dot(mapped(bin.mean_place) - mapped(bin.sums.mean_places[indicator]));
+  }
+  mapped(reference.slopes) = slopes;
+  reference.within = steps.count >= MIN_STEPS && reference.variance > 0.0 ?
+                         std::clamp(0.5 * squareLeft(steps, slopes) / steps.count, LEAST_LEFT * reference.variance,
+                                    reference.variance) :
+                         0.0;
+}
+
+/// Of the indicators that every window determined.
+void fitCommonCauses(ReferenceBin& bin) noexcept
+{
+  using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
+  using Square = Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT, Eigen::RowMajor>;
+  using Mixed = Eigen::Matrix<double, PLACES, INDICATOR_COUNT>;
+  Mixed slopes = Mixed::Zero();
+  Mixed mixed = Mixed::Zero();
+  Vector scale = Vector::Zero();  // 0: left out
+  int used = 0;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    Reference& reference = bin.references[i];
+    reference.common = {};
+    if (reference.fitted && reference.count == bin.windows && reference.variance > 0.0)
+    {
+      const auto column = static_cast<Eigen::Index>(i);
+      slopes.col(column) = mapped(reference.slopes);
+      mixed.col(column) = mapped(bin.sums.by_indicator[i].mixed);
+      scale[column] = 1.0 / std::sqrt(squareLeft(bin.sums.by_indicator[i], slopes.col(column)));
+      ++used;
+    }
+  }
+  mixed -= 0.5 * mapped(bin.sums.places) * slopes;
+  Square left;
+  std::size_t pair = 0;
+  for (Eigen::Index i = 0; i < left.rows(); ++i)
+  {
+    for (Eigen::Index j = 0; j <= i; ++j)
+    {
+      left(i, j) = left(j, i) = bin.sums.indicators[pair++];
+    }
+  }
+  left.noalias() -= slopes.transpose() * mixed;
+  left.noalias() -= mixed.transpose() * slopes;
+  left = scale.asDiagonal() * left * scale.asDiagonal();
+  const double edge = std::pow(1.0 + std::sqrt(used / (bin.windows - 1.0 - bin.slopes_freedom)), 2);
+  for (std::size_t cause = 0; cause < COMMON_CAUSES && used > 0; ++cause)
+  {
+    Eigen::Index widest = 0;
+    left.diagonal().maxCoeff(&widest);
+    Vector direction = left.col(widest);
+    double size = 0.0;
+    for (int i = 0; i < ITERATIONS && direction.squaredNorm() > 0.0; ++i)
+    {
+      direction.normalize();
+      direction = left * direction;
+      size = direction.norm();
+    }
+    if (!(size > edge))
+    {
+      return;
+    }
+    direction.normalize();
+    left -= size * direction * direction.transpose();
+    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    {
+      bin.references[i].common[cause] = std::sqrt(size) * direction[static_cast<Eigen::Index>(i)];
+    }
+  }
+}
+}  // namespace
+
+void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Place& here) noexcept
+{
+  ++bin.windows;
+  ReferenceSums& sums = bin.sums;
+  StepSums& steps = bin.steps;
+  const bool follows = bin.windows > 1 && indicators.windows == steps.last_window + 1;
+  bin.runs += follows ? 0 : 1;
+  const double weight = (bin.windows - 1.0) / bin.windows;
+  const PlaceVector place = mapped(here) - mapped(bin.mean_place);
+  mapped(bin.mean_place) += place / bin.windows;
+  mapped(sums.places).noalias() += weight * place * place.transpose();
+  const PlaceVector moved = mapped(here) - mapped(steps.last_place);
+  std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    if (!std::isfinite(indicators.values[i]))
+    {
+      continue;
+    }
+    before[i] = indicators.values[i] - sums.means[i];
+    const PlaceVector own_place = mapped(here) - mapped(sums.mean_places[i]);
+    const double count = sums.by_indicator[i].count + 1.0;
+    sums.means[i] += before[i] / count;
+    mapped(sums.mean_places[i]) += own_place / count;
+    add(before[i], own_place, (count - 1.0) / count, sums.by_indicator[i]);
+    bin.references[i].count = sums.by_indicator[i].count;
+    bin.references[i].mean = sums.means[i];
+    bin.references[i].variance = sums.by_indicator[i].square / std::max(count - 1.0, 1.0);
+    if (follows && std::isfinite(steps.last[i]))
+    {
+      add(indicators.values[i] - steps.last[i], moved, 1.0, steps.by_indicator[i]);
+    }
+  }
+  std::size_t pair = 0;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    for (std::size_t j = 0; j <= i; ++j)
+    {
+      sums.indicators[pair++] += weight * before[i] * before[j];
+    }
+  }
+  steps.last_window = indicators.windows;
+  steps.last = indicators.values;
+  steps.last_place = here;
+}
+
+void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexcept
+{
+  if (bin.windows < MIN_FITTED)
+  {
+    return;
+  }
+  fitLeverage(bin, bins);
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    fitSlopes(bin, bins, i);
+  }
+  fitCommonCauses(bin);
+}
+}  // namespace hjt
