@@ -730,7 +730,7 @@ protected:
     SignalIndicators window;
     window.windows = ++windows_;
     window.point = { 100.0, 1.0, 30.0, temperature, 0.0, payload, 0.0, 4.0 };
-    if (!lacking || windows_ % 6 != 3)
+    if (!lacking_ || windows_ % 6 != 3)
     {
       window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + RISE * payload + 1e-4 * normal_(random_) + off;
     }
@@ -747,7 +747,7 @@ protected:
     }
   }
 
-  bool lacking{};
+  bool lacking_{};
 
 private:
   Assessor assessor_{ shippedParameters() };
@@ -772,7 +772,7 @@ TEST_F(WithPayloads, ThoseNeverLearnedCallNothingAFault)
 
 TEST_F(WithPayloads, CountForAnIndicatorThatSomeWindowsLack)
 {
-  lacking = true;
+  lacking_ = true;
   learn(25.0, 10.0);
   EXPECT_LT(scoreAt(25.0, 9.0, 0.0), 1.0);
   EXPECT_GT(scoreAt(25.0, 9.0, 15.0 * RISE), 1.0) << "less than from one payload to another";
