@@ -146,6 +146,13 @@ class Indicators(tool.ToolTest):
         self.fail_with(1, ["neither column 'motor_angle_encoder'"], "indicators", "no_angle.csv")
         self.fail_with(1, ["bad.yaml is no baseline", "unknown indicator nonsense"], "indicators", "short.csv",
                        *COLUMNS, "--baseline", "bad.yaml")
+        row = "[0, 0, 0, 0, 0, 0, 0]"
+        self.write("infinite.yaml",
+                   "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 30, "
+                   f"runs: 3, place: {row}, leverage: [{', '.join([row] * 7)}], slopes_freedom: .nan, "
+                   "indicators: {}}\n")
+        self.fail_with(1, ["infinite.yaml is no baseline", "slopes_freedom must be finite"], "indicators",
+                       "short.csv", *COLUMNS, "--baseline", "infinite.yaml")
 
 
 if __name__ == "__main__":
