@@ -28,17 +28,6 @@ std::size_t indicatorNamed(const std::string& name)
   throw InputError("unknown indicator " + name);
 }
 
-bool isFinite(double number)
-{
-  return std::isfinite(number);
-}
-
-template <class Numbers>
-bool areFinite(const Numbers& numbers)
-{
-  return std::all_of(numbers.begin(), numbers.end(), isFinite);
-}
-
 ReferenceBin readBin(const YAML::Node& node)
 {
   ReferenceBin bin;
@@ -51,8 +40,8 @@ ReferenceBin readBin(const YAML::Node& node)
     bin.mean_place = node["place"].as<Place>();
     bin.leverage = node["leverage"].as<PlaceSquares>();
     bin.slopes_freedom = node["slopes_freedom"].as<double>();
-    if (!areFinite(bin.mean_place) || !std::all_of(bin.leverage.begin(), bin.leverage.end(), areFinite<Place>) ||
-        !isFinite(bin.slopes_freedom) || bin.slopes_freedom < 0.0)
+    if (!mapped(bin.mean_place).allFinite() || !mapped(bin.leverage).allFinite() ||
+        !std::isfinite(bin.slopes_freedom) || bin.slopes_freedom < 0.0)
     {
       throw InputError("place, leverage and slopes_freedom must be finite, slopes_freedom >= 0");
     }
@@ -62,8 +51,9 @@ ReferenceBin readBin(const YAML::Node& node)
     const auto numbers = entry.second.as<std::vector<double>>();
     const auto name = entry.first.as<std::string>();
     const bool fitted = numbers.size() == 4 + PLACES + COMMON_CAUSES && node["place"];
-    if ((numbers.size() != 4 && !fitted) || !areFinite(numbers) || numbers[0] < 1.0 || numbers[2] < 0.0 ||
-        numbers[3] < 0.0)
+    const bool finite =
+        std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+    if ((numbers.size() != 4 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0 || numbers[3] < 0.0)
     {
       throw InputError(name +
                        " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0], and slopes over "
