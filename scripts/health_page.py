@@ -14,15 +14,15 @@ import fault_figures
 import health_runs
 import health_signatures
 import page_section
-from health_runs import CHECK_UP, GREASE, JUDGED, QUICK, SERIES_FIRST, SERIES_MOTIONS, SOUND_WINDOWS
+from health_runs import CHECK_UP, DRAWN, GREASE, JUDGED, QUICK, SERIES_FIRST, SERIES_MOTIONS, SOUND_WINDOWS
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 SURE = 0.3            # severity from which on the cause should be right
 SOUND_CHECK_UPS = 40  # of each gear
-SOUND_RUNS = 4        # along each path at work
-SERIES_RUNS = 12      # of a drawn gear
+SOUND_RUNS = 16       # at work
+SERIES_RUNS = 48      # of a drawn gear
 SET = 0.9             # probability that the causes of a set have together
 BLOCK = 10            # windows that a verdict at work is made of the mean of
 LEAST_WINDOWS = 3     # of them before the verdict may change
@@ -32,20 +32,18 @@ BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 
 def collect(bench, trials):
     """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion."""
-    drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
     sound, faulty = [], []
     for trial, motion in ((trial, motion) for trial in trials for motion in trial.motions):
-        sound += sound_runs(bench, "sound", trial.gear, motion, 4, SOUND_RUNS)
-        faulty += bench.judge(bench.faulty(trial, motion, drawn), trial.gear, motion)
+        sound += sound_runs(bench, "sound", trial.gear, motion, 4,
+                            SOUND_CHECK_UPS if motion.windows == 1 else SOUND_RUNS)
+        faulty += bench.judge(bench.faulty(trial, motion, DRAWN), trial.gear, motion)
     missing = [run for run in [*sound, *faulty] if not run.windows]
     return [run for run in sound if run.windows], [run for run in faulty if run.windows], missing
 
 
 def sound_runs(bench, purpose, gear, motion, seed, runs):
-    drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
-    once = motion.windows == 1
-    motion = motion if once else health_runs.at_work(motion, SOUND_WINDOWS)
-    bags = bench.sound(purpose, gear, motion, drawn, SOUND_CHECK_UPS if once else runs, seed)
+    motion = motion if motion.windows == 1 else health_runs.at_work(motion, SOUND_WINDOWS)
+    bags = bench.sound(purpose, gear, motion, DRAWN, runs, seed)
     return bench.judge(bags, gear, motion)
 
 

@@ -9,7 +9,7 @@ import re
 import numpy
 
 import page_section
-from health_runs import CALIBRATED, FITTED, GREASE, ONCE, split_table
+from health_runs import CALIBRATED, DRAWN, FITTED, once, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
 # Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
@@ -25,12 +25,17 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
 SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis_area"]
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
-UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]      # as in the source
+# As in the source.
+UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]
+SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
 
-Table = collections.namedtuple("Table", "causes motions severities changes")  # a row each
+WITHIN = 0.683            # of a normal quantity, one standard deviation
+
+# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any.
+Table = collections.namedtuple("Table", "causes motions severities kinds changes")
 # Of the law in fault_signatures.hpp, by its letters: r e l b.
 Errors = collections.namedtuple("Errors", "number length line weight")
-START = Errors(0.12, 0.016, 0.3, 0.35)            # of the search
+START = Errors(0.12, 0.0015, 0.5, 0.2)             # of the search
 
 
 def amplitude_change(sound, change):
@@ -77,49 +82,64 @@ class Layout:
 
 
 def windows_of(bench, bags):
-    """Indicators of the runs, by bag."""
+    """The runs' own, by bag."""
     report = bench.indicators([bag for bag, _ in bags])
-    return {window["recording"]: window["indicators"] for window in report["windows"]}
+    return {window["recording"]: window for window in report["windows"]}
+
+
+def kind_of(window):
+    """Of motion."""
+    return window["speed"], abs(window["direction"])
 
 
 def changes(bench):
-    """(layout, sound values of the scalars of the first gear in the check-up, changes by cause, gear, motion and
-    severity)."""
-    found = collections.defaultdict(list)
+    """(layout, sound values of the scalars of the first gear in the check-up, kinds of motion by gear and motion,
+    changes by cause, gear, motion and severity)."""
+    found, kinds = collections.defaultdict(list), {}
     layout, values = None, None
     for trial in FITTED:
         for motion, sound, faulty in bench.differences(trial):
             windows = windows_of(bench, [*sound, *faulty])
-            same = {row["set.input.temperature"]: windows[str(bag)] for bag, row in sound}
+            kinds[trial.gear.name, motion.tag] = numpy.mean([kind_of(windows[str(bag)]) for bag, _ in sound], axis=0)
+            same = {row["set.input.temperature"]: windows[str(bag)]["indicators"] for bag, row in sound}
             layout = layout or Layout(next(iter(same.values())))
             if values is None:
                 values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
             for bag, row in faulty:
                 if str(bag) in windows:
                     found[row["class"], trial.gear.name, motion.tag, float(row["fault_severity"])].append(
-                        layout.numbers(row["class"], windows[str(bag)], same[row["set.input.temperature"]]))
-    return layout, values, {key: numpy.mean(own, axis=0) for key, own in found.items()}
+                        layout.numbers(row["class"], windows[str(bag)]["indicators"],
+                                       same[row["set.input.temperature"]]))
+    return layout, values, kinds, {key: numpy.mean(own, axis=0) for key, own in found.items()}
 
 
-def table_of(layout, kinds, found):
+def table_of(layout, faults, kinds, found):
     rows = []
-    for kind, trial in itertools.product(kinds, FITTED):
+    for fault, trial in itertools.product(faults, FITTED):
         for motion in trial.motions:
             own = {severity: change for (cause, gear, tag, severity), change in found.items()
-                   if (cause, gear, tag) == (kind["kind"], trial.gear.name, motion.tag)}
+                   if (cause, gear, tag) == (fault["kind"], trial.gear.name, motion.tag)}
             if not own:
                 continue
             known = [0.0, *sorted(own)]
             numbers = numpy.array([numpy.zeros(len(layout.names)), *(own[severity] for severity in known[1:])])
             for severity in SEVERITIES:
-                rows.append((kind["kind"], motion.tag, severity,
+                rows.append((fault["kind"], motion.tag, severity, kinds[trial.gear.name, motion.tag],
                              [numpy.interp(severity, known, column) for column in numbers.T]))
     for cause, lines in KINEMATICS.items():
         for (line, size), severity in itertools.product(lines.items(), SEVERITIES):
-            rows.append((cause, "kinematics", severity,
+            rows.append((cause, "kinematics", severity, (0.0, 0.0),
                          [severity * size if name == line else 0.0 for name in layout.names]))
     return Table([row[0] for row in rows], [row[1] for row in rows], numpy.array([row[2] for row in rows]),
-                 numpy.array([row[3] for row in rows]))
+                 numpy.array([row[3] for row in rows]), numpy.array([row[4] for row in rows]))
+
+
+def likeness(kinds, kind):
+    """Prior of each row within its cause, not normalized."""
+    speeds, directions = kinds.T
+    square = (numpy.log(kind[0] / numpy.where(speeds > 0.0, speeds, kind[0])) / SPEED_RANGE) ** 2
+    square += numpy.where(speeds > 0.0, (kind[1] - directions) / DIRECTION_RANGE, 0.0) ** 2
+    return OTHER_MOTION + numpy.exp(-0.5 * square)
 
 
 class Hypotheses:
@@ -138,6 +158,7 @@ class Hypotheses:
         free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
         change = numpy.where(free, amplitude_change(sound, change), change)
         self.rows = len(table.severities)
+        self.prior = likeness(table.kinds, kind_of(window))
         self.change = numpy.pad(change, [(0, len(UNKNOWN_STRENGTHS)), (0, 0)])
         self.severity = numpy.pad(table.severities, (0, len(UNKNOWN_STRENGTHS)))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
@@ -159,31 +180,35 @@ class Hypotheses:
                        numpy.log1p(numpy.maximum(square, 0.0) / self.freedom))
 
     def posterior(self, errors):
-        """(probability by cause, severity by cause)."""
+        """(probability, severity, its variance) by cause."""
         found = self.log_likelihoods(errors)
         names = list(dict.fromkeys(self.table.causes))
         weights = numpy.exp(errors.weight * (found - found.max()))
-        faults = weights[:self.rows]
-        means = {cause: numpy.mean(faults[self.causes == cause]) for cause in names}
-        severity = {cause: numpy.average(self.table.severities[self.causes == cause],
-                                         weights=faults[self.causes == cause] + 1e-300) for cause in names}
+        faults = self.prior * weights[:self.rows]
+        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[self.causes == cause])
+                 for cause in names}
+        severity, variance = {}, {}
+        for cause in names:
+            own, shares_of_own = self.table.severities[self.causes == cause], faults[self.causes == cause] + 1e-300
+            severity[cause] = numpy.average(own, weights=shares_of_own)
+            variance[cause] = numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
         means["none"] = numpy.mean(weights[self.rows:])
         total = sum(means.values())
-        return {cause: mean / total for cause, mean in means.items()}, severity
+        return {cause: mean / total for cause, mean in means.items()}, severity, variance
 
 
 def calibration_windows(bench):
-    """(kind, severity, window as the tool reports it) of faulty runs of other gears."""
-    drawn = f"{{uniform: [{GREASE[0]}, {GREASE[1]}]}}"
+    """(kind, severity, last assessed window as the tool reports it) of faulty runs of other gears."""
     found = []
     for trial in CALIBRATED:
         for motion in trial.motions:
-            bags = bench.faulty(trial, motion, drawn)
+            bags = bench.faulty(trial, motion, DRAWN)
             report = bench.indicators([bag for bag, _ in bags],
-                                      ["--baseline", bench.reference(trial.gear, motion), *ONCE])
-            rows = {str(bag): row for bag, row in bags}
-            found += [(rows[window["recording"]]["class"], float(rows[window["recording"]]["fault_severity"]), window)
-                      for window in report["windows"]]
+                                      ["--baseline", bench.reference(trial.gear, motion), *once(motion)])
+            last = {window["recording"]: window for window in report["windows"]
+                    if window["assessment"]["state"] == "assessed"}
+            found += [(row["class"], float(row["fault_severity"]), last[str(bag)]) for bag, row in bags
+                      if str(bag) in last]
     return found
 
 
@@ -224,13 +249,15 @@ def report(alarms, errors):
 
 
 def severity_error(alarms, errors):
-    """Of the estimate, as a share of it, rms over the alarms with the right cause."""
+    """Of the estimate, as a share of it, so that WITHIN of the estimates with the right cause are no farther off than
+    their stated deviation."""
     shares_off = []
     for alarm in alarms:
-        probability, severity = alarm.hypotheses.posterior(errors)
+        probability, severity, variance = alarm.hypotheses.posterior(errors)
         if max(probability, key=probability.get) == alarm.kind:
-            shares_off.append(1.0 - alarm.severity / severity[alarm.kind])
-    return math.sqrt(numpy.mean(numpy.square(shares_off)))
+            square = (severity[alarm.kind] - alarm.severity) ** 2 - variance[alarm.kind]
+            shares_off.append(math.sqrt(max(square, 0.0)) / severity[alarm.kind])
+    return numpy.quantile(shares_off, WITHIN)
 
 
 def cause_name(cause):
@@ -245,8 +272,8 @@ def numbers_text(numbers):
 
 
 def write(bench, source, page):
-    layout, sound, found = changes(bench)
-    table = table_of(layout, bench.kinds, found)
+    layout, sound, kinds, found = changes(bench)
+    table = table_of(layout, bench.kinds, kinds, found)
     alarms = alarms_of(layout, calibration_windows(bench), table)
     errors = fitted_errors(alarms)
     report(alarms, errors)
@@ -267,8 +294,9 @@ def write(bench, source, page):
              "inline constexpr std::array<double, SCALAR_COUNT> SOUND_VALUES{ "
              f"{numbers_text(sound[:len(scalars)])} }};", "",
              "inline constexpr Signature FITTED_SIGNATURES[] = {"]
-    lines += [f"{{ {cause_name(cause)}, {severity}, {{ {numbers_text(change)} }} }},  // {motion}"
-              for cause, motion, severity, change in zip(*table)]
+    for cause, motion, severity, (speed, direction), change in zip(*table):
+        numbers = f"{severity}, {{ {speed:.4g}, {direction:.2g} }}, {{ {numbers_text(change)} }}"
+        lines.append(f"{{ {cause_name(cause)}, {numbers} }},  // {motion}")
     source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
     write_table(layout, sound, table, page)
 
@@ -277,10 +305,11 @@ def read(source):
     """(table, errors) of what `write` wrote."""
     text = source.read_text(encoding="utf-8")
     values = dict(re.findall(r"double (\w+) = ([^;]+);", text))
-    rows = re.findall(r"\{ (?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (.*) \} \},  // (\w+)", text)
-    causes, severities, changes, motions = zip(*rows)
+    row = r"\{ (?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (\S+, \S+) \}, \{ (.*) \} \},  // (\w+)"
+    rows = re.findall(row, text)
+    causes, severities, kinds, changes, motions = zip(*rows)
     table = Table([cause.lower() for cause in causes], motions, numpy.array(severities, float),
-                  numpy.array([row.split(", ") for row in changes], float))
+                  *(numpy.array([row.split(", ") for row in rows], float) for rows in (kinds, changes)))
     return table, Errors(*(float(values[name]) for name in ("SIGNATURE_ERROR", "SIGNATURE_LENGTH_ERROR", "LINE_ERROR",
                                                             "EVIDENCE_WEIGHT")))
 
@@ -297,7 +326,7 @@ def write_table(layout, sound, table, page):
     lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", CALIBRATED))
     lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
     shown_causes = set()
-    for cause, motion, severity, change in zip(*table):
+    for cause, motion, severity, _, change in zip(*table):
         if motion == "check_up" and severity == 0.4 and cause not in shown_causes:
             shown_causes.add(cause)
             by_name = {name: number * (value if name in shares(cause) else 1.0)

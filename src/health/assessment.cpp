@@ -65,7 +65,7 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   }
   else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
-    explain(causePosterior(baseline_.residual()));
+    explain(causePosterior(baseline_.residual(), indicators.point));
     listEvidence(indicators, scores);
   }
   return assessment_;

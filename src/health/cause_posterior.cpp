@@ -18,6 +18,9 @@ using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
 
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
+constexpr double SPEED_RANGE = 0.2;                                // of the logarithm, in which motions are alike
+constexpr double DIRECTION_RANGE = 0.3;                            // as well
+constexpr double OTHER_MOTION = 1e-3;                              // weight of a signature of no motion alike
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
@@ -156,25 +159,37 @@ private:
   std::size_t count_{};
 };
 
+/// Prior of a signature within its cause, not normalized.
+double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
+{
+  if (!(motion.speed > 0.0 && point.speed > 0.0))
+  {
+    return 1.0 + OTHER_MOTION;
+  }
+  const double speed = std::log(point.speed / motion.speed) / SPEED_RANGE;
+  const double direction = (std::abs(point.direction) - motion.direction) / DIRECTION_RANGE;
+  return OTHER_MOTION + std::exp(-0.5 * (speed * speed + direction * direction));
+}
+
 /// Likelihoods of one cause, over its rows.
 struct Sum
 {
-  void add(double logarithm, double severity) noexcept
+  void add(double logarithm, double prior, double severity) noexcept
   {
-    const double weight = std::exp(EVIDENCE_WEIGHT * logarithm);
-    ++rows;
+    const double weight = prior * std::exp(EVIDENCE_WEIGHT * logarithm);
+    priors += prior;
     total += weight;
     first += weight * severity;
     second += weight * severity * severity;
   }
-  double rows{};
-  double total{};   // by the weight of the evidence
+  double priors{};
+  double total{};   // by prior and weight of the evidence
   double first{};   // of the severity
   double second{};  // of its square
 };
 }  // namespace
 
-CausePosterior causePosterior(const WindowResidual& residual) noexcept
+CausePosterior causePosterior(const WindowResidual& residual, const OperatingPoint& point) noexcept
 {
   const Terms terms(residual);
   std::array<double, std::size(FITTED_SIGNATURES)> likelihoods{};
@@ -195,11 +210,12 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
   for (std::size_t i = 0; i < likelihoods.size(); ++i)
   {
     const Signature& signature = FITTED_SIGNATURES[i];
-    sums[static_cast<std::size_t>(signature.cause)].add(likelihoods[i] - largest, signature.severity);
+    sums[static_cast<std::size_t>(signature.cause)].add(likelihoods[i] - largest, likeness(signature.motion, point),
+                                                        signature.severity);
   }
   for (const double likelihood : unknown)
   {
-    sums[static_cast<std::size_t>(Cause::NONE)].add(likelihood - largest, 0.0);
+    sums[static_cast<std::size_t>(Cause::NONE)].add(likelihood - largest, 1.0, 0.0);
   }
   CausePosterior posterior;
   double all = 0.0;
@@ -208,7 +224,7 @@ CausePosterior causePosterior(const WindowResidual& residual) noexcept
     const Sum& sum = sums[cause];
     if (sum.total > 0.0)
     {
-      posterior.probability[cause] = sum.total / sum.rows;
+      posterior.probability[cause] = sum.total / sum.priors;
       all += posterior.probability[cause];
       posterior.severity[cause] = sum.first / sum.total;
       const double mean = posterior.severity[cause];

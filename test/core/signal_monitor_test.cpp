@@ -875,8 +875,11 @@ protected:
     }
   }
 
-  CausePosterior posterior(const std::array<double, SIGNATURE_SIZE>& change)
+  CausePosterior posterior(const std::array<double, SIGNATURE_SIZE>& change, const MotionKind& motion)
   {
+    OperatingPoint point;
+    point.speed = motion.speed;
+    point.direction = -motion.direction;
     WindowResidual window;
     window.freedom = 40.0;
     const auto put = [&](std::size_t indicator, double value, double spread)
@@ -904,7 +907,7 @@ protected:
       }
     }
     const std::uint64_t before = allocationCount();
-    const CausePosterior found = causePosterior(window);
+    const CausePosterior found = causePosterior(window, point);
     EXPECT_EQ(allocationCount(), before);
     return found;
   }
@@ -912,6 +915,17 @@ protected:
   static double sum(const CausePosterior& posterior)
   {
     return std::accumulate(posterior.probability.begin(), posterior.probability.end(), 0.0);
+  }
+
+  /// Of its changes, in spreads: in some motions a fault changes next to nothing.
+  double strength(const Signature& signature) const
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+    {
+      sum = std::hypot(sum, spread_[i] > 0.0 ? signature.change[i] / spread_[i] : 0.0);
+    }
+    return sum;
   }
 
   std::array<double, SIGNATURE_SIZE> spread_{};
@@ -924,17 +938,11 @@ TEST_F(AgainstSignatures, EveryCauseIsAmongTheMostLikelyOfItsOwnSignature)
 {
   for (const Signature& signature : faultSignatures())
   {
-    // In some motions a fault changes next to nothing.
-    double strength = 0.0;
-    for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
-    {
-      strength = std::hypot(strength, spread_[i] > 0.0 ? signature.change[i] / spread_[i] : 0.0);
-    }
-    if (signature.severity < 0.4 || strength < 10.0)
+    if (signature.severity < 0.4 || strength(signature) < 10.0)
     {
       continue;
     }
-    const CausePosterior found = posterior(signature.change);
+    const CausePosterior found = posterior(signature.change, signature.motion);
     EXPECT_NEAR(sum(found), 1.0, 1e-9);
     const auto own = static_cast<std::size_t>(signature.cause);
     int before = 0;
@@ -960,6 +968,23 @@ TEST_F(AgainstSignatures, EveryCauseIsAmongTheMostLikelyOfItsOwnSignature)
   }
 }
 
+TEST_F(AgainstSignatures, OfAMotionLikeTheWindowsCountMore)
+{
+  double alike = 0.0;
+  double other = 0.0;
+  for (const Signature& signature : faultSignatures())
+  {
+    if (signature.motion.speed > 0.0 && strength(signature) > 10.0)
+    {
+      const auto own = static_cast<std::size_t>(signature.cause);
+      const MotionKind far{ 3.0 * signature.motion.speed, 1.0 - signature.motion.direction };
+      alike += posterior(signature.change, signature.motion).probability[own];
+      other += posterior(signature.change, far).probability[own];
+    }
+  }
+  EXPECT_GT(alike, 1.05 * other);
+}
+
 TEST_F(AgainstSignatures, WhatMovesEverythingAtRandomIsNoneOfThem)
 {
   std::array<double, SIGNATURE_SIZE> change{};
@@ -967,7 +992,7 @@ TEST_F(AgainstSignatures, WhatMovesEverythingAtRandomIsNoneOfThem)
   {
     change[i] = (i % 2 == 0 ? 20.0 : -20.0) * spread_[i];
   }
-  const CausePosterior found = posterior(change);
+  const CausePosterior found = posterior(change, ANY_MOTION);
   EXPECT_GT(found.probability[static_cast<std::size_t>(Cause::NONE)], 0.9);
 }
 

@@ -74,7 +74,7 @@ class Indicators(tool.ToolTest):
             self.assertTrue(alarms)
             for window in alarms:
                 layout = health_signatures.Layout(window["indicators"])
-                probability, _ = health_signatures.Hypotheses(layout, window, table).posterior(errors)
+                probability, *_ = health_signatures.Hypotheses(layout, window, table).posterior(errors)
                 found = window["assessment"]
                 self.assertEqual(found["cause"], max(probability, key=probability.get))
                 self.assertAlmostEqual(found["confidence"], probability[found["cause"]], delta=1e-6)

@@ -100,12 +100,21 @@ constexpr bool isShare(Cause cause, ScalarIndicator indicator)
   }
 }
 
+/// What tells one motion from another.
+struct MotionKind
+{
+  double speed;      ///< magnitude, motor [rad/s]
+  double direction;  ///< magnitude of OperatingPoint::direction, 0 ... 1 [-]
+};
+constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
+
 /// What a fault of one severity changes in the indicators of one gear in one motion.
 struct Signature
 {
   /// More or fewer numbers than there are do not compile.
   template <std::size_t COUNT>
-  constexpr Signature(Cause whose, double size, const double (&numbers)[COUNT]) : cause(whose), severity(size)
+  constexpr Signature(Cause whose, double size, const MotionKind& where, const double (&numbers)[COUNT])
+    : cause(whose), severity(size), motion(where)
   {
     static_assert(COUNT == SIGNATURE_SIZE, "a number for each indicator: run scripts/evaluate_health --fit");
     for (std::size_t i = 0; i < COUNT; ++i)
@@ -115,7 +124,8 @@ struct Signature
   }
 
   Cause cause;
-  double severity;                              ///< 0 ... 1 [-]
+  double severity;  ///< 0 ... 1 [-]
+  MotionKind motion;
   std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
 };
 
@@ -144,8 +154,8 @@ struct CausePosterior
 
 /// Likelihood of the window's differences d from the reference under every signature.
 ///
-/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it for every
-///        row
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it
+///        ~ w_0 + exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), the same as of n = n_h, q = q_h in ANY_MOTION
 ///        D_h,ii = D_ii (1 + (e S)^2) + (r mu_i)^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
 /// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
 ///        D, F, v  WindowResidual
@@ -153,7 +163,9 @@ struct CausePosterior
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
+///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
+///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Something of no signature: mu = 0, e S = 3, 10, 30, 100.
 /// Does not allocate.
-CausePosterior causePosterior(const WindowResidual& residual) noexcept;
+CausePosterior causePosterior(const WindowResidual& residual, const OperatingPoint& point) noexcept;
 }  // namespace hjt
