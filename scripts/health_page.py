@@ -11,6 +11,7 @@ import matplotlib
 import numpy
 
 import fault_figures
+import health_carried
 import health_runs
 import health_signatures
 import page_section
@@ -27,24 +28,33 @@ SET = 0.9             # probability that the causes of a set have together
 BLOCK = 10            # windows that a verdict at work is made of the mean of
 LEAST_WINDOWS = 3     # of them before the verdict may change
 TAIL = 0.6            # score over the threshold from which on the tail is taken
+CARRIED_BY = {health_runs.MODEL.name: "eccentricities unknown",
+              health_runs.CALIBRATED_MODEL.name: "eccentricities known"}
 BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 
 
-def collect(bench, trials):
-    """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion."""
+def collect(bench, trials, model=None):
+    """(sound, faulty, not judged) runs of trials, each compared with the reference of its gear and motion; with a
+    model motions to and fro at work, with that of the check-up."""
     sound, faulty = [], []
     for trial, motion in ((trial, motion) for trial in trials for motion in trial.motions):
+        if model and not motion.moves:
+            continue
         sound += sound_runs(bench, "sound", trial.gear, motion, 4,
-                            SOUND_CHECK_UPS if motion.windows == 1 else SOUND_RUNS)
-        faulty += bench.judge(bench.faulty(trial, motion, DRAWN), trial.gear, motion)
+                            SOUND_CHECK_UPS if motion.windows == 1 else SOUND_RUNS, model)
+        bags = bench.faulty(trial, motion, DRAWN)
+        faults = len(bench.kinds) * len(trial.severities)
+        models = bench.beside(model, bags, motion, DRAWN, trial.seed, faults) if model else ()
+        faulty += bench.judge(bags, trial.gear, motion, model, models)
     missing = [run for run in [*sound, *faulty] if not run.windows]
     return [run for run in sound if run.windows], [run for run in faulty if run.windows], missing
 
 
-def sound_runs(bench, purpose, gear, motion, seed, runs):
+def sound_runs(bench, purpose, gear, motion, seed, runs, model=None):
     motion = motion if motion.windows == 1 else health_runs.at_work(motion, SOUND_WINDOWS)
     bags = bench.sound(purpose, gear, motion, DRAWN, runs, seed)
-    return bench.judge(bags, gear, motion)
+    models = bench.beside(model, bags, motion, DRAWN, seed, paths=runs) if model else ()
+    return bench.judge(bags, gear, motion, model, models)
 
 
 def last(run):
@@ -267,12 +277,40 @@ def draw_confusion(kinds, faulty, path):
     plt.close(figure)
 
 
+def by_motion(runs):
+    """(name, runs) of each gear in each motion."""
+    return [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
+            itertools.groupby(runs, key=lambda run: (run.gear.name, run.motion.name))]
+
+
+def carried_report(bench, trials, own):
+    """Motions to and fro of trials without references of their own; `own`: faulty runs compared with such."""
+    columns = {"own reference": [run for run in own if run.motion.moves]}
+    lines = []
+    for model in health_runs.MODELS:
+        sound, faulty, missing = collect(bench, trials, model)
+        columns[f"carried, {CARRIED_BY[model.name]}"] = faulty
+        lines += [f"Sound drives, {CARRIED_BY[model.name]}; {len(missing)} runs were not judged:", "",
+                  *sound_table(by_motion(sound)), ""]
+    severities = severities_of(columns["own reference"])
+    lines += ["| kind | " + " | ".join(f"{name}, {severity:g}" for severity in severities for name in columns) + " |",
+              "|---|" + "---|" * (len(columns) * len(severities))]
+    for name in [*[kind["kind"] for kind in bench.kinds], "all"]:
+        cells = [share(alarmed(run) for run in runs if name in (run.kind, "all") and run.severity == severity)
+                 for severity in severities for runs in columns.values()]
+        lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
+    lines.append("")
+    for name, runs in columns.items():
+        sure = [run for run in runs if alarmed(run) and run.severity >= SURE]
+        lines.append(f"- {name}: cause right in {share(map(right, sure))} alarms from severity {SURE} on, in the set "
+                     f"in {share(map(in_set, sure))}; calibration error of all alarms {reliability(runs)[1]:.3f}.")
+    return lines
+
+
 def report(bench, trials, sound, faulty, missing, page):
     bound = detectabilities(page)
     rows, error = reliability(faulty)
-    work = [run for run in sound if run.motion != CHECK_UP]
-    groups = [(f"{gear}, {motion}", list(own)) for (gear, motion), own in
-              itertools.groupby(work, key=lambda run: (run.gear.name, run.motion.name))]
+    groups = by_motion([run for run in sound if run.motion != CHECK_UP])
     return [f"{len(sound)} sound and {len(faulty)} faulty runs; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged, whose operating point has "
             "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
@@ -292,7 +330,8 @@ def main():
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds health.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for plans and bags")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
-    parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes again, and nothing else")
+    parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes, and the errors of a "
+                        "reference that is carried, again, and nothing else")
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
@@ -302,8 +341,9 @@ def main():
     bench = health_runs.Bench(options.tool, options.work, options.jobs)
     page = options.docs / "health.md"
     if options.fit:
-        source = options.docs.parent / "src" / "health" / "fitted_signatures.hpp"
-        health_signatures.write(bench, source, options.docs / "indicators.md")
+        source = options.docs.parent / "src" / "health"
+        health_carried.write(bench, source / "carried_errors.hpp")
+        health_signatures.write(bench, source / "fitted_signatures.hpp", options.docs / "indicators.md")
         print(f"evaluate_health: wrote {source}; scripts/build takes it up", file=sys.stderr)
         return
     if options.quick:
@@ -320,6 +360,7 @@ def main():
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
     page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing, page))
+    page_section.write(page, "carried", carried_report(bench, JUDGED, faulty))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)
 
 

@@ -71,6 +71,12 @@ EVEN = Gear("shipped", True, [])
 LOOSE = even("loose", 0.935, -0.7e-6, 450.0, 300.0e-6)
 TIGHT = even("tight", 1.053, -1.4e-6, 590.0, 380.0e-6)
 FRESH = even("fresh", 1.025, -1.2e-6, 515.0, 335.0e-6)
+# What is subtracted where a reference is carried from one motion to another: the shipped gear, without noise, with the
+# encoders' eccentricities known or not.
+QUIET = [f"  sensors.{sensor}_noise: 0.0" for sensor in ("motor", "output", "torque")]
+CALIBRATED_MODEL = Gear("beside calibrated", True, QUIET)
+MODEL = Gear("beside", True, [*QUIET, "  sensors.motor_eccentricity: 0.0", "  sensors.output_eccentricity: 0.0"])
+MODELS = [MODEL, CALIBRATED_MODEL]
 
 
 def uneven(seed):
@@ -114,6 +120,11 @@ JUDGED = [Trial("judged", drawn(860), [CHECK_UP, at_work(LABELLING)], [0.2, 0.5]
           Trial("judged", drawn(863), [CHECK_UP, at_work(turn(76))], [0.2, 0.5], 20, 94),
           Trial("judged", uneven(75025), [CHECK_UP], [0.2, 0.5], 70, 95),
           Trial("judged", uneven(28657), [CHECK_UP], [0.2, 0.5], 190, 96)]
+# Gears whose references of the check-up are carried to motions at work, without a fault: how far they are off.
+CARRIED = [drawn(702), drawn(703), LOOSE, FRESH, *map(of_series, range(120, 126))]
+CARRIED_MOTIONS = [STACKING, LOADING, PICK_AND_PLACE, SEAM, SORTING, TENDING]
+CARRIED_RUNS = 20         # of each gear and motion
+CARRIED_SEED = 7
 SERIES_FIRST = 140  # gears of lower numbers were looked at while the assessment was made
 SERIES_MOTIONS = [at_work(motion) for motion in (PICK_AND_PLACE, SEAM, TENDING, SORTING)]  # one each in turn
 QUICK = [Trial("quick", TIGHT, [CHECK_UP, at_work(PICK_AND_PLACE)], [0.5], 60, 5)]
@@ -259,25 +270,39 @@ class Bench:
     def differences(self, trial):
         """(motion, sound runs, runs with faults) of a trial: the same temperatures, no noise."""
         grid = f"{{grid: {SAME}}}"
-        noise = [f"  sensors.{sensor}_noise: 0.0" for sensor in ("motor", "output", "torque")]
-        return [(motion, self.sound("same", trial.gear, motion, grid, 1, 1, noise),
-                 self.faulty(trial, motion, grid, noise)) for motion in trial.motions]
+        return [(motion, self.sound("same", trial.gear, motion, grid, 1, 1, QUIET),
+                 self.faulty(trial, motion, grid, QUIET)) for motion in trial.motions]
 
-    def reference(self, gear, motion):
-        """File of the healthy reference, from runs of its own."""
-        temperature, runs = f"{{grid: {COMMISSIONING}}}", 8
+    def beside(self, model, bags, motion, temperature, seed, repeats=1, paths=1):
+        """Bags of a model beside the runs `bags`, in their order: same path, temperature and payload."""
+        name = f"{model.name}_{motion.tag}_{motion.windows}_{seed}_{repeats}_{paths}"
+        runs = self.sweep(name, model, motion, temperature, ["  healthy: []"], repeats, seed, paths=paths)
+        own = {row["run"]: (bag, row) for bag, row in runs}
+        for _, row in bags:
+            drawn = own[row["run"]][1]
+            if any(drawn[key] != row[key] for key in drawn if key.startswith(("set.", "duty"))):
+                sys.exit(f"evaluate_health: run {row['run']} of {name} differs from that of the joint")
+        return [own[row["run"]][0] for _, row in bags]
+
+    def reference(self, gear, motion, model=None):
+        """File of the healthy reference, from runs of its own; of the check-up also less a model."""
+        temperature, repeats = f"{{grid: {COMMISSIONING}}}", 8
         if motion.windows > 1:
-            motion, temperature, runs = at_work(motion, REFERENCE_WINDOWS), DRAWN, REFERENCE_RUNS
-        bags = self.sound("commissioning", gear, motion, temperature, runs, 1)
-        path = self.work / f"reference_{gear.name.replace(' ', '_')}_{motion.tag}.yaml"
-        self.indicators([bag for bag, _ in bags],
-                        ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"])
+            motion, temperature, repeats = at_work(motion, REFERENCE_WINDOWS), DRAWN, REFERENCE_RUNS
+        bags = self.sound("commissioning", gear, motion, temperature, repeats, 1)
+        models = self.beside(model, bags, motion, temperature, 1, repeats) if model else []
+        name = f"reference_{gear.name}_{motion.tag}{f'_{model.name}' if model else ''}".replace(" ", "_")
+        path = self.work / f"{name}.yaml"
+        self.indicators(bags, ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"],
+                        models)
         return path
 
-    def judge(self, bags, gear, motion):
-        """Assessments of runs compared with the reference, none of windows at an operating point that it has not."""
-        report = self.indicators([bag for bag, _ in bags], ["--baseline", self.reference(gear, motion),
-                                                            *once(motion)])
+    def judge(self, bags, gear, motion, model=None, models=()):
+        """Assessments of runs compared with the reference, none of windows at an operating point that it has not. With
+        a model and its bags the reference is carried from the check-up."""
+        reference = self.reference(gear, CHECK_UP if model else motion, model)
+        options = ["--baseline", reference, *once(motion), *(["--carry"] if model else [])]
+        report = self.indicators(bags, options, models)
         windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict = window["assessment"]
@@ -289,7 +314,9 @@ class Bench:
                     windows[str(bag)])
                 for bag, row in bags]
 
-    def indicators(self, bags, options=()):
-        done = subprocess.run([self.tool, "indicators", "--windows", "--json", *options, *bags], check=True,
-                              capture_output=True, text=True)
+    def indicators(self, bags, options=(), models=()):
+        """Of (bag, row) pairs, less those of a model's bag for each."""
+        beside = [part for model in models for part in ("--model", model)]
+        done = subprocess.run([self.tool, "indicators", "--windows", "--json", *options, *beside,
+                               *(bag for bag, _ in bags)], check=True, capture_output=True, text=True)
         return json.loads(done.stdout)

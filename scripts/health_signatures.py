@@ -83,7 +83,7 @@ class Layout:
 
 def windows_of(bench, bags):
     """The runs' own, by bag."""
-    report = bench.indicators([bag for bag, _ in bags])
+    report = bench.indicators(bags)
     return {window["recording"]: window for window in report["windows"]}
 
 
@@ -203,7 +203,7 @@ def calibration_windows(bench):
     for trial in CALIBRATED:
         for motion in trial.motions:
             bags = bench.faulty(trial, motion, DRAWN)
-            report = bench.indicators([bag for bag, _ in bags],
+            report = bench.indicators(bags,
                                       ["--baseline", bench.reference(trial.gear, motion), *once(motion)])
             last = {window["recording"]: window for window in report["windows"]
                     if window["assessment"]["state"] == "assessed"}

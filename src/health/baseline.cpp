@@ -10,6 +10,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "health/carried_errors.hpp"
 #include "health/indicator_table.hpp"
 #include "health/reference_fit.hpp"
 
@@ -24,6 +25,7 @@ constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
 constexpr int MIN_COUNT = 8;        // windows before a spread means anything; as least of indicators.baseline_windows
 constexpr std::size_t TRIMMED = 5;  // one of so many is left out at either end
 constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
+constexpr double CARRIED_WINDOWS = 10.0;  // of the means that CarriedError is fitted to
 constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
 
 int stepOf(double value, double step) noexcept
@@ -78,6 +80,25 @@ std::size_t sizeOf(std::size_t indicator) noexcept
   constexpr std::size_t PARTS = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
   return indicator < PARTS ? indicator :
                              amplitudeIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED) + (indicator - PARTS) / 2;
+}
+
+/// What the drive differs from the model by: of a line the root of the sum of squares over the lines of its signal
+/// whose phase stays, for resonances make any of them large in one motion and small in another.
+double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
+{
+  if (indicator < SCALAR_COUNT)
+  {
+    return std::abs(bin.references[indicator].mean);
+  }
+  const LineSignal signal =
+      indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] : LineSignal::MOTOR_RIPPLE;
+  double square = 0.0;
+  for (std::size_t line = 0; line < FIRST_LOCKED; ++line)
+  {
+    const double amplitude = bin.references[amplitudeIndex(signal, line)].mean;
+    square += amplitude * amplitude;
+  }
+  return std::sqrt(square);
 }
 }  // namespace
 
@@ -147,10 +168,11 @@ void Baseline::makeRoom()
   compared_.resize(bins * evidence_windows_);
 }
 
-void Baseline::setReference(std::vector<ReferenceBin> bins)
+void Baseline::setReference(std::vector<ReferenceBin> bins, bool carried)
 {
   bins_ = std::move(bins);
   given_ = true;
+  carried_ = carried;
   makeRoom();
 }
 
@@ -180,12 +202,27 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   return &bins_.back();
 }
 
+ReferenceBin* Baseline::findCarried(const OperatingBin& bin) noexcept
+{
+  ReferenceBin* most = nullptr;
+  for (ReferenceBin& known : bins_)
+  {
+    const bool serves = known.bin.direction == 0 && known.bin.temperature == bin.temperature;
+    if (serves && (most == nullptr || known.windows > most->windows))
+    {
+      most = &known;
+    }
+  }
+  return bin.direction == 0 ? most : nullptr;
+}
+
 BaselineState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
                                Deviations& deviations) noexcept
 {
   deviations = {};
   residual_ = {};
-  ReferenceBin* bin = find(binOf(indicators.point, load_step_));
+  const OperatingBin own = binOf(indicators.point, load_step_);
+  ReferenceBin* bin = carried_ ? findCarried(own) : find(own);
   if (bin == nullptr || (given_ && bin->windows < MIN_COUNT))
   {
     return BaselineState::NO_REFERENCE;
@@ -237,7 +274,11 @@ void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators,
                     Compared& window) noexcept
 {
   const Place here = placeIn(bin.bin, indicators.point, load_step_);
-  const PlaceVector place = mapped(here) - mapped(bin.mean_place);
+  PlaceVector place = mapped(here) - mapped(bin.mean_place);
+  if (carried_)
+  {
+    place.tail<PLACES - OWN_PLACES>().setZero();  // load and payload are the model's to follow
+  }
   window.leverage = place.dot(mapped(bin.leverage) * place);
   window.error = indicators.uncertainty;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -313,8 +354,11 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     leverage += compared_[i].leverage / static_cast<double>(count);
   }
   residual_.windows = static_cast<int>(count);
+  const double fewer = std::max(CARRIED_WINDOWS / static_cast<double>(count), 1.0);  // as if all of it were noise
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
+    const bool sound_known = std::isfinite(residual_.sound[i]);  // else the model did not determine it in this window
+    residual_.sound[i] = sound_known ? residual_.sound[i] : 0.0;
     const Average average = this->average(first, count, i);
     if (average.weight == 0.0)  // too few windows determined it
     {
@@ -324,20 +368,28 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Persistence persistence = persistenceOf(bin, reference);
     const double n = reference.count;
     const double fitted = reference.fitted ? bin.slopes_freedom : 0.0;
-    const double freedom = std::max(persistence.independent * n - 1.0 - fitted, 1.0);
+    const CarriedError carried = carried_ ? CARRIED_ERRORS[i] : CarriedError{ 0.0, 0.0, n };
+    const double freedom = std::clamp(persistence.independent * n - 1.0 - fitted, 1.0, carried.freedom);
+    const double off = carried.share * sizeOffModel(bin, i);
+    const double carried_square = (carried.deviation * carried.deviation + off * off) * fewer;
     const double h = (1.0 + (reference.fitted ? leverage * bin.windows : 0.0)) / n / persistence.independent;
     const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight };
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;
-    deviations[i] = deviation(average.difference, expected_[i],
-                              std::sqrt(variance(i, bin, average, reference.variance, widening)), freedom);
-    const Causes common = Eigen::Map<const Causes>(reference.common.data());
+    deviations[i] =
+        deviation(average.difference, expected_[i],
+                  std::sqrt(variance(i, bin, average, reference.variance, widening) + carried_square), freedom);
+    if (!sound_known)
+    {
+      continue;
+    }
+    const Causes common = carried_ ? Causes(Causes::Zero()) : Causes(Eigen::Map<const Causes>(reference.common.data()));
     const double found = static_cast<double>((common.array() != 0.0).count());
     const double left =
         std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening);
+    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening) + carried_square;
     Eigen::Map<Causes>(residual_.common[i].data()) =
         std::sqrt(reference.variance * (widening.stays + widening.varies)) * common;
   }

@@ -75,7 +75,7 @@ ReferenceBin readBin(const YAML::Node& node)
 }
 }  // namespace
 
-std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters)
+std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters, bool less_model)
 {
   std::vector<ReferenceBin> bins;
   try
@@ -93,6 +93,11 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
                        ", three eighths of life.rated_torque; save it again with "
                        "this gear's parameters");
     }
+    if ((file["model"] && file["model"].as<bool>()) != less_model)
+    {
+      throw InputError(less_model ? "it was saved without a model, and a model is subtracted here" :
+                                    "it was saved with --model, which is missing here");
+    }
     for (const YAML::Node& node : list)
     {
       bins.push_back(readBin(node));
@@ -109,7 +114,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
   return bins;
 }
 
-void writeBaseline(const std::string& path, const Baseline& baseline)
+void writeBaseline(const std::string& path, const Baseline& baseline, bool less_model)
 {
   std::ostringstream text;
   const auto list = [](const auto& numbers)
@@ -129,7 +134,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline)
          "# Each indicator: [windows, mean, spread, spread from one window to the next (0: not known), slopes over the "
          "place, share\n# of the spread that goes with each common cause], units as in docs/indicators.md.\n"
          "load_step: "
-      << numberText(baseline.loadStep()) << "\nbaseline:\n";
+      << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
+      << "  # whether a model's indicators were subtracted\nbaseline:\n";
   for (ReferenceBin bin : baseline.bins())
   {
     if (!baseline.given())

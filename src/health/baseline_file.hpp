@@ -8,12 +8,14 @@
 
 namespace hjt
 {
-/// References as YAML: `load_step`, between two classes of load [N.m], and a list `baseline` of operating bins, with
-/// `[windows, mean, spread]` of each indicator.
+/// References as YAML: `load_step`, between two classes of load [N.m], `model`, whether a model's indicators were
+/// subtracted, and a list `baseline` of operating bins, with `[windows, mean, spread]` of each indicator.
 
-/// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear.
-std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters);
+/// `less_model`: of windows from which a model's are subtracted.
+/// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear, or it was
+/// learned with a model and is used without one, or the other way round.
+std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters, bool less_model);
 
 /// @throws InputError if the file cannot be written.
-void writeBaseline(const std::string& path, const Baseline& baseline);
+void writeBaseline(const std::string& path, const Baseline& baseline, bool less_model);
 }  // namespace hjt

@@ -16,6 +16,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/angle_multiples.hpp"
+#include "health/carried_errors.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
 #include "test/core/test_parameters.hpp"
@@ -857,6 +858,87 @@ TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)
   const WindowResidual& residual = assessor.baseline().residual();
   EXPECT_DOUBLE_EQ(residual.sound[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], 24000.0);
   EXPECT_DOUBLE_EQ(residual.difference[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], -2400.0);
+}
+
+/// A reference of a motion to and fro that is carried to one of twice the speed and three times the load.
+class CarriedReference : public testing::Test
+{
+protected:
+  CarriedReference()
+  {
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      update(learned_, { 80.0, 0.0, 20.0, 25.0 + normal_(random_) }, normal_(random_));
+    }
+    carried_.setReference(learned_.baseline().bins(), true);
+  }
+
+  const Assessment& update(Assessor& assessor, const OperatingPoint& point, double stiffness_error)
+  {
+    SignalIndicators model;
+    model.values[STIFFNESS] = model_stiffness_;
+    model.values[TORQUE] = 0.1 + 0.001 * point.load;
+    SignalIndicators measured = model;
+    measured.point = point;
+    measured.values[STIFFNESS] = 30000.0 + stiffness_error;
+    measured.values[TORQUE] += 1e-4 * normal_(random_);
+    return assessor.update(difference(measured, model), &model);
+  }
+
+  const Assessment& tenWindows(Assessor& assessor, const OperatingPoint& point, double stiffness_error)
+  {
+    for (int window = 0; window < 10; ++window)
+    {
+      update(assessor, point, stiffness_error + normal_(random_));
+    }
+    return assessor.assessment();
+  }
+
+  static constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
+  static constexpr std::size_t TORQUE = indexOf(ScalarIndicator::RUNNING_TORQUE);
+  static constexpr OperatingPoint OTHER{ 160.0, 0.0, 60.0, 25.0 };
+
+  const double carried_error_ =
+      std::hypot(CARRIED_ERRORS[STIFFNESS].deviation, CARRIED_ERRORS[STIFFNESS].share * 1000.0);
+  double model_stiffness_{ 29000.0 };  // the drive's is 30000
+  std::mt19937 random_{ 7 };
+  std::normal_distribution<double> normal_;
+  Assessor learned_{ shippedParameters() };
+  Assessor carried_{ shippedParameters() };
+};
+
+TEST_F(CarriedReference, JudgesAMotionThatHasNone)
+{
+  EXPECT_EQ(tenWindows(carried_, OTHER, 0.0).state, AssessmentState::ASSESSED);
+  EXPECT_EQ(carried_.assessment().level, HealthLevel::OK);
+  EXPECT_NEAR(carried_.baseline().residual().sound[STIFFNESS], 30000.0, 1.0);
+  EXPECT_NEAR(carried_.baseline().residual().difference[TORQUE], 0.0, 1e-4);
+  Assessor own(shippedParameters());
+  own.setReference(learned_.baseline().bins());
+  EXPECT_EQ(tenWindows(own, OTHER, 0.0).state, AssessmentState::NO_REFERENCE);
+}
+
+TEST_F(CarriedReference, IsOffByWhatOtherGearsWere)
+{
+  EXPECT_EQ(tenWindows(carried_, OTHER, 3.0 * carried_error_).level, HealthLevel::OK);
+  EXPECT_EQ(tenWindows(carried_, OTHER, -40.0 * carried_error_).level, HealthLevel::ERROR);
+  EXPECT_EQ(carried_.assessment().evidence[0].indicator, STIFFNESS);
+}
+
+TEST_F(CarriedReference, IsOfTheSameTemperatureAndOfMotionsToAndFro)
+{
+  EXPECT_EQ(tenWindows(carried_, { 160.0, 0.0, 60.0, 45.0 }, 0.0).state, AssessmentState::NO_REFERENCE);
+  EXPECT_EQ(tenWindows(carried_, { 160.0, 1.0, 60.0, 25.0 }, 0.0).state, AssessmentState::NO_REFERENCE);
+}
+
+TEST_F(CarriedReference, LeavesOutOfTheCauseWhatTheModelDidNotDetermine)
+{
+  tenWindows(carried_, OTHER, -40.0 * carried_error_);
+  model_stiffness_ = std::numeric_limits<double>::quiet_NaN();
+  const Assessment& assessment = update(carried_, OTHER, 0.0);
+  EXPECT_GT(assessment.largest_score, 1.0);
+  EXPECT_EQ(carried_.baseline().residual().own[STIFFNESS], 0.0);
+  EXPECT_TRUE(std::isfinite(assessment.confidence));
 }
 
 /// A window that differs from its reference by noise, and by a signature where one is given.

@@ -30,6 +30,21 @@ def recording(line_after=None, seconds=30.0, rate=500.0, line=4.0):
     return "\n".join(lines) + "\n"
 
 
+def to_and_fro(speed, drag, error, names="t,theta,phi,amps"):
+    """CSV of a joint whose motor turns 80 rad one way and back at a speed [rad/s], with friction [N.m] and an error at
+    order 2 [arcsec]."""
+    lines = [names]
+    for row in range(15000):
+        time = row / 500.0
+        back, travel = divmod(speed * time, 80.0)
+        motor = 80.0 - travel if back % 2 else travel
+        torque = (-drag if back % 2 else drag) + 0.001 * math.cos(row * 1.3)
+        noise = 0.5 * math.sin(row * row * 0.37)
+        output = motor / 101.0 - ARCSEC * (error * math.cos(2.0 * motor) + noise)
+        lines.append(f"{time:.6f},{motor:.9f},{output:.12f},{10.0 * torque:.5f}")
+    return "\n".join(lines) + "\n"
+
+
 COLUMNS = ["--time", "t", "--motor-angle", "theta", "--output-angle", "phi", "--motor-torque", "amps",
            "--torque-scale", 0.1]
 
@@ -87,6 +102,30 @@ class Indicators(tool.ToolTest):
         report = self.succeed_json("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS, "--model", "model.csv")
         for name in ["error_wave_generator_2", "error_outer", "kinematic_error"]:
             self.assertAlmostEqual(report["windows"][-1]["indicators"][name], 0.0, delta=1e-12)
+
+    def test_a_model_carries_the_reference_to_another_motion(self):
+        model = "time,motor_angle_encoder,output_angle_encoder,motor_torque"
+        for name, speed, drag in [("slow", 60.0, 0.25), ("fast", 100.0, 0.25), ("worn", 100.0, 0.4)]:
+            self.write(f"{name}.csv", to_and_fro(speed, drag, 5.0))
+            self.write(f"{name}_model.csv", to_and_fro(speed, 0.024, 4.0, model))  # motor_torque has no scale
+        self.succeed("indicators", "slow.csv", *COLUMNS, *SMALL_WINDOWS, "--model", "slow_model.csv",
+                     "--save-baseline", "b.yaml")
+        judged = [*COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml"]
+        unknown = self.succeed_json("indicators", "fast.csv", *judged, "--model", "fast_model.csv")
+        self.assertEqual(unknown["assessment"]["state"], "no reference")
+        report = self.succeed_json("indicators", "fast.csv", "worn.csv", *judged, "--carry", "--model",
+                                   "fast_model.csv", "--model", "worn_model.csv")
+        last = {window["recording"]: window["assessment"] for window in report["windows"]}
+        self.assertEqual([last[name]["state"] for name in ("fast.csv", "worn.csv")], ["assessed", "assessed"])
+        self.assertEqual(last["fast.csv"]["level"], "OK")
+        self.assertNotEqual(last["worn.csv"]["level"], "OK")
+        self.assertIn("running_torque", [item["indicator"] for item in last["worn.csv"]["evidence"]])
+
+        self.fail_with(1, ["b.yaml is no baseline: it was saved with --model, which is missing here"],
+                       "indicators", "fast.csv", *judged)
+        self.fail_with(1, ["--model was given 1 times for 2 recordings"],
+                       "indicators", "fast.csv", "worn.csv", *COLUMNS, "--model", "fast_model.csv")
+        self.fail_with(2, ["--model"], "indicators", "fast.csv", *judged, "--carry")
 
     def test_a_bag_of_the_twin_gives_the_same_as_its_table(self):
         run = ["--torque", 0.2, "--duration", 1.5, "--set", "publish.joint_states_rate=2000"]

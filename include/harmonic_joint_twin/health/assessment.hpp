@@ -81,7 +81,10 @@ public:
   explicit Assessor(const Parameters& parameters);
 
   void reset() noexcept;
-  void setReference(std::vector<ReferenceBin> bins) { baseline_.setReference(std::move(bins)); }
+  void setReference(std::vector<ReferenceBin> bins, bool carried = false)
+  {
+    baseline_.setReference(std::move(bins), carried);
+  }
 
   /// A window was completed. `model`: indicators of a model that were subtracted from it.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;

@@ -160,6 +160,10 @@ enum class BaselineState : std::uint8_t
 ///                 r' as r, less the error; 1 if none followed another
 ///        u        standard error of the fit;  f  indicators.least_spread;  q  a tenth of what one encoder count makes;
 ///          0.3 for kurtosis, 0.5 for crest
+/// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
+/// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
+/// grows by the squares of CarriedError::deviation and of CarriedError::share of |m| (of a line: of all amplitudes of
+/// its signal together), both times 10/windows below ten windows, v is CarriedError::freedom at most, and F is 0.
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
 /// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
 class Baseline
@@ -170,8 +174,8 @@ public:
 
   explicit Baseline(const Parameters& parameters);
 
-  /// Uses the reference of a file; learning stops.
-  void setReference(std::vector<ReferenceBin> bins);
+  /// Uses the reference of a file; learning stops. `carried`: to another motion.
+  void setReference(std::vector<ReferenceBin> bins, bool carried = false);
 
   void reset() noexcept;  ///< forgets what was learned, not what was given
 
@@ -220,6 +224,7 @@ private:
   };
 
   ReferenceBin* find(const OperatingBin& bin) noexcept;
+  ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom();
   void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
             Compared& window) noexcept;
@@ -240,6 +245,7 @@ private:
   std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted
   OperatingBin bin_;
   bool given_{};
+  bool carried_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity
   std::vector<Recent> recent_;      // by bin
   std::vector<Compared> compared_;  // evidence_windows_ by bin

@@ -205,7 +205,7 @@ SoundJoint readSoundJoint(const std::string& directory, const Parameters& parame
   const std::string baseline = directory + "/" + BASELINE_FILE;
   if (std::filesystem::exists(baseline))
   {
-    sound.baseline = readBaseline(baseline, parameters);
+    sound.baseline = readBaseline(baseline, parameters, false);
   }
   return sound;
 }
@@ -221,7 +221,7 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
   writeTwinStates(directory + "/twin_states.csv", record.twin_states);
   if (!comparison.evidence().assessor().baseline().bins().empty())
   {
-    writeBaseline(directory + "/" + BASELINE_FILE, comparison.evidence().assessor().baseline());
+    writeBaseline(directory + "/" + BASELINE_FILE, comparison.evidence().assessor().baseline(), false);
   }
 
   const MotionReach& reach = comparison.evidence().reach();

@@ -32,10 +32,11 @@ namespace
 {
 struct IndicatorsOptions : SignalOptions
 {
-  std::string model;
+  std::vector<std::string> models;  // none, or one for each recording
   std::string baseline;
   std::string save_baseline;
   std::string out;
+  bool carry{};    ///< the reference is of another motion
   bool windows{};  ///< the recordings hold the windows' indicators, not the signals
 };
 
@@ -230,22 +231,25 @@ void printSummary(const std::vector<WindowResult>& windows)
   printReport(false, lines);
 }
 
-/// All windows of a recording, less those of the model if there is one, which come into `model`.
-std::vector<SignalIndicators> readRecording(const std::string& path, const IndicatorsOptions& options,
+/// All windows of recording `index`, less those of its model if there is one, which come into `model`.
+std::vector<SignalIndicators> readRecording(std::size_t index, const IndicatorsOptions& options,
                                             const Parameters& parameters, std::vector<SignalIndicators>& model)
 {
+  const std::string published = options.joint_namespace + "/" + topics::INDICATORS;
   std::uint64_t refused = 0;
-  std::vector<SignalIndicators> measured =
-      options.windows ? readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS) :
-                        readWindows(path, options.source, parameters, refused);
-  if (!options.model.empty())
+  const auto read = [&](const std::string& path, const SignalSource& source, std::uint64_t& passed_over)
+  {
+    return options.windows ? readPublishedWindows(path, published) : readWindows(path, source, parameters, passed_over);
+  };
+  std::vector<SignalIndicators> measured = read(options.recordings[index], options.source, refused);
+  if (!options.models.empty())
   {
     SignalSource model_source;
     model_source.joint = options.source.joint;
     model_source.states_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
     model_source.load_topic = options.joint_namespace + "/" + topics::LOAD;
     std::uint64_t model_refused = 0;
-    model = readWindows(options.model, model_source, parameters, model_refused);
+    model = read(options.models[index], model_source, model_refused);
     measured.resize(std::min(measured.size(), model.size()));
     for (std::size_t i = 0; i < measured.size(); ++i)
     {
@@ -265,20 +269,28 @@ int run(const IndicatorsOptions& given)
   {
     requireWritable(file, options.force, options.recordings.front());
   }
+  const bool less_model = !options.models.empty();
+  if (less_model && options.models.size() != options.recordings.size())
+  {
+    throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
+                     std::to_string(options.recordings.size()) +
+                     " recordings; it takes the twin's own recording of each, in their order");
+  }
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.setReference(readBaseline(options.baseline, parameters));
+    assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
   }
   std::vector<WindowResult> windows;
-  for (const std::string& recording : options.recordings)
+  for (std::size_t index = 0; index < options.recordings.size(); ++index)
   {
+    const std::string& recording = options.recordings[index];
     if (!options.baseline.empty())
     {
       assessor.reset();  // each is judged for itself
     }
     std::vector<SignalIndicators> model;
-    const std::vector<SignalIndicators> measured = readRecording(recording, options, parameters, model);
+    const std::vector<SignalIndicators> measured = readRecording(index, options, parameters, model);
     if (measured.empty())
     {
       std::cerr << "joint_twin: " << recording << " holds no whole window of steady motion\n";
@@ -298,7 +310,7 @@ int run(const IndicatorsOptions& given)
   writeTable(options.out, fileColumns(), windows);
   if (!options.save_baseline.empty())
   {
-    writeBaseline(options.save_baseline, assessor.baseline());
+    writeBaseline(options.save_baseline, assessor.baseline(), less_model);
   }
   if (options.json)
   {
@@ -316,13 +328,21 @@ int run(const IndicatorsOptions& given)
 void declare(Command& command, IndicatorsOptions& options)
 {
   addSignalOptions(command, options);
-  command.add("--model", options.model, "the twin's own recording of the same run: its indicators are taken off")
+  command
+      .add("--model", options.models,
+           "the twin's own recording of the same run, whose indicators are subtracted; once for each recording, in "
+           "their order")
       .type("FILE.csv|FILE.bag|FILE.h5")
       .check(wrongSignalFile);
   command.flag("--windows", options.windows,
                "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
   command.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
       .type("FILE.yaml");
+  command
+      .flag("--carry", options.carry,
+            "the reference is of another motion to and fro, a check-up: carried to this one by the models")
+      .needs("--baseline")
+      .needs("--model");
   command.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
   command.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
   addCommonOptions(command, options);

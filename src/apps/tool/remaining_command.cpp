@@ -105,7 +105,7 @@ int run(const RemainingOptions& options)
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
-    assessor.setReference(readBaseline(options.baseline, parameters));
+    assessor.setReference(readBaseline(options.baseline, parameters, false));
   }
   Assessment assessment;  // the last one that counts
   for (const std::string& recording : options.recordings)
