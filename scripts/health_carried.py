@@ -82,7 +82,7 @@ def write(bench, source):
              "/// What the indicators of a sound drive, less a model's, differ by from one motion to another.",
              "struct CarriedError", "{",
              "  double deviation;  ///< rms of a drive like the model, unit of the indicator; 1e30: not known",
-             "  double share;      ///< of what the drive differs from the model by, a line by its amplitude [-]",
+             "  double share;      ///< of what the drive differs from the model by, of a line all of its signal [-]",
              "  double freedom;    ///< degrees of freedom both are known with [-]", "};", "",
              "// clang-format off",
              "inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS{ {"]

@@ -12,7 +12,7 @@ namespace hjt
 struct CarriedError
 {
   double deviation;  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
-  double share;      ///< of what the drive differs from the model by, a line by its amplitude [-]
+  double share;      ///< of what the drive differs from the model by, of a line all of its signal [-]
   double freedom;    ///< degrees of freedom both are known with [-]
 };
 
