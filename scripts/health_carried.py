@@ -77,7 +77,7 @@ def errors(pairs):
 def write(bench, source):
     pairs = [pair_of(bench, gear, motion, model) for gear in CARRIED for motion in CARRIED_MOTIONS for model in MODELS]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
-             "#pragma once", "", "#include <array>", "",
+             "#pragma once", "", "#include <iterator>", "",
              '#include "harmonic_joint_twin/health/signal_indicators.hpp"', "", "namespace hjt", "{",
              "/// What the indicators of a sound drive, less a model's, differ by from one motion to another.",
              "struct CarriedError", "{",
@@ -85,7 +85,10 @@ def write(bench, source):
              "  double share;      ///< of what the drive differs from the model by, of a line all of its signal [-]",
              "  double freedom;    ///< degrees of freedom both are known with [-]", "};", "",
              "// clang-format off",
-             "inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS{ {"]
+             "inline constexpr CarriedError CARRIED_ERRORS[] = {"]
     for name, (deviation, share, freedom) in errors(pairs).items():
         lines.append(f"{{ {deviation:.3g}, {share:.3g}, {freedom:.1f} }},  // {name}")
-    source.write_text("\n".join([*lines, "} };", "// clang-format on", "}  // namespace hjt"]) + "\n")
+    lines += ["};", "// clang-format on",
+              "static_assert(std::size(CARRIED_ERRORS) == INDICATOR_COUNT, \"an indicator without an error\");",
+              "}  // namespace hjt"]
+    source.write_text("\n".join(lines) + "\n")

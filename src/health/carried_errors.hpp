@@ -2,7 +2,7 @@
 // Written by `scripts/evaluate_health --fit`.
 #pragma once
 
-#include <array>
+#include <iterator>
 
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 
@@ -17,7 +17,7 @@ struct CarriedError
 };
 
 // clang-format off
-inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS{ {
+inline constexpr CarriedError CARRIED_ERRORS[] = {
 { 8.49e-05, 0.18, 43.4 },  // ratio_deviation
 { 2.18e-08, 0.259, 60.0 },  // kinematic_error
 { 0.472, 0.152, 60.0 },  // torsional_stiffness
@@ -139,6 +139,7 @@ inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS{ {
 { 2.62e-05, 2.47, 8.7 },  // ripple_wave_generator_6_load_lag_sin
 { 1.49e-05, 1.25, 38.7 },  // ripple_wave_generator_8_load_lag_cos
 { 1.64e-05, 1.38, 40.0 },  // ripple_wave_generator_8_load_lag_sin
-} };
+};
 // clang-format on
+static_assert(std::size(CARRIED_ERRORS) == INDICATOR_COUNT, "an indicator without an error");
 }  // namespace hjt
