@@ -12,8 +12,8 @@ namespace hjt
 /// subtracted, and a list `baseline` of operating bins, with `[windows, mean, spread]` of each indicator.
 
 /// `less_model`: of windows from which a model's are subtracted.
-/// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear, or it was
-/// learned with a model and is used without one, or the other way round.
+/// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear, or if it
+/// was learned with a model and is used without one, or the other way round.
 std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters, bool less_model);
 
 /// @throws InputError if the file cannot be written.
