@@ -190,6 +190,7 @@ class Bench:
 
     def __init__(self, tool, work, jobs):
         self.tool, self.work, self.jobs = tool, work.resolve(), jobs
+        self.references = set()  # files of those that are made
         work.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run([tool, "faults", "--json"], check=True, capture_output=True, text=True).stdout
         self.kinds = json.loads(listed)
@@ -286,15 +287,18 @@ class Bench:
 
     def reference(self, gear, motion, model=None):
         """File of the healthy reference, from runs of its own; of the check-up also less a model."""
+        name = f"reference_{gear.name}_{motion.tag}{f'_{model.name}' if model else ''}".replace(" ", "_")
+        path = self.work / f"{name}.yaml"
+        if path in self.references:
+            return path
         temperature, repeats = f"{{grid: {COMMISSIONING}}}", 8
         if motion.windows > 1:
             motion, temperature, repeats = at_work(motion, REFERENCE_WINDOWS), DRAWN, REFERENCE_RUNS
         bags = self.sound("commissioning", gear, motion, temperature, repeats, 1)
         models = self.beside(model, bags, motion, temperature, 1, repeats) if model else []
-        name = f"reference_{gear.name}_{motion.tag}{f'_{model.name}' if model else ''}".replace(" ", "_")
-        path = self.work / f"{name}.yaml"
         self.indicators(bags, ["--set", "indicators.baseline_windows=10000", "--save-baseline", path, "--force"],
                         models)
+        self.references.add(path)
         return path
 
     def judge(self, bags, gear, motion, model=None, models=()):

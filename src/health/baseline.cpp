@@ -100,6 +100,15 @@ double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
   }
   return std::sqrt(square);
 }
+
+/// What a reference carried to another motion is less sure by, where a mean is of so many windows.
+double carriedVariance(const ReferenceBin& bin, std::size_t indicator, double windows) noexcept
+{
+  const CarriedError& error = CARRIED_ERRORS[indicator];
+  const double off = error.share * sizeOffModel(bin, indicator);
+  // Below CARRIED_WINDOWS as if all of it were noise.
+  return (error.deviation * error.deviation + off * off) * std::max(CARRIED_WINDOWS / windows, 1.0);
+}
 }  // namespace
 
 double amplitudeChange(double sound, double change) noexcept
@@ -253,7 +262,7 @@ double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const 
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
   const double square = std::max(left, average.error_square);
   return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
-         least * least + floor_[indicator] * floor_[indicator];
+         least * least + floor_[indicator] * floor_[indicator] + widening.carried;
 }
 
 Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
@@ -354,7 +363,6 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     leverage += compared_[i].leverage / static_cast<double>(count);
   }
   residual_.windows = static_cast<int>(count);
-  const double fewer = std::max(CARRIED_WINDOWS / static_cast<double>(count), 1.0);  // as if all of it were noise
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const bool sound_known = std::isfinite(residual_.sound[i]);  // else the model did not determine it in this window
@@ -368,18 +376,16 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Persistence persistence = persistenceOf(bin, reference);
     const double n = reference.count;
     const double fitted = reference.fitted ? bin.slopes_freedom : 0.0;
-    const CarriedError carried = carried_ ? CARRIED_ERRORS[i] : CarriedError{ 0.0, 0.0, n };
-    const double freedom = std::clamp(persistence.independent * n - 1.0 - fitted, 1.0, carried.freedom);
-    const double off = carried.share * sizeOffModel(bin, i);
-    const double carried_square = (carried.deviation * carried.deviation + off * off) * fewer;
+    const double known_with = carried_ ? CARRIED_ERRORS[i].freedom : n;
+    const double freedom = std::clamp(persistence.independent * n - 1.0 - fitted, 1.0, known_with);
     const double h = (1.0 + (reference.fitted ? leverage * bin.windows : 0.0)) / n / persistence.independent;
-    const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight };
+    const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight,
+                             carried_ ? carriedVariance(bin, i, static_cast<double>(count)) : 0.0 };
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;
-    deviations[i] =
-        deviation(average.difference, expected_[i],
-                  std::sqrt(variance(i, bin, average, reference.variance, widening) + carried_square), freedom);
+    deviations[i] = deviation(average.difference, expected_[i],
+                              std::sqrt(variance(i, bin, average, reference.variance, widening)), freedom);
     if (!sound_known)
     {
       continue;
@@ -389,7 +395,7 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const double left =
         std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening) + carried_square;
+    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening);
     Eigen::Map<Causes>(residual_.common[i].data()) =
         std::sqrt(reference.variance * (widening.stays + widening.varies)) * common;
   }

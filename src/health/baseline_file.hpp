@@ -11,7 +11,7 @@ namespace hjt
 /// References as YAML: `load_step`, between two classes of load [N.m], `model`, whether a model's indicators were
 /// subtracted, and a list `baseline` of operating bins, with `[windows, mean, spread]` of each indicator.
 
-/// `less_model`: of windows from which a model's are subtracted.
+/// `less_model`: whether a model's indicators are subtracted from the windows.
 /// @throws InputError naming the file, and what in it is wrong; also if its load step is not that of the gear, or if it
 /// was learned with a model and is used without one, or the other way round.
 std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters, bool less_model);

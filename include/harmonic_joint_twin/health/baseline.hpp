@@ -221,6 +221,7 @@ private:
   {
     double stays{};
     double varies{};
+    double carried{};  // added by carrying [unit of the indicator squared]
   };
 
   ReferenceBin* find(const OperatingBin& bin) noexcept;
