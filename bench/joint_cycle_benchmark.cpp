@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of the whole cycle: stamped commands in, one solver step, outputs and per-tooth arrays out.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <iostream>
-#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/common/command.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -73,6 +75,9 @@ enum class Watch
   TEETH,
   ENCODERS
 };
+
+constexpr std::array<std::pair<const char*, Watch>, 2> WATCHES{ { { "teeth", Watch::TEETH },
+                                                                  { "encoders", Watch::ENCODERS } } };
 
 /// One cycle: a command, a step, and at every step every output and every per-tooth array, published or not; only the
 /// health report keeps to its rate.
@@ -231,31 +236,34 @@ void printJson(const std::vector<Result>& results)
 
 int main(int argc, char** argv)
 {
-  CLI::App app(
-      "Time of the twin's whole cycle: every per-tooth array filled at every step; and on the response surface, only\n"
-      "encoders and health asked for, twenty times as long.\n"
-      "Exit code 1 if a cycle allocates, if the solver fails or if it is slower than asked for.");
   std::vector<std::string> assignments;
   double duration = 5.0;
   double least_speed = 0.0;
   int joints = 1;
-  std::vector<Watch> watches{ Watch::TEETH, Watch::ENCODERS };
+  std::vector<std::string> watched;
   bool processor = false;
   bool json = false;
-  app.add_option("--set", assignments, "one parameter over the default configuration: section.key=value; repeatable");
-  app.add_option("--duration", duration, "simulated time measured, per scene [s]")->check(CLI::Range(1e-3, 1e4));
-  app.add_option("--least-speed", least_speed, "times real time that every scene must reach, by processor time")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--joints", joints, "twins in one thread, one after the other at every step; a cycle is all of theirs")
-      ->check(CLI::Range(1, 100));
-  app.add_option("--watch", watches, "what is asked of the twin [both]")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Watch>{ { "teeth", Watch::TEETH }, { "encoders", Watch::ENCODERS } }));
-  app.add_flag("--processor-time", processor,
-               "time cycles by processor time: on a busy machine the wall clock times others too");
-  app.add_flag("--json", json, "one JSON document on stdout and nothing else there");
-  CLI11_PARSE(app, argc, argv);
+  hjt::CommandLine line(
+      "joint_cycle_benchmark",
+      "Time of the twin's whole cycle: every per-tooth array filled at every step; and on the response surface, only\n"
+      "encoders and health asked for, twenty times as long.\n"
+      "Exit code 1 if a cycle allocates, if the solver fails or if it is slower than asked for.");
+  hjt::Command root = line.root();
+  root.add("--set", assignments, "one parameter over the default configuration: section.key=value; repeatable");
+  root.add("--duration", duration, "simulated time measured, per scene [s]").range(1e-3, 1e4);
+  root.add("--least-speed", least_speed, "times real time that every scene must reach, by processor time")
+      .range(0.0, 1e6);
+  root.add("--joints", joints, "twins in one thread, one after the other at every step; a cycle is all of theirs")
+      .range(1, 100);
+  root.add("--watch", watched, "what is asked of the twin; default: both")
+      .choice({ WATCHES[0].first, WATCHES[1].first });
+  root.flag("--processor-time", processor,
+            "time cycles by processor time: on a busy machine the wall clock times others too");
+  root.flag("--json", json, "one JSON document on stdout and nothing else there");
+  if (const std::optional<int> ended = line.parse(argc, argv))
+  {
+    return *ended;
+  }
 
   std::vector<Result> results;
   try
@@ -263,8 +271,12 @@ int main(int argc, char** argv)
     const hjt::Parameters parameters = hjt::shippedParameters(assignments);
     for (const Scene& scene : SCENES)
     {
-      for (const Watch watch : watches)
+      for (const auto& [name, watch] : WATCHES)
       {
+        if (!watched.empty() && std::find(watched.begin(), watched.end(), name) == watched.end())
+        {
+          continue;
+        }
         hjt::Parameters given = parameters;
         given.solver.scene = watch == Watch::TEETH ? hjt::SceneKind::FULL_RING : hjt::SceneKind::AUTO;
         results.push_back(measure(given, scene, watch, joints, watch == Watch::TEETH ? duration : 20.0 * duration,

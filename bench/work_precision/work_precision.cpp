@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/common/command.hpp"
 #include "bench/work_precision/operating.hpp"
 
 namespace
@@ -146,7 +147,6 @@ void runField(Field field, bool make_reference, const std::string& file, int run
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Run time against error of solvers on the ring; one JSON line per solver and setting on stdout.");
   static const std::string OPERATING = "operating";
   static const std::string LEVELS = "levels";
   std::vector<std::string> names = hjt::problemNames();
@@ -157,13 +157,20 @@ int main(int argc, char** argv)
   bool reference = false;
   int runs = 3;
   double limit = 5.0;
-  app.add_option("problem", name, "problem to solve")->required()->check(CLI::IsMember(names));
-  app.add_option("--reference", file, "file of the reference solution")->required();
-  app.add_flag("--make-reference", reference, "write that file, by two methods, instead of reading it");
-  app.add_option("--runs", runs, "timed runs, of which the median counts")->check(CLI::Range(1, 1000));
-  app.add_option("--limit", limit, "processor time after which a run is given up [s]")->check(CLI::Range(1e-3, 1e6));
-  app.add_option("--only", only, "only solvers with this in their names");
-  CLI11_PARSE(app, argc, argv);
+  hjt::CommandLine line(
+      "work_precision",
+      "Run time against error of solvers on the ring; one JSON line per solver and setting on stdout.");
+  hjt::Command root = line.root();
+  root.add("problem", name, "problem to solve").required().choice(names);
+  root.add("--reference", file, "file of the reference solution").required();
+  root.flag("--make-reference", reference, "write that file, by two methods, instead of reading it");
+  root.add("--runs", runs, "timed runs, of which the median counts").range(1, 1000);
+  root.add("--limit", limit, "processor time after which a run is given up [s]").range(1e-3, 1e6);
+  root.add("--only", only, "only solvers with this in their names");
+  if (const std::optional<int> ended = line.parse(argc, argv))
+  {
+    return *ended;
+  }
   try
   {
     if (name == OPERATING)

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -14,8 +15,9 @@
 #include <ros/ros.h>
 #include <rosbag/view.h>
 #include <topic_tools/shape_shifter.h>
-#include <CLI/CLI.hpp>
 
+#include "apps/common/command.hpp"
+#include "apps/common/exit_code.hpp"
 #include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_file.hpp"
@@ -167,30 +169,34 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "replay_recorder");
   hjt::shutDownOnSignals();
-  CLI::App app("Records the topics of a bag being played together with everything the twin publishes");
   std::string played_bag;
   std::string output_bag;
   std::string twin_namespace = "/joint_twin";
-  std::size_t buffer = 256;
+  unsigned buffer = 256;
   bool force = false;
-  app.add_option("played", played_bag, "the bag being played")->required()->check(CLI::ExistingFile);
-  app.add_option("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
-  app.add_option("--joint-namespace", twin_namespace, "of the twin's topics")->capture_default_str();
-  app.add_option("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
-      ->check(CLI::Range(1UL, 1UL << 20))
-      ->capture_default_str();
-  app.add_flag("--force", force, "overwrite an existing output");
-  CLI11_PARSE(app, argc, argv);
+  hjt::CommandLine line("replay_recorder",
+                        "Records the topics of a bag being played together with everything the twin publishes");
+  hjt::Command root = line.root();
+  root.add("played", played_bag, "the bag being played").required().existingFile();
+  root.add("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
+  root.add("--joint-namespace", twin_namespace, "of the twin's topics");
+  root.add("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
+      .range(1, 1U << 20U);
+  root.flag("--force", force, "overwrite an existing output");
+  if (const std::optional<int> ended = line.parse(argc, argv))
+  {
+    return *ended;
+  }
   try
   {
     record(topicsToRecord(played_bag, twin_namespace), output_bag.empty() ? defaultOutput(played_bag) : output_bag,
-           buffer * 1024 * 1024, force);
+           std::size_t{ buffer } * 1024 * 1024, force);
   }
   catch (const std::exception& error)
   {
     // Not by ROS' console, which ends with the last node handle.
     std::cerr << "replay_recorder: " << error.what() << '\n';
-    return 1;
+    return hjt::EXIT_FAILED;
   }
-  return 0;
+  return hjt::EXIT_DONE;
 }

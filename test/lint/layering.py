@@ -33,7 +33,7 @@ SEES = {
     "apps/compare": ["apps/common"],
     "apps/tool": ["apps/common", "apps/compare", "apps/sweep", "identification", "studies"],
     "apps": ["apps/sweep", "apps/tool"],
-    "bench": ["studies"],
+    "bench": ["apps/common", "studies"],
     "test/core": ["arm", "identification", "studies"],
     "test/ros": ["ros_io"],
     "test/outside": ["twin"],
@@ -48,7 +48,7 @@ OWN_LIBRARIES = {
     "arm": re.compile(r"<(kdl|kdl_parser)/[\w/.-]+>$"),
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "python": re.compile(r"<pybind11/\w+\.h>$"),
-    "bench": re.compile(r"<(CLI|arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
+    "bench": re.compile(r"<(arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
                         r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
     "test/core": re.compile(r"<(g(mock|test)|kdl|kdl_parser)/[\w/.-]+>$"),
     "test/support": re.compile(r"<g(mock|test)/[\w/.-]+>$"),

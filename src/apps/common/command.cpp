@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
+#include "apps/common/command_node.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/common/text_table.hpp"
 
-#include "base/edit_distance.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 
@@ -52,40 +51,77 @@ std::string wrongEnding(const std::string& path, const std::vector<std::string>&
   return good ? "" : "'" + path + "' must end in " + joined(endings, " or ");
 }
 
-template <class Field>
-CommandOption addWithDefault(CLI::App& app, const char* name, Field& field, const std::string& help)
+template <class Integer>
+std::optional<Integer> wholeNumber(const std::string& text)
 {
-  return CommandOption(*app.add_option(name, field, help)->capture_default_str());
+  Integer number{};
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && next == end ? std::optional(number) : std::nullopt;
+}
+
+DeclaredOption& declare(CommandNode& node, const std::string& name, const std::string& help, const char* type,
+                        std::function<void(const std::string&)> take)
+{
+  DeclaredOption option{ name, help, name.front() == '-' ? "Options" : "Positionals" };
+  option.type = type;
+  option.least = 1;
+  option.most = 1;
+  option.take = std::move(take);
+  return node.options.emplace_back(std::move(option));
+}
+
+template <class Integer>
+CommandOption declareInteger(CommandNode& node, const char* name, const char* type, Integer& field,
+                             const std::string& help)
+{
+  DeclaredOption& option =
+      declare(node, name, help, type, [&](const std::string& text) { field = wholeNumber<Integer>(text).value(); });
+  option.default_text = std::to_string(field);
+  return CommandOption(option).check(
+      [](const std::string& text)
+      {
+        using Limits = std::numeric_limits<Integer>;
+        return wholeNumber<Integer>(text) ? "" :
+                                            "'" + text + "' is not a whole number within " +
+                                                std::to_string(Limits::min()) + " ... " + std::to_string(Limits::max());
+      });
+}
+
+void addHelp(CommandNode& node)
+{
+  node.options.push_back({ "--help", "Print this help message and exit", "Options", "-h" });
 }
 }  // namespace
 
 const CommandOption& CommandOption::required() const
 {
-  option_.required()->default_str("");
+  option_.required = true;
+  option_.default_text.clear();
   return *this;
 }
 
 const CommandOption& CommandOption::type(const char* name) const
 {
-  option_.type_name(name);
+  option_.type = name;
   return *this;
 }
 
 const CommandOption& CommandOption::group(const char* name) const
 {
-  option_.group(name);
+  option_.group = name;
   return *this;
 }
 
 const CommandOption& CommandOption::range(double lowest, double highest) const
 {
   return check(bound([=](double number) { return number >= lowest && number <= highest; },
-                     "is not within " + shortNumber(lowest) + " ... " + shortNumber(highest)));
+                     "is not within " + roundedText(lowest, 7) + " ... " + roundedText(highest, 7)));
 }
 
 const CommandOption& CommandOption::atLeast(double lowest) const
 {
-  return check(bound([=](double number) { return number >= lowest; }, "is less than " + shortNumber(lowest)));
+  return check(bound([=](double number) { return number >= lowest; }, "is less than " + roundedText(lowest, 7)));
 }
 
 const CommandOption& CommandOption::positive() const
@@ -95,13 +131,20 @@ const CommandOption& CommandOption::positive() const
 
 const CommandOption& CommandOption::choice(const std::vector<std::string>& names) const
 {
-  option_.check(CLI::IsMember(names));
-  return *this;
+  const std::string all = "{" + joined(names, ",") + "}";
+  option_.allowed = ":" + all;
+  return check(
+      [=](const std::string& text)
+      {
+        const bool good = std::find(names.begin(), names.end(), text) != names.end();
+        return good ? "" : text + " not in " + all;
+      });
 }
 
 const CommandOption& CommandOption::pair() const
 {
-  option_.expected(2);
+  option_.least = 2;
+  option_.most = 2;
   return *this;
 }
 
@@ -117,88 +160,115 @@ const CommandOption& CommandOption::bagOrCsv() const
 
 const CommandOption& CommandOption::existingFile() const
 {
-  option_.check(CLI::ExistingFile);
-  return *this;
+  option_.allowed = ":FILE";
+  return check(
+      [](const std::string& path) -> std::string
+      {
+        std::error_code error;
+        if (!std::filesystem::exists(path, error))
+        {
+          return "File does not exist: " + path;
+        }
+        return std::filesystem::is_directory(path, error) ? "File is actually a directory: " + path : "";
+      });
 }
 
 const CommandOption& CommandOption::existingDirectory() const
 {
-  option_.check(CLI::ExistingDirectory);
-  return *this;
+  option_.allowed = ":DIR";
+  return check(
+      [](const std::string& path) -> std::string
+      {
+        std::error_code error;
+        if (!std::filesystem::exists(path, error))
+        {
+          return "Directory does not exist: " + path;
+        }
+        return std::filesystem::is_directory(path, error) ? "" : "Directory is actually a file: " + path;
+      });
 }
 
 const CommandOption& CommandOption::needs(const char* option) const
 {
-  option_.needs(option);
-  return *this;
-}
-
-const CommandOption& CommandOption::excludes(const char* option) const
-{
-  option_.excludes(option);
+  option_.needed.emplace_back(option);
   return *this;
 }
 
 const CommandOption& CommandOption::check(const std::function<std::string(const std::string&)>& check) const
 {
-  option_.check(check);
+  option_.checks.push_back(check);
   return *this;
 }
 
 CommandOption Command::add(const char* name, double& field, const std::string& help)
 {
-  return addWithDefault(app_, name, field, help).check(FINITE);
+  DeclaredOption& option =
+      declare(node_, name, help, "FLOAT", [&](const std::string& text) { field = decimalNumber(text).value(); });
+  option.default_text = roundedText(field, 6);
+  return CommandOption(option).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, int& field, const std::string& help)
 {
-  return addWithDefault(app_, name, field, help);
+  return declareInteger(node_, name, "INT", field, help);
 }
 
 CommandOption Command::add(const char* name, unsigned& field, const std::string& help)
 {
-  return addWithDefault(app_, name, field, help);
+  return declareInteger(node_, name, "UINT", field, help);
 }
 
 CommandOption Command::add(const char* name, std::string& field, const std::string& help)
 {
-  return addWithDefault(app_, name, field, help);
+  DeclaredOption& option = declare(node_, name, help, "TEXT", [&](const std::string& text) { field = text; });
+  option.default_text = field;
+  return CommandOption(option);
 }
 
 CommandOption Command::add(const char* name, std::optional<double>& field, const std::string& help)
 {
-  return CommandOption(*app_.add_option(name, field, help)).check(FINITE);
+  const auto take = [&](const std::string& text) { field = decimalNumber(text).value(); };
+  return CommandOption(declare(node_, name, help, "FLOAT", take)).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, std::optional<std::string>& field, const std::string& help)
 {
-  return CommandOption(*app_.add_option(name, field, help));
+  return CommandOption(declare(node_, name, help, "TEXT", [&](const std::string& text) { field = text; }));
 }
 
 CommandOption Command::add(const char* name, std::vector<double>& field, const std::string& help)
 {
-  return CommandOption(*app_.add_option(name, field, help)->delimiter(',')).check(FINITE);
+  DeclaredOption& option = declare(node_, name, help, "FLOAT",
+                                   [&](const std::string& text) { field.push_back(decimalNumber(text).value()); });
+  option.most = DeclaredOption::ANY;
+  option.commas = true;
+  return CommandOption(option).check(FINITE);
 }
 
 CommandOption Command::add(const char* name, std::vector<std::string>& field, const std::string& help)
 {
-  CLI::Option* option = app_.add_option(name, field, help);
-  return CommandOption(option->get_positional() ? *option : *option->allow_extra_args(false));
+  DeclaredOption& option = declare(node_, name, help, "TEXT", [&](const std::string& text) { field.push_back(text); });
+  option.most = DeclaredOption::ANY;
+  return CommandOption(option);
 }
 
 CommandOption Command::flag(const char* name, bool& field, const std::string& help)
 {
-  return CommandOption(*app_.add_flag(name, field, help));
+  DeclaredOption option{ name, help, "Options" };
+  option.flag = &field;
+  return CommandOption(node_.options.emplace_back(std::move(option)));
 }
 
 void Command::oneOf(const std::vector<const char*>& options)
 {
-  auto* group = app_.add_option_group("drive", "one of");
-  for (const char* option : options)
+  node_.alternatives.emplace_back(options.begin(), options.end());
+  for (DeclaredOption& option : node_.options)
   {
-    group->add_option(app_.get_option(option));
+    if (std::find(options.begin(), options.end(), option.name) != options.end())
+    {
+      option.group = "Exactly one of these is required";
+    }
   }
-  group->require_option(1);
 }
 
 Subcommand::Subcommand(Subject subject, const char* name, const char* help, std::function<Run(Command&)> declare)
@@ -207,9 +277,13 @@ Subcommand::Subcommand(Subject subject, const char* name, const char* help, std:
   subcommands().push_back(this);
 }
 
-CommandLine::CommandLine(const char* name, const char* help) : app_(std::make_unique<CLI::App>(help, name))
+CommandLine::CommandLine(const char* name, const char* help) : root_(std::make_unique<CommandNode>())
 {
-  app_->set_version_flag("--version", std::string(name) + " " HJT_VERSION);
+  root_->name = name;
+  root_->help = help;
+  root_->version = std::string(name) + " " HJT_VERSION;
+  addHelp(*root_);
+  root_->options.push_back({ "--version", "Display program version information and exit", "Options" });
 }
 
 CommandLine::~CommandLine() = default;
@@ -220,24 +294,21 @@ void CommandLine::addSubcommands()
   std::sort(all.begin(), all.end(),
             [](const Subcommand* a, const Subcommand* b)
             { return std::pair(a->subject_, a->name_) < std::pair(b->subject_, b->name_); });
-  app_->require_subcommand(1);
   for (const Subcommand* subcommand : all)
   {
-    const std::size_t space = subcommand->name_.find(' ');
-    const bool inner = space != std::string::npos;
-    CLI::App* parent = inner ? app_->get_subcommand(subcommand->name_.substr(0, space)) : app_.get();
-    CLI::App* app = parent->add_subcommand(subcommand->name_.substr(inner ? space + 1 : 0), subcommand->help_);
-    if (!inner)
+    // "life age" comes after "life".
+    const bool inner = subcommand->name_.find(' ') != std::string::npos;
+    CommandNode& parent = inner ? root_->subcommands.back() : *root_;
+    CommandNode& node = parent.subcommands.emplace_back();
+    node.name = root_->name + " " + subcommand->name_;
+    node.help = subcommand->help_;
+    node.heading = HEADINGS[static_cast<std::size_t>(subcommand->subject_)];
+    addHelp(node);
+    if (subcommand->declare_)
     {
-      app->group(HEADINGS[static_cast<std::size_t>(subcommand->subject_)]);
+      Command command(node);
+      node.run = subcommand->declare_(command);
     }
-    if (!subcommand->declare_)
-    {
-      app->require_subcommand(1);
-      continue;
-    }
-    Command command(*app);
-    app->callback([this, run = subcommand->declare_(command)] { run_ = run; });
   }
 }
 
@@ -249,53 +320,29 @@ bool CommandLine::knows(int argc, char** argv)
          std::any_of(all.begin(), all.end(), [&](const Subcommand* each) { return each->name_ == first; });
 }
 
-std::string CommandLine::unknownSubcommand(int argc, char** argv) const
-{
-  const CLI::App* app = app_.get();
-  for (int i = 1; i < argc && app->get_require_subcommand_min() > 0 && argv[i][0] != '-'; ++i)
-  {
-    const std::string given = argv[i];
-    const auto known = app->get_subcommands([](const CLI::App*) { return true; });
-    std::string nearest;
-    std::size_t distance = std::max<std::size_t>(2, given.size() / 3) + 1;
-    for (const CLI::App* candidate : known)
-    {
-      if (candidate->get_name() == given)
-      {
-        app = candidate;
-        nearest.clear();
-        distance = 0;
-      }
-      else if (const std::size_t edits = editDistance(given, candidate->get_name()); edits < distance)
-      {
-        nearest = candidate->get_name();
-        distance = edits;
-      }
-    }
-    if (distance > 0)
-    {
-      return "unknown subcommand '" + given + "'" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") + " `" +
-             app_->get_name() + " --help` lists all";
-    }
-  }
-  return {};
-}
-
 std::optional<int> CommandLine::parse(int argc, char** argv, bool aloud)
 {
-  if (const std::string unknown = unknownSubcommand(argc, argv); !unknown.empty())
-  {
-    std::cerr << app_->get_name() << ": " << unknown << '\n';
-    return EXIT_USAGE;
-  }
   try
   {
-    app_->parse(argc, argv);
-    return std::nullopt;
+    const Request request = parseWords(*root_, { argv + 1, argv + argc });
+    if (request.text.empty())
+    {
+      run_ = request.command->run;
+      return std::nullopt;
+    }
+    if (aloud)
+    {
+      std::cout << request.text;
+    }
+    return EXIT_DONE;
   }
-  catch (const CLI::ParseError& error)
+  catch (const UsageError& error)
   {
-    return (aloud ? app_->exit(error) : error.get_exit_code()) == 0 ? EXIT_DONE : EXIT_USAGE;
+    if (aloud)
+    {
+      std::cerr << error.what() << '\n';
+    }
+    return EXIT_USAGE;
   }
 }
 }  // namespace hjt

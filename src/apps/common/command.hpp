@@ -7,19 +7,16 @@
 #include <string>
 #include <vector>
 
-namespace CLI
-{
-class App;
-class Option;
-}  // namespace CLI
-
 namespace hjt
 {
+struct CommandNode;
+struct DeclaredOption;
+
 /// One option or argument of a command; each call adds a rule. What a rule refuses is a wrong usage.
 class CommandOption
 {
 public:
-  explicit CommandOption(CLI::Option& option) : option_(option) {}
+  explicit CommandOption(DeclaredOption& option) : option_(option) {}
 
   const CommandOption& required() const;
   const CommandOption& type(const char* name) const;  ///< of the value, in the help
@@ -34,12 +31,11 @@ public:
   const CommandOption& existingFile() const;
   const CommandOption& existingDirectory() const;
   const CommandOption& needs(const char* option) const;
-  const CommandOption& excludes(const char* option) const;
   /// `check` gives what is wrong with the text, or nothing.
   const CommandOption& check(const std::function<std::string(const std::string&)>& check) const;
 
 private:
-  CLI::Option& option_;
+  DeclaredOption& option_;
 };
 
 /// A command while its options are declared. Names with dashes are options, else arguments. Numbers must be finite;
@@ -47,7 +43,7 @@ private:
 class Command
 {
 public:
-  explicit Command(CLI::App& app) : app_(app) {}
+  explicit Command(CommandNode& node) : node_(node) {}
 
   CommandOption add(const char* name, double& field, const std::string& help);
   CommandOption add(const char* name, int& field, const std::string& help);
@@ -63,7 +59,7 @@ public:
   void oneOf(const std::vector<const char*>& options);
 
 private:
-  CLI::App& app_;
+  CommandNode& node_;
 };
 
 /// Where a subcommand stands in the help, in this order.
@@ -119,7 +115,7 @@ public:
   CommandLine(const char* name, const char* help);
   ~CommandLine();
 
-  Command root() { return Command(*app_); }
+  Command root() { return Command(*root_); }
   void addSubcommands();
 
   /// The subcommand given is one of this program, or only the version is asked for.
@@ -133,9 +129,7 @@ public:
   int run() const { return run_(); }
 
 private:
-  std::string unknownSubcommand(int argc, char** argv) const;
-
-  std::unique_ptr<CLI::App> app_;
+  std::unique_ptr<CommandNode> root_;
   Subcommand::Run run_;
 };
 }  // namespace hjt

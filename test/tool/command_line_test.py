@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: kinds of options, what of it is refused, help."""
+import tool
+
+PAIR = ["identify", "none.bag", "--joint", "1", "--train"]
+
+
+class Options(tool.ToolTest):
+    def torques(self, *arguments):
+        return [row["torque"] for row in self.succeed_json("stiffness", *arguments)["rows"]]
+
+    def test_values_follow_the_name_or_an_equals_sign(self):
+        for arguments in [["--torques", "-5,6e0"], ["--torques=-5,6"], ["--torques", "-5", "6"],
+                          ["--torques", "-5", "--torques", "6"]]:
+            with self.subTest(arguments):
+                self.assertEqual(self.torques(*arguments), [-5.0, 6.0])
+        found = self.succeed_json("stiffness", "--torques", "5", "--angle", "-.5", "--json")
+        self.assertEqual(found["wave_generator_angle"], -0.5)
+
+    def test_a_repeated_option_takes_one_value_each_time(self):
+        found = self.succeed_json("insert", "--set", "solver.rate=1000", "--set", "gear.backlash=0.0")
+        self.assertIn("residual", str(found))
+        self.fail_with(2, ["not expected: solver.rate=2000"], "insert", "--set", "solver.rate=1000", "solver.rate=2000")
+
+    def test_arguments_may_stand_anywhere(self):
+        self.write("-duty.csv", "")
+        for arguments in [["none.bag", "--joint", "1", "--train", "1,2"],
+                          ["--joint", "1", "--train", "1,2", "none.bag"],
+                          ["--joint", "1", "--train", "1", "2", "none.bag"], ["--joint=1", "--", "none.bag"]]:
+            with self.subTest(arguments):
+                self.fail_with(1, ["none.bag cannot be read"], "identify", *arguments)
+        self.fail_with(1, ["-duty.csv"], "life", "age", "--hours", "10", "--", "-duty.csv")
+
+    def refuse(self, reason, *arguments):
+        done = self.fail_with(2, [], *arguments)
+        self.assertEqual(done.stderr, reason + "\nRun with --help for more information.\n")
+
+    def test_wrong_values_are_refused(self):
+        self.write("duty.csv", "")
+        age = ["life", "age", "duty.csv"]
+        stiffness = ["stiffness", "--torques"]
+        for reason, arguments in [
+                ("--torques: 1 required FLOAT missing", stiffness),
+                ("--torques: '' is not a finite number", [*stiffness, "5,,6"]),
+                ("--torques: '' is not a finite number", [*stiffness, "5,"]),
+                ("--torques: 'many' is not a finite number", [*stiffness, "5,many"]),
+                ("--angle: 'nan' is not a finite number", [*stiffness, "5", "--angle", "nan"]),
+                ("--angle: '1e400' is not a finite number", [*stiffness, "5", "--angle", "1e400"]),
+                ("--angle: 1 required FLOAT missing", [*stiffness, "5", "--angle", "--json"]),
+                ("--angle: At Most 1 required but received 2", [*stiffness, "5", "--angle", "1", "--angle", "2"]),
+                ("--json takes no value", [*stiffness, "5", "--json=no"]),
+                ("--hours: '0' is not within 0.001 ... 1e+09", [*age, "--hours", "0"]),
+                ("--positions: '1.5' is not a whole number within -2147483648 ... 2147483647",
+                 [*age, "--positions", "1.5"]),
+                ("--seed: '-1' is not a whole number within 0 ... 4294967295",
+                 ["life", "trials", "duty.csv", "--seed", "-1"]),
+                ("DUTY: File does not exist: none.csv", ["life", "age", "none.csv"]),
+                ("DUTY: File is actually a directory: .", ["life", "age", "."]),
+                ("--duration: '-1' is not more than 0", ["simulate", "--duration", "-1"]),
+                ("--format: foo not in {urdf,sdf,mjcf}", ["export", "--format", "foo"]),
+                ("recording: 'a.txt' must end in .bag or .csv", ["check", "a.txt"]),
+                ("--train: At least 2 required but received 1", [*PAIR, "1"]),
+                ("--train: At Most 2 required but received 3", [*PAIR, "1,2,3"]),
+                ("--identified: Directory does not exist: none", ["identify", "a.bag", "--identified", "none"]),
+                ("--shard: 'x' must be I/N with 0 <= I < N", ["sweep", "plan.yaml", "--shard", "x"])]:
+            with self.subTest(arguments):
+                self.refuse(reason, *arguments)
+
+    def test_wrong_combinations_are_refused(self):
+        simulate = ["simulate", "--out", "a.bag"]
+        for reason, arguments in [
+                ("A subcommand is required", []),
+                ("A subcommand is required", ["life"]),
+                ("--torques is required", ["stiffness"]),
+                ("recording is required", ["check"]),
+                ("--teeth requires --json", ["stiffness", "--torques", "5", "--teeth"]),
+                ("Exactly 1 option from [--torque,--profile] is required", simulate),
+                ("Exactly 1 option from [--torque,--profile] is required and 2 were given",
+                 [*simulate, "--duration", "1", "--torque", "1", "--profile", "a.csv"]),
+                ("The following argument was not expected: --wing", ["--wing"]),
+                ("The following argument was not expected: -x", ["insert", "-x"]),
+                ("The following argument was not expected: --forc", ["insert", "--forc"]),
+                ("The following argument was not expected: --wing=1", ["insert", "--wing=1"]),
+                ("The following arguments were not expected: --wing b", ["insert", "--wing", "--", "b"])]:
+            with self.subTest(arguments):
+                self.refuse(reason, *arguments)
+
+    def test_an_unknown_subcommand_is_refused(self):
+        for arguments, reason in [(["xylophone"], "unknown subcommand 'xylophone'; `joint_twin --help` lists all"),
+                                  (["stifness"], "unknown subcommand 'stifness', did you mean stiffness? "
+                                                 "`joint_twin --help` lists all"),
+                                  (["life", "agee"], "unknown subcommand 'agee', did you mean age? "
+                                                     "`joint_twin life --help` lists all")]:
+            self.assertEqual(self.fail_with(2, [], *arguments).stderr, f"joint_twin: {reason}\n")
+
+    def test_help_shows_types_limits_and_defaults(self):
+        column = "\n" + 30 * " "
+        for arguments, parts in [
+                (["stiffness"], ["torsion under load, wave generator locked\nUsage: joint_twin stiffness [OPTIONS]\n",
+                                 "\nOptions:\n  -h,--help                   Print this help message and exit\n",
+                                 f"\n  --torques FLOAT ... REQUIRED{column}loads on",
+                                 "\n  --angle FLOAT=0             wave generator angle [rad]\n",
+                                 "\n  --teeth Needs: --json       every tooth's",
+                                 "\nCommon options:\n  --config FILE ...           YAML overlay"]),
+                (["life", "trials"], ["Usage: joint_twin life trials [OPTIONS] DUTY\n",
+                                      "\nPositionals:\n  DUTY TEXT:FILE REQUIRED     CSV file",
+                                      "\n  --hours FLOAT=1e+06         longest use [h]\n"]),
+                (["remaining"], ["Usage: joint_twin remaining [OPTIONS] recordings...\n"]),
+                (["identify"], ["\n  --train FLOAT x 2           from,to: part to identify on",
+                                f"\n  --load TEXT:{{arm,target_moment}}=arm Needs: --arm{column}load of",
+                                "\nExactly one of these is required:\n  --joint TEXT                base"]),
+                (["life"], ["Usage: joint_twin life [OPTIONS] SUBCOMMAND\n",
+                            "\nStudies of the model:\n  age                         the nominal drive"])]:
+            text = self.succeed(*arguments, "--help").stdout
+            for part in parts:
+                self.assertIn(part, text)
+        self.assertEqual(self.succeed("insert", "--wings", "-h").stdout, self.succeed("insert", "--help").stdout)
+
+
+if __name__ == "__main__":
+    tool.main()
