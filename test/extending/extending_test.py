@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Applies one worked example of docs/extending.md to a copy of the source tree, builds it and runs its test.
+"""Applies the worked examples of docs/extending.md to a copy of the source tree, builds them and runs their tests.
 
-Usage: extending_test.py PATCH BUILD_DIR
+Usage: extending_test.py BUILD_DIR [PATCH...]        all patches beside this file if none is named
 
-The lines before the first hunk of the patch hold
+The patches are applied one after the other to the same copy: they share one build in BUILD_DIR/.extending. The lines before the
+first hunk of a patch hold
   Targets: what to build
   Run:     the command, found in the built package's folders of programs
   Edits:   how many edits the example may take
   Apart:   files that are not counted, such as those of a parameter that comes with the example (optional)
-New files together count as one edit, every changed file as one. All examples share BUILD_DIR/.extending, so that only
-the first one pays for what they have in common.
+New files together count as one edit, every changed file as one.
 """
 import filecmp
 import os
@@ -77,39 +77,51 @@ def synchronise(copy):
             shutil.copy(SOURCE / name, target)
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    path = pathlib.Path(sys.argv[1])
-    patch = path.read_text(encoding="utf-8")
-    fields = header(patch)
+def count_edits(path, patch, fields):
     edits = edited(patch, fields.get("Apart", "").split())
     print(f"{path.stem}: {len(edits)} edits, allowed {fields['Edits']}")
     print("".join(f"  {edit}\n" for edit in edits), end="")
     if len(edits) > int(fields["Edits"]):
         fail("more edits than the example may take")
 
-    # Hidden: roslaunch looks for launch files in all other folders of a package.
-    folder = pathlib.Path(sys.argv[2]).resolve() / ".extending"
-    copy, build = folder / "source", folder / "build"
-    synchronise(copy)
-    run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path.resolve()], cwd=copy)
-    # Quick to build rather than to run; with the assertions.
-    run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
-         f"-DCATKIN_DEVEL_PREFIX={build}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3"], stdout=subprocess.DEVNULL)
-    run(["cmake", "--build", build, "-j", os.environ.get("HJT_JOBS", str(os.cpu_count())), "--target",
-         *fields["Targets"].split()])
-    command = shlex.split(fields["Run"])
+
+def run_example(build, copy, text):
+    """Runs the command of an example; fails if no test ran."""
+    command = shlex.split(text)
     programs = [build / "devel" / place / command[0] for place in PROGRAMS] + [build / command[0]]
     program = next((each for each in programs if each.exists()), None)
     if program is None:
         fail(f"no program {command[0]} was built")
-    result = subprocess.run([program, *command[1:]], cwd=copy, capture_output=True, text=True)
-    print(result.stdout + result.stderr)
+    result = subprocess.run([program, *command[1:]], cwd=copy, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                            universal_newlines=True)
+    print(result.stdout)
     if result.returncode != 0:
-        fail(f"{fields['Run']}: ended with {result.returncode}")
+        fail(f"{text}: ended with {result.returncode}")
     if "Running 0 tests" in result.stdout:
-        fail(f"{fields['Run']}: no test ran")
+        fail(f"{text}: no test ran")
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    paths = [pathlib.Path(name).resolve() for name in sys.argv[2:]] or sorted(pathlib.Path(__file__).parent.glob("*.patch"))
+    # Hidden: roslaunch looks for launch files in all other folders of a package.
+    folder = pathlib.Path(sys.argv[1]).resolve() / ".extending"
+    copy, build = folder / "source", folder / "build"
+    synchronise(copy)
+    examples = []
+    for path in paths:
+        patch = path.read_text(encoding="utf-8")
+        examples.append(header(patch))
+        count_edits(path, patch, examples[-1])
+        run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path], cwd=copy)
+    # Quick to build rather than to run; with the assertions.
+    run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
+         f"-DCATKIN_DEVEL_PREFIX={build}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3"], stdout=subprocess.DEVNULL)
+    targets = dict.fromkeys(target for fields in examples for target in fields["Targets"].split())
+    run(["cmake", "--build", build, "-j", os.environ.get("HJT_JOBS", str(os.cpu_count())), "--target", *targets])
+    for fields in examples:
+        run_example(build, copy, fields["Run"])
 
 
 if __name__ == "__main__":

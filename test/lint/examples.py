@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The worked examples of docs/extending.md, test/extending/*.patch, apply to the sources as they are.
 
-ctest -C slow builds and runs them.
+The test `extending` builds and runs them.
 """
 import os
 import subprocess
