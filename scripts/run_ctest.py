@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs ctest in the current folder and names what its closing lines do not: every skipped test with its reason, and every
-test that passed only when it was repeated. The names stand just before ctest's closing lines.
+"""Runs ctest in the current folder and names what its closing lines do not: every skipped test with its reason, and
+every test that passed only when it was repeated. The names stand just before ctest's closing lines.
 
 Usage: run_ctest.py [OPTION OF CTEST...]
 Ends with ctest's exit code; with 1 if ctest passed and a test was skipped without a reason.
@@ -24,10 +24,11 @@ COUNTED = re.compile(r"^(?:OK|FAILED) \(.*\bskipped=(\d+)|^\[  SKIPPED \] (\d+) 
 
 
 def run(arguments):
-    """Runs ctest and prints its output as it comes, but the closing lines. @returns exit code, the closing lines, and the
-    results of each test in their order: {name: ["***Failed", "Passed"]}."""
+    """Runs ctest and prints its output as it comes, but the closing lines. @returns exit code, the closing lines, and
+    the results of each test in their order: {name: ["***Failed", "Passed"]}."""
     closing, results = [], {}
-    with subprocess.Popen(["ctest", *arguments], stdout=subprocess.PIPE, universal_newlines=True, errors="replace") as ctest:
+    command = ["ctest", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, universal_newlines=True, errors="replace") as ctest:
         for line in ctest.stdout:
             if closing or CLOSING.match(line):
                 closing.append(line)
@@ -44,7 +45,8 @@ def outputs(started):
     log = pathlib.Path("Testing/Temporary/LastTest.log")
     if not log.exists():
         return {}
-    sections = re.split(r"^\d+/\d+ Testing: (.*)$", log.read_text(encoding="utf-8", errors="replace"), flags=re.MULTILINE)
+    text = log.read_text(encoding="utf-8", errors="replace")
+    sections = re.split(r"^\d+/\d+ Testing: (.*)$", text, flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2]))
     for path in pathlib.Path("test_results").rglob("rosunit-*.xml"):
         if path.stat().st_mtime >= started:

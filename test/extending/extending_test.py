@@ -4,8 +4,8 @@
 
 Usage: extending_test.py BUILD_DIR [PATCH...]        all patches beside this file if none is named
 
-The patches are applied one after the other to the same copy: they share one build in BUILD_DIR/.extending. The lines before the
-first hunk of a patch hold
+The patches are applied one after the other to the same copy: they share one build in BUILD_DIR/.extending. The lines
+before the first hunk of a patch hold
   Targets: what to build
   Run:     the command, found in the built package's folders of programs
   Edits:   how many edits the example may take
@@ -104,7 +104,8 @@ def run_example(build, copy, text):
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    paths = [pathlib.Path(name).resolve() for name in sys.argv[2:]] or sorted(pathlib.Path(__file__).parent.glob("*.patch"))
+    all_patches = sorted(pathlib.Path(__file__).resolve().parent.glob("*.patch"))
+    paths = [pathlib.Path(name).resolve() for name in sys.argv[2:]] or all_patches
     # Hidden: roslaunch looks for launch files in all other folders of a package.
     folder = pathlib.Path(sys.argv[1]).resolve() / ".extending"
     copy, build = folder / "source", folder / "build"
