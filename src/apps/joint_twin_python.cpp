@@ -15,6 +15,7 @@
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
+#include "base/decimal_point.hpp"
 
 namespace hjt
 {
@@ -26,7 +27,7 @@ namespace py = pybind11;
 class Captured
 {
 public:
-  explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(text_.rdbuf())) {}
+  explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(&text_)) {}
   Captured(const Captured&) = delete;
   Captured& operator=(const Captured&) = delete;
   ~Captured() { stream_.rdbuf(before_); }
@@ -34,7 +35,7 @@ public:
   std::string text() const { return text_.str(); }
 
 private:
-  std::ostringstream text_;
+  std::stringbuf text_;
   std::ostream& stream_;
   std::streambuf* before_;
 };
@@ -63,6 +64,7 @@ Ended runAlone(std::vector<std::string> arguments)
   const Captured document(std::cout);
   const Captured messages(std::cerr);
   const InterruptScope scope;
+  const DecimalPoint decimal_point;  // for CLI11
   try
   {
     CommandLine line("joint_twin", "");

@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -112,12 +112,11 @@ private:
 
   double number(std::size_t column, const char* text) const
   {
-    char* end = nullptr;
-    const double value = std::strtod(text, &end);
-    const bool is_number = *text != '\0' && *end == '\0' && std::isfinite(value);
+    const std::optional<double> value = decimalNumber(text);
+    const bool is_number = value && std::isfinite(*value);
     if (is_number || column >= strict_)
     {
-      return is_number ? value : std::numeric_limits<double>::quiet_NaN();
+      return is_number ? *value : std::numeric_limits<double>::quiet_NaN();
     }
     if (*text == '\0')
     {

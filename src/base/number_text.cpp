@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
+
+#include "base/decimal_point.hpp"
 
 namespace hjt
 {
@@ -19,6 +22,7 @@ std::string numberText(double value)
   {
     return value > 0.0 ? ".inf" : "-.inf";
   }
+  const DecimalPoint decimal_point;
   std::array<char, 40> buffer{};
   for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits)
   {
@@ -48,8 +52,17 @@ std::string numberText(double value)
 
 std::string roundedText(double value, int digits)
 {
+  const DecimalPoint decimal_point;
   char text[40];
   std::snprintf(text, sizeof(text), "%.*g", digits, value);
+  return text;
+}
+
+std::string fixedText(double value, int digits)
+{
+  const DecimalPoint decimal_point;
+  char text[400];  // the largest number has 309 digits
+  std::snprintf(text, sizeof(text), "%.*f", digits, value);
   return text;
 }
 
@@ -69,7 +82,12 @@ std::string rangeText(const Range& range)
 
 std::optional<double> decimalNumber(const std::string& text)
 {
-  const char* next = text.c_str();
+  return text.size() == std::strlen(text.c_str()) ? decimalNumber(text.c_str()) : std::nullopt;
+}
+
+std::optional<double> decimalNumber(const char* text)
+{
+  const char* next = text;
   const auto digits = [&next]
   {
     const char* first = next;
@@ -93,8 +111,11 @@ std::optional<double> decimalNumber(const std::string& text)
     next += *next == '+' || *next == '-' ? 1 : 0;
     good = digits() > 0;
   }
-  // Beyond the largest number it is infinite.
-  return good && next == text.c_str() + text.size() ? std::optional<double>(std::strtod(text.c_str(), nullptr)) :
-                                                      std::nullopt;
+  if (!good || *next != '\0')
+  {
+    return std::nullopt;
+  }
+  const DecimalPoint decimal_point;
+  return std::strtod(text, nullptr);  // beyond the largest number it is infinite
 }
 }  // namespace hjt

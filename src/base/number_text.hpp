@@ -14,10 +14,14 @@ std::string numberText(double value);
 /// With so many significant digits.
 std::string roundedText(double value, int digits);
 
+/// With so many digits behind the decimal point.
+std::string fixedText(double value, int digits);
+
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.
 std::string rangeText(const Range& range);
 
 /// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another
 /// text.
 std::optional<double> decimalNumber(const std::string& text);
+std::optional<double> decimalNumber(const char* text);
 }  // namespace hjt

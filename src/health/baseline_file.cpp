@@ -2,13 +2,17 @@
 #include "health/baseline_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <sstream>
+#include <iterator>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
+#include "base/yaml_number.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/reference_fit.hpp"
 
@@ -28,6 +32,18 @@ std::size_t indicatorNamed(const std::string& name)
   throw InputError("unknown indicator " + name);
 }
 
+template <std::size_t N>
+std::array<double, N> readNumbers(const YAML::Node& list)
+{
+  if (!list.IsSequence() || list.size() != N)
+  {
+    throw YAML::TypedBadConversion<std::array<double, N>>(list.Mark());
+  }
+  std::array<double, N> numbers{};
+  std::transform(list.begin(), list.end(), numbers.begin(), [](const YAML::Node& node) { return yamlNumber(node); });
+  return numbers;
+}
+
 ReferenceBin readBin(const YAML::Node& node)
 {
   ReferenceBin bin;
@@ -37,9 +53,13 @@ ReferenceBin readBin(const YAML::Node& node)
   bin.runs = node["runs"].as<int>();
   if (node["place"])
   {
-    bin.mean_place = node["place"].as<Place>();
-    bin.leverage = node["leverage"].as<PlaceSquares>();
-    bin.slopes_freedom = node["slopes_freedom"].as<double>();
+    bin.mean_place = readNumbers<PLACES>(node["place"]);
+    if (node["leverage"].size() != PLACES)
+    {
+      throw InputError("leverage must have as many rows as place has numbers");
+    }
+    std::transform(node["leverage"].begin(), node["leverage"].end(), bin.leverage.begin(), readNumbers<PLACES>);
+    bin.slopes_freedom = yamlNumber(node["slopes_freedom"]);
     if (!mapped(bin.mean_place).allFinite() || !mapped(bin.leverage).allFinite() ||
         !std::isfinite(bin.slopes_freedom) || bin.slopes_freedom < 0.0)
     {
@@ -48,7 +68,9 @@ ReferenceBin readBin(const YAML::Node& node)
   }
   for (const auto& entry : node["indicators"])
   {
-    const auto numbers = entry.second.as<std::vector<double>>();
+    std::vector<double> numbers;
+    std::transform(entry.second.begin(), entry.second.end(), std::back_inserter(numbers),
+                   [](const YAML::Node& number) { return yamlNumber(number); });
     const auto name = entry.first.as<std::string>();
     const bool fitted = numbers.size() == 4 + PLACES + COMMON_CAUSES && node["place"];
     const bool finite =
@@ -86,7 +108,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     {
       throw InputError("no list 'baseline' of operating bins");
     }
-    const double step = file["load_step"] ? file["load_step"].as<double>() : 0.0;
+    const double step = file["load_step"] ? yamlNumber(file["load_step"]) : 0.0;
     if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
     {
       throw InputError("its load_step is " + numberText(step) + " [N.m], expected " + numberText(loadStep(parameters)) +
@@ -116,7 +138,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
 
 void writeBaseline(const std::string& path, const Baseline& baseline, bool less_model)
 {
-  std::ostringstream text;
+  TextStream text;
   const auto list = [](const auto& numbers)
   {
     std::string text;

@@ -2,8 +2,6 @@
 #include "identification/regression.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <vector>
 
 #include <ceres/crs_matrix.h>
@@ -11,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/median.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {
@@ -77,8 +76,6 @@ Eigen::VectorXd solve(ceres::Problem& problem, const std::vector<double*>& param
 
 std::string percentText(double share)
 {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2g %%", 100.0 * share);
-  return text.data();
+  return roundedText(100.0 * share, 2) + " %";
 }
 }  // namespace hjt

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -106,9 +105,7 @@ std::string shownFirst(FaultKind kind, const Parameters& parameters)
     const std::size_t at = text.find(name);
     if (at != std::string::npos)
     {
-      std::array<char, 32> number{};
-      std::snprintf(number.data(), number.size(), "%.2f", order);
-      text.replace(at, std::strlen(name), number.data());
+      text.replace(at, std::strlen(name), fixedText(order, 2));
     }
   }
   return text;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <functional>
-#include <sstream>
 #include <utility>
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/choices.hpp"
 #include "params/field_table.hpp"
@@ -72,7 +72,7 @@ private:
   }
 
   Fields fields_;
-  std::ostringstream text_;
+  TextStream text_;
 };
 
 /// Writes each field as a row of a Markdown table.
@@ -124,7 +124,7 @@ private:
     table_ << "| `" << key << "` | " << type << " | " << unit << " | " << range << " | " << meaning.text << " |\n";
   }
 
-  std::ostringstream table_;
+  TextStream table_;
 };
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "python/configuration.hpp"
 #include "python/in_use.hpp"
@@ -123,7 +124,7 @@ public:
     {
       if (!std::isfinite(values_.data()[i]))
       {
-        throw InputError(text(i) + " = " + std::to_string(values_.data()[i]) + " is not a finite number");
+        throw InputError(text(i) + " = " + numberText(values_.data()[i]) + " is not a finite number");
       }
     }
     if (!single())
@@ -321,7 +322,7 @@ void push(TwinObject& self, InputKind kind, double value, const std::optional<St
 {
   if (!std::isfinite(value))
   {
-    throw InputError(std::string(name) + " = " + std::to_string(value) + " is not a finite number");
+    throw InputError(std::string(name) + " = " + numberText(value) + " is not a finite number");
   }
   self.twin().push({ stampOf(self.twin(), stamp), kind, value, {} });
 }
@@ -339,8 +340,8 @@ py::array_t<StepRow> runTo(TwinObject& self, double time, const py::object& moto
   const Twin& twin = self.twin();
   if (!(std::abs(time) <= LARGEST_TIME) || toStampLength(std::max(time, 0.0)) < twin.stamp())
   {
-    throw InputError("time = " + std::to_string(time) + " [s] is out of range, allowed: " +
-                     std::to_string(toSeconds(twin.stamp())) + " (the present instant) ... 9e9 [s]");
+    throw InputError("time = " + numberText(time) + " [s] is out of range, allowed: " +
+                     numberText(toSeconds(twin.stamp())) + " (the present instant) ... 9e9 [s]");
   }
   const Stamp steps = (toStampLength(time) - twin.stamp()) / twin.stepLength();
   return self.run(py::ssize_t{ steps }, motor_torque, load_torque, brake, temperature, every, out);
@@ -513,7 +514,7 @@ void bindTwin(py::module& module)
            [](TwinObject& self)
            {
              return "<Twin of joint '" + self.parameters().values().joint.name + "' at " +
-                    std::to_string(toSeconds(self.twin().stamp())) + " s>";
+                    numberText(toSeconds(self.twin().stamp())) + " s>";
            });
   bindInputs(twin);
   bindMarch(twin);

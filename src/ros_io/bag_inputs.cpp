@@ -7,6 +7,7 @@
 #include <rosbag/view.h>
 #include <std_msgs/Float64.h>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/channels.hpp"
 #include "ros_io/checked_message.hpp"
@@ -91,7 +92,7 @@ private:
     const double delay = toSeconds(recorded - stamp);
     if (std::abs(delay) > MAX_DELAY)
     {
-      throw InputError(instance.getTopic() + ": a message is stamped " + std::to_string(std::abs(delay)) + " s " +
+      throw InputError(instance.getTopic() + ": a message is stamped " + numberText(std::abs(delay)) + " s " +
                        (delay > 0.0 ? "before" : "after") + " the time it was recorded at; the clocks do not agree");
     }
     return stamp;

@@ -274,9 +274,13 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
   for (std::size_t i = 0; i < assessment.evidence_count && length < size; ++i)
   {
     const Evidence& evidence = assessment.evidence[i];
-    const int written = std::snprintf(text + length, size - length, "%s%s %.3g %s, healthy %.3g (score %.1f)",
-                                      i == 0 ? "" : "; ", indicatorName(evidence.indicator), evidence.value,
-                                      indicatorUnit(evidence.indicator), evidence.expected, evidence.score);
+    // Short texts are not allocated.
+    const std::string value = roundedText(evidence.value, 3);
+    const std::string expected = roundedText(evidence.expected, 3);
+    const std::string score = fixedText(std::min(evidence.score, 1e9), 1);
+    const int written = std::snprintf(text + length, size - length, "%s%s %s %s, healthy %s (score %s)",
+                                      i == 0 ? "" : "; ", indicatorName(evidence.indicator), value.c_str(),
+                                      indicatorUnit(evidence.indicator), expected.c_str(), score.c_str());
     length = std::min(length + static_cast<std::size_t>(std::max(written, 0)), size - 1);
   }
   return length;

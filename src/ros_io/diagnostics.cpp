@@ -2,10 +2,11 @@
 #include "ros_io/diagnostics.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include <ros/console.h>
 
+#include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "ros_io/time.hpp"
 
 namespace hjt
@@ -37,7 +38,7 @@ std::string verdictText(const Assessment& assessment)
   }
   if (assessment.level != HealthLevel::OK)
   {
-    std::ostringstream text;
+    TextStream text;
     text << "Most likely " << causeName(assessment.cause) << " (" << std::lround(100.0 * assessment.confidence)
          << " %)";
     return text.str();
@@ -249,8 +250,8 @@ void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
 {
   const LoopStatus& loop = snapshot_.loop;
   status.add("Clock", ros::Time::isSimTime() ? "/clock" : "system");
-  status.addf("Clock [s]", "%.4f", toSeconds(loop.clock));
-  status.addf("Simulated instant [s]", "%.4f", toSeconds(loop.twin_stamp));
+  status.add("Clock [s]", fixedText(toSeconds(loop.clock), 4));
+  status.add("Simulated instant [s]", fixedText(toSeconds(loop.twin_stamp), 4));
   status.add("Lag [s]", toSeconds(loop.lag));
   status.add("Largest lag [s]", toSeconds(loop.largest_lag));
   status.add("Deadline [s]", deadline_);

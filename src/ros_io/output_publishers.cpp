@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <sstream>
+
+#include "base/text_stream.hpp"
 
 namespace hjt
 {
@@ -79,7 +80,7 @@ void OutputPublishers::drainFaults()
     const harmonic_joint_twin::Faults message = makeFaults(names_, at->stamp, at->faults);
     faults_.pop();
     faults_publisher_.publish(message);
-    std::ostringstream text;
+    TextStream text;
     for (const harmonic_joint_twin::Fault& fault : message.faults)
     {
       text << (text.tellp() > 0 ? ", " : "") << fault.kind << ' ' << fault.severity << " at " << fault.place;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <ros/console.h>
 #include <ros/names.h>
@@ -11,6 +10,7 @@
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/printable.hpp"
 #include "ros_io/topics.hpp"
@@ -190,7 +190,7 @@ void TrackerNode::lookAtFriction(double time)
     return;
   }
   const ArmFriction& found = friction_->found();
-  std::ostringstream text;
+  TextStream text;
   text << "Friction of the whole arm is " << roundedText(found.median, 3) << " times the expected";
   if (found.temperature)
   {

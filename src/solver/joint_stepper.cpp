@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <sstream>
 
+#include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -25,7 +26,7 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
     throw ParameterError(
         "these parameters have no equilibrium: the insertion of the wave generator did not converge "
         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
-        std::to_string(dynamics_.status.residual) + " N)");
+        roundedText(dynamics_.status.residual, 6) + " N)");
   }
   const double frequency = divideStep(parameters);
   if (kind_ == StepperKind::ADAPTIVE)
@@ -57,7 +58,7 @@ double JointStepper::divideStep(const Parameters& parameters)
   const double phase = frequency * step_;
   if (phase > MAX_PHASE)
   {
-    std::ostringstream text;
+    TextStream text;
     text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << inertia[0]
          << " kg.m^2 at the motor and " << inertia[1] << " kg.m^2 at the output the joint can swing at " << frequency
          << " rad/s, which needs at least " << frequency / MAX_PHASE
@@ -78,7 +79,7 @@ double JointStepper::divideStep(const Parameters& parameters)
         substep_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
     if (parameters.solver.stiction_velocity < needed)
     {
-      std::ostringstream text;
+      TextStream text;
       text << "solver.stiction_velocity = " << parameters.solver.stiction_velocity
            << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least "
            << needed << " rad/s at this solver.rate (brake.holding_torque counts)";
@@ -89,7 +90,7 @@ double JointStepper::divideStep(const Parameters& parameters)
     const double drive = std::max(fading, motor.currentRate()) * substep_;
     if (drive > 1.0)
     {
-      std::ostringstream text;
+      TextStream text;
       text
           << "solver.stepper = runge_kutta4 takes the drive explicitly: its torque follows motor.current_bandwidth and "
              "fades towards motor.speed_limit in "

@@ -3,7 +3,8 @@
 
 #include <array>
 #include <cstddef>
-#include <sstream>
+
+#include "base/text_stream.hpp"
 
 namespace hjt
 {
@@ -55,7 +56,7 @@ const char* nameOf(SolveCode code) noexcept
 
 std::string explanationOf(const SolveStatus& status)
 {
-  std::ostringstream text;
+  TextStream text;
   if (status.ok())
   {
     return nameOf(status.code);

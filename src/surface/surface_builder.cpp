@@ -7,9 +7,9 @@
 #include <iterator>
 #include <map>
 #include <mutex>
-#include <sstream>
 #include <vector>
 
+#include "base/text_stream.hpp"
 #include "surface/parallel_tasks.hpp"
 
 namespace hjt
@@ -283,7 +283,7 @@ private:
     const double least = end == none ? 0.0 : mirrored_ ? reached(end - 1) : std::min(reached(end - 1), reached(first));
     if (good() && least < limit_)
     {
-      std::ostringstream text;
+      TextStream text;
       text << "the ring finds no equilibrium beyond " << least << " N.m at the output, less than the " << limit_
            << " N.m that load or motor can bring";
       failure_reason_ = text.str();

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <exception>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "params/variants.hpp"
 
@@ -23,7 +23,7 @@ struct GivenUp : std::exception
 /// The faults, for the cache of surfaces; empty without.
 std::string keyOf(const FaultList& faults)
 {
-  std::ostringstream text;
+  TextStream text;
   for (const ActiveFault& active : faults)
   {
     text << describe(active.fault.kind).name << ' ' << numberText(active.fault.severity) << ' ' << active.fault.place

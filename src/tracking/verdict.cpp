@@ -5,9 +5,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 #include "base/joined.hpp"
+#include "base/number_text.hpp"
 #include "gear/angle.hpp"
 
 namespace hjt
@@ -16,9 +16,7 @@ namespace
 {
 std::string rounded(double value, int digits)
 {
-  char text[40];
-  std::snprintf(text, sizeof(text), "%.*f", digits, value);
-  return text;
+  return fixedText(value, digits);
 }
 
 /// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
@@ -299,11 +297,9 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context)
   for (std::size_t i = 0; i < assessment.evidence_count; ++i)
   {
     const Evidence& evidence = assessment.evidence[i];
-    char text[200];
-    std::snprintf(text, sizeof(text), "%s%s %.3g %s where %.3g is sound", i == 0 ? "" : "; ",
-                  indicatorName(evidence.indicator), evidence.value, indicatorUnit(evidence.indicator),
-                  evidence.expected);
-    finding.text += text;
+    finding.text += (i == 0 ? "" : "; ") + std::string(indicatorName(evidence.indicator)) + ' ' +
+                    roundedText(evidence.value, 3) + ' ' + indicatorUnit(evidence.indicator) + " where " +
+                    roundedText(evidence.expected, 3) + " is sound";
   }
   finding.text += ".";
   return finding;

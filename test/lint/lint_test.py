@@ -20,6 +20,7 @@ import launch_docs
 import layering
 import links
 import message_comments
+import number_locale
 import project
 import python
 import spdx
@@ -50,6 +51,17 @@ class Tree(unittest.TestCase):
 
     def assert_clean(self, check):
         self.assertEqual(check(self.root), [])
+
+
+class NumberLocale(Tree):
+    def test_what_depends_on_the_locale_is_named(self):
+        for line in ("x = strtod(text, nullptr);", 'printf("%6.2f N", x);', "std::ostringstream text;",
+                     "node.as<double>();"):
+            with self.subTest(line):
+                self.write("src/gear/one.cpp", f"\n{line}\n")
+                self.assert_fault(number_locale.check, "src/gear/one.cpp:2")
+        self.write("src/gear/one.cpp", 'printf("%.0f %% friction, %s", x, y);\n')
+        self.assert_clean(number_locale.check)
 
 
 class Layering(Tree):

@@ -4,6 +4,7 @@
 import csv
 import inspect
 import json
+import locale
 import os
 import signal
 import subprocess
@@ -12,6 +13,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 import warnings
 
 import genpy
@@ -21,6 +23,9 @@ import rosbag
 from sensor_msgs.msg import JointState
 
 import harmonic_joint_twin as hjt
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import comma_locale  # noqa: E402
 
 TOOL = sys.argv.pop(1)
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
@@ -120,6 +125,17 @@ class Commands(Recordings):
         self.assertIn(verdict["level"], ("OK", "WARN", "not judged"))
         with open("report/report.html", encoding="utf-8") as file:
             self.assertIn(verdict["level"], file.read())
+
+    def test_numbers_of_the_command_line_do_not_depend_on_the_locale(self):
+        from harmonic_joint_twin import _tool
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LOCPATH=folder):
+            comma_locale.make(folder)
+            self.addCleanup(locale.setlocale, locale.LC_NUMERIC, locale.setlocale(locale.LC_NUMERIC))
+            locale.setlocale(locale.LC_NUMERIC, "comma")
+            code, document, errors = _tool.run(["joint_twin", "stiffness", "--torques", "0.5", "--json"])
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(document, subprocess.run([TOOL, "stiffness", "--torques", "0.5", "--json"],
+                                                  stdout=subprocess.PIPE, text=True, check=True).stdout)
 
     def test_checkup_writes_its_motion(self):
         found = hjt.checkup("ur10e", "motion.csv", joint="wrist_1")

@@ -3,16 +3,21 @@
 """Parameters from Python: the tool's values, checks and words. Argument: the tool."""
 import copy
 import json
+import locale
 import os
 import pickle
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
 import harmonic_joint_twin as hjt
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import comma_locale  # noqa: E402
 
 TOOL = sys.argv.pop(1)
 
@@ -33,6 +38,18 @@ class Values(unittest.TestCase):
                 file.write("output:\n  load_inertia: 2.5\n")
             self.assertEqual(hjt.Parameters({"output.load_inertia": 1.0}, path)["output.load_inertia"], 2.5)
             self.assertEqual(hjt.Parameters(path, {"output.load_inertia": 1.0})["output.load_inertia"], 1.0)
+
+    def test_do_not_depend_on_the_locale(self):
+        plain = dict(hjt.Parameters("config/joints/elbow.yaml"))
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LOCPATH=folder):
+            comma_locale.make(folder)
+            self.addCleanup(locale.setlocale, locale.LC_NUMERIC, locale.setlocale(locale.LC_NUMERIC))
+            locale.setlocale(locale.LC_NUMERIC, "comma")
+            self.assertEqual(locale.localeconv()["decimal_point"], ",")
+            self.assertEqual(dict(hjt.Parameters("config/joints/elbow.yaml")), plain)
+            self.assertEqual(hjt.Parameters({"output.load_inertia": "1.5e-1"})["output.load_inertia"], 0.15)
+            with self.assertRaisesRegex(hjt.ParameterError, r"mesh.stiffness = -1\.5 "):
+                hjt.Parameters({"mesh.stiffness": -1.5})
 
     def test_numbers_of_numpy_are_numbers(self):
         parameters = hjt.Parameters()

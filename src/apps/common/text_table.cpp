@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
-#include <sstream>
+
+#include "base/number_text.hpp"
 
 namespace hjt
 {
 std::string shortNumber(double value)
 {
-  std::ostringstream text;
-  text << std::setprecision(7) << value;
-  return text.str();
+  return roundedText(value, 7);
 }
 
 void printValues(const std::vector<NamedValue>& values)

@@ -13,7 +13,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
 #include "apps/sweep/run_file.hpp"
 
@@ -21,6 +20,7 @@
 #include "base/number_text.hpp"
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
+#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -43,7 +43,7 @@ constexpr std::uint64_t PLAN_LOCK = 1ull << 62;
 
 std::string hexadecimal(std::uint64_t number)
 {
-  std::ostringstream text;
+  TextStream text;
   text << std::hex << number;
   return text.str();
 }

@@ -328,7 +328,7 @@ std::string plainFactor(const FittedFactor& factor)
 {
   int digits = 1;
   const double slack = std::max(0.01 * factor.value, 3.0 * factor.uncertainty);
-  while (digits < 4 && std::abs(std::stod(roundedText(factor.value, digits)) - factor.value) > slack)
+  while (digits < 4 && std::abs(decimalNumber(roundedText(factor.value, digits)).value() - factor.value) > slack)
   {
     ++digits;
   }
@@ -486,9 +486,11 @@ void printJoints(const std::vector<CheckedJoint>& joints)
     const auto stops = std::find_if(joint.findings.begin(), joint.findings.end(),
                                     [](const RecordingFinding& finding) { return finding.stops; });
     const auto first = stops == joint.findings.end() ? joint.findings.begin() : stops;
-    std::printf("%-*s  %6.2f to %5.2f  %7.2f  %6.2f to %6.2f  %-8s  %s\n", columns, joint.name.c_str(),
-                reach.least_angle, reach.most_angle, std::max(reach.most_speed, -reach.least_speed),
-                reach.least_current, reach.most_current, joint.has_velocity ? "yes" : "no",
+    const auto number = [](double value) { return fixedText(value, 2); };
+    std::printf("%-*s  %6s to %5s  %7s  %6s to %6s  %-8s  %s\n", columns, joint.name.c_str(),
+                number(reach.least_angle).c_str(), number(reach.most_angle).c_str(),
+                number(std::max(reach.most_speed, -reach.least_speed)).c_str(), number(reach.least_current).c_str(),
+                number(reach.most_current).c_str(), joint.has_velocity ? "yes" : "no",
                 first == joint.findings.end() ? "fits" : first->text.c_str());
   }
   std::cout << '\n';

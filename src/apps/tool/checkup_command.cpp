@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/check_up.hpp"
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "ros_io/bag_writer.hpp"
@@ -84,7 +84,7 @@ void writeCsv(const std::string& path, const ArmDescription& arm, const std::vec
 
 void writeUrScript(const std::string& path, const std::vector<ArmMove>& moves)
 {
-  std::ostringstream text;
+  TextStream text;
   text << "# Check-up. The arm goes to the first pose from wherever it stands: keep its surroundings clear.\n"
           "def check_up():\n";
   for (const ArmMove& move : moves)

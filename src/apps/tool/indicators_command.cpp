@@ -17,6 +17,7 @@
 #include "apps/common/text_table.hpp"
 #include "apps/tool/recorded_signals.hpp"
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
@@ -204,7 +205,7 @@ void printTable(const WindowResult& window)
     std::printf("%-32s %14s %-10s", indicatorName(i), shortNumber(value).c_str(), indicatorUnit(i));
     if (std::isfinite(deviation.score))
     {
-      std::printf(" %14s %8.2f", shortNumber(deviation.expected).c_str(), deviation.score);
+      std::printf(" %14s %8s", shortNumber(deviation.expected).c_str(), fixedText(deviation.score, 2).c_str());
     }
     std::printf("\n");
   }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include "base/number_text.hpp"
+
+namespace hjt
+{
+/// A decimal number of a YAML file; yaml-cpp's own as<double>() follows the program's locale. @throws YAML::Exception.
+inline double yamlNumber(const YAML::Node& node)
+{
+  const std::optional<double> number = node.IsScalar() ? decimalNumber(node.Scalar()) : std::nullopt;
+  if (!number)
+  {
+    throw YAML::TypedBadConversion<double>(node.Mark());
+  }
+  return *number;
+}
+}  // namespace hjt
