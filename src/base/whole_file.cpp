@@ -2,13 +2,14 @@
 #include "base/whole_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -32,33 +33,67 @@ void synchronise(const std::string& path)
     throw InputError(path + " cannot be written: " + std::strerror(reason));
   }
 }
+
+/// Writes to a file that was opened, and closes it. `path`: named in the error. @throws InputError.
+void writeAll(int descriptor, const std::string& bytes, const std::string& path)
+{
+  bool good = descriptor >= 0;
+  for (std::size_t done = 0; good && done < bytes.size();)
+  {
+    const ssize_t written = write(descriptor, bytes.data() + done, bytes.size() - done);
+    good = written >= 0 || errno == EINTR;
+    done += written > 0 ? static_cast<std::size_t>(written) : 0;
+  }
+  const int reason = errno;
+  const bool closed = descriptor >= 0 && close(descriptor) == 0;
+  if (!good || !closed)
+  {
+    throw InputError(path + " cannot be written: " + std::strerror(good ? errno : reason));
+  }
+}
+
+/// Gives the name `target` to a new file. `path`: as the user named it.
+void replaceFile(const std::string& path, const std::string& target, const std::string& bytes, mode_t mode)
+{
+  // Shards may write the same file at once: each has a temporary of its own.
+  const std::string temporary = target + "." + std::to_string(std::random_device{}()) + ".part";
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  try
+  {
+    writeAll(descriptor, bytes, path);
+    bringToDisk(temporary, target);
+  }
+  catch (const InputError&)
+  {
+    if (descriptor >= 0)
+    {
+      std::remove(temporary.c_str());
+    }
+    throw;
+  }
+}
 }  // namespace
 
 void writeTextFile(const std::string& path, const std::string& text)
 {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path there = fs::canonical(path, error);  // the file behind links; none: it is new
-  const std::string target = error ? path : there.string();
-  const bool device = !error && !fs::is_regular_file(there, error);
-  // Shards may write the same file at once: each has a temporary of its own.
-  const std::string temporary = device ? target : target + "." + std::to_string(std::random_device{}()) + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file)
+  const fs::file_status status = fs::status(path, error);
+  const fs::path there = fs::canonical(path, error);  // behind links
+  // What links of /proc/self/fd lead to may have no name.
+  if (fs::exists(status) && (error || !fs::is_regular_file(status)))
   {
-    const int reason = errno;
-    if (!device)
-    {
-      fs::remove(temporary, error);
-    }
-    throw InputError(path + " cannot be written: " + std::strerror(reason));
+    const int descriptor = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
+    writeAll(descriptor, text, path);
+    return;
   }
-  if (!device)
-  {
-    bringToDisk(temporary, target);
-  }
+  constexpr mode_t READABLE = 0666;  // as the user's mask allows
+  replaceFile(path, error ? path : there.string(), text, READABLE);
+}
+
+void writePrivateFile(const std::string& path, const std::string& bytes)
+{
+  replaceFile(path, path, bytes, S_IRUSR | S_IWUSR);
 }
 
 void bringToDisk(const std::string& temporary, const std::string& path)

@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/cache_folder.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
+
+#include "base/number_text.hpp"
+#include "base/range.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t MEGABYTE = 1000000;
 
 struct CachedFile
 {
@@ -28,10 +41,44 @@ bool beginsLikeATable(const std::string& name)
 
 std::string megabytes(std::uintmax_t bytes)
 {
-  constexpr std::uintmax_t MEGABYTE = 1000000;
   return std::to_string((bytes + MEGABYTE / 2) / MEGABYTE) + " MB";
 }
 }  // namespace
+
+std::string makeCacheFolder(const std::string& directory)
+{
+  std::error_code error;
+  fs::create_directories(fs::path(directory).parent_path(), error);
+  mkdir(directory.c_str(), S_IRWXU);
+  const int reason = errno;
+  struct stat status = {};
+  if (stat(directory.c_str(), &status) != 0)
+  {
+    return directory + " cannot be made: " + std::strerror(reason);
+  }
+  const bool is_own = status.st_uid == geteuid();
+  if (!S_ISDIR(status.st_mode) || !is_own || (status.st_mode & S_IWOTH) != 0)
+  {
+    return directory + (!S_ISDIR(status.st_mode) ? " is no directory" :
+                        !is_own                  ? " belongs to another user" :
+                                                   " may be written to by everybody");
+  }
+  return "";
+}
+
+std::uintmax_t cacheLimit()
+{
+  constexpr double DEFAULT = 4000.0;
+  constexpr Range RANGE{ 0.0, 1e9 };
+  const char* given = std::getenv("HJT_CACHE_LIMIT");
+  const std::optional<double> limit = given == nullptr ? DEFAULT : decimalNumber(given);
+  if (!limit || !(*limit >= RANGE.min && *limit <= RANGE.max))
+  {
+    throw ParameterError("HJT_CACHE_LIMIT = " + std::string(given) + " [MB] is no number in the allowed range " +
+                         rangeText(RANGE) + " [MB]");
+  }
+  return static_cast<std::uintmax_t>(*limit * MEGABYTE);
+}
 
 std::string tidyCache(const std::string& directory, const std::string& kept, std::uintmax_t most)
 {

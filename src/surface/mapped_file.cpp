@@ -19,7 +19,8 @@ std::shared_ptr<const MappedFile> MappedFile::ofOwn(const std::string& path, std
   void* start = MAP_FAILED;
   std::size_t size = 0;
   if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
-      (status.st_mode & S_IWOTH) == 0 && status.st_size > 0 && static_cast<std::size_t>(status.st_size) <= most)
+      (status.st_mode & (S_IWGRP | S_IWOTH)) == 0 && status.st_size > 0 &&
+      static_cast<std::size_t>(status.st_size) <= most)
   {
     size = static_cast<std::size_t>(status.st_size);
     start = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);

@@ -7,13 +7,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <memory>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -22,8 +19,10 @@
 #include "base/number_text.hpp"
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
+#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
 #include "solver/arc_elimination.hpp"
@@ -39,8 +38,6 @@ namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 /// First line of a file, before the hash of the code that made it.
 constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
 /// No table is larger; the shipped gear's has 8 MB [bytes].
@@ -58,8 +55,11 @@ std::string header(const Parameters& parameters, const std::string& faults)
   for (const std::string& path :
        { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })
   {
-    std::ifstream file(path, std::ios::binary);
-    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    if (path != NO_FILE)
+    {
+      std::ifstream file(path, std::ios::binary);
+      text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
     text += '\n';
   }
   // The numbers that follow lie as they do in memory.
@@ -281,11 +281,9 @@ std::string writeFile(const std::string& path, std::string bytes)
   append(bytes, &sum, 1);
   try
   {
-    fs::create_directories(fs::path(path).parent_path());
-    writeTextFile(path, bytes);
-    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+    writePrivateFile(path, bytes);
   }
-  catch (const std::exception& error)  // of the file system, or InputError
+  catch (const InputError& error)
   {
     return error.what();
   }
@@ -294,7 +292,7 @@ std::string writeFile(const std::string& path, std::string bytes)
 
 std::string fileOf(const std::string& kind, const std::string& key, const std::string& directory)
 {
-  std::ostringstream name;
+  TextStream name;
   name << directory << '/' << kind << '_' << std::hex << textHash(key) << ".bin";
   return name.str();
 }
@@ -311,8 +309,15 @@ void tell(const SurfaceSource& source, const std::string& what)
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {
-  const bool kept = !source.cache_directory.empty();
-  const std::string path = fileOf(kind, key, source.cache_directory);
+  const std::string& directory = source.cache_directory;
+  const std::uintmax_t limit = cacheLimit();
+  const std::string unfit = directory.empty() ? "" : makeCacheFolder(directory);
+  if (!unfit.empty())
+  {
+    tell(source, "response surface not kept: " + unfit);
+  }
+  const bool kept = !directory.empty() && unfit.empty();
+  const std::string path = fileOf(kind, key, directory);
   Table table;
   if (kept && readFile(path, key, table))
   {
@@ -333,7 +338,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
     }
     else
     {
-      const std::string removed = tidyCache(source.cache_directory, path);
+      const std::string removed = tidyCache(directory, path, limit);
       if (!removed.empty())
       {
         tell(source, removed);

@@ -34,6 +34,7 @@
 #include "base/text_hash.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
@@ -1256,6 +1257,7 @@ TEST(SurfaceCache, RemovesWhatHasNotBeenUsedForLongest)
     fs::last_write_time(path, fs::file_time_type::clock::now() - ago);
     return path;
   };
+  setenv("HJT_CACHE_LIMIT", "1074.5", 1);
   const auto oldest = put("surface_1.bin", 700000000, std::chrono::hours(30));
   const auto older = put("deviations_2.bin", 300000000, std::chrono::hours(20));
   const auto last = put("surface_3.bin", 500000000, std::chrono::hours(10));
@@ -1266,7 +1268,8 @@ TEST(SurfaceCache, RemovesWhatHasNotBeenUsedForLongest)
   const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
   ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
   EXPECT_THAT(notice, testing::HasSubstr("removed 1 table of response surfaces, not used for longest, 700 MB"));
-  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " holds at most 1074 MB"));
+  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " holds at most 1075 MB"));
+  unsetenv("HJT_CACHE_LIMIT");
   const fs::path own = surfaceCacheFile(parameters, folder.path().string());
   for (const fs::path& path : { older, last, in_work, foreign, own })
   {
@@ -1284,6 +1287,57 @@ TEST(SurfaceCache, RemovesWhatHasNotBeenUsedForLongest)
   EXPECT_TRUE(fs::exists(last));
   EXPECT_FALSE(fs::exists(own));
   EXPECT_EQ(tidyCache("/nowhere/at/all", "", 0), "");
+}
+
+TEST(SurfaceCache, LimitIsANumberInRange)
+{
+  EXPECT_EQ(cacheLimit(), 4000000000U);
+  for (const char* bad : { "", "-1", "2 GB", "1e10", "nan" })
+  {
+    setenv("HJT_CACHE_LIMIT", bad, 1);
+    EXPECT_THROW(cacheLimit(), ParameterError) << bad;
+  }
+  unsetenv("HJT_CACHE_LIMIT");
+}
+
+TEST(SurfaceCache, WritesThroughNoLinkAndToNoPipe)
+{
+  const TemporaryFolder folder;
+  const Parameters parameters = narrowParameters();
+  const fs::path file = surfaceCacheFile(parameters, folder.path().string());
+  const std::string other = folder.write("precious", "text");
+  const SurfaceSource source{ folder.path().string(), {}, {} };
+  fs::create_symlink(other, file);
+  ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
+  EXPECT_EQ(fs::file_size(other), 4U);
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file)));
+  const auto size = fs::file_size(file);
+  fs::remove(file);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
+  EXPECT_EQ(fs::file_size(file), size);
+}
+
+TEST(SurfaceCache, KeepsNothingWhereEverybodyMayWrite)
+{
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::all);
+  std::string notice;
+  const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
+  ASSERT_TRUE(obtainSurface(narrowParameters(), JointModel(narrowParameters()), "", source));
+  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " may be written to by everybody"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(SurfaceCache, KeyIsNotThatOfAFileCalledNone)
+{
+  const TemporaryFolder folder;
+  const std::string key = surfaceCacheFile(shippedParameters(), "x");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  folder.write("none", "text");
+  EXPECT_EQ(surfaceCacheFile(shippedParameters(), "x"), key);
+  fs::current_path(before);
 }
 
 /// Thrown when a surface begins to be built.
@@ -1326,6 +1380,12 @@ TEST(SurfaceCache, TakesOnlyRegularFilesThatNobodyElseWrites)
       {
         fs::copy_file(good, path);
         fs::permissions(path, fs::perms::others_write, fs::perm_options::add);
+      }));
+  EXPECT_FALSE(isTaken(
+      [&](const std::string& path)
+      {
+        fs::copy_file(good, path);
+        fs::permissions(path, fs::perms::group_write, fs::perm_options::add);
       }));
   EXPECT_FALSE(isTaken(
       [&](const std::string& path)

@@ -40,6 +40,19 @@ class Checkup(tool.ToolTest):
         self.assertEqual(len(moves), summary["moves"])
         self.assertTrue(all(len(move[0].split(",")) == 6 and float(move[2]) <= math.pi for move in moves))
 
+    def test_a_link_to_a_pipe_is_written_into(self):
+        link = self.path("link")
+        os.symlink("/proc/self/fd/1", link)
+        arguments = ["checkup", "--arm", "ur5", "--joint", "base", "--format", "urscript", "--out"]
+        self.assertIn("def check_up():", self.succeed(*arguments, link, "--force").stdout)
+        self.assertTrue(os.path.islink(link))
+        self.succeed(*arguments, "a.script")
+        os.symlink("a.script", self.path("other"))
+        self.write("a.script", "")
+        self.succeed(*arguments, "other", "--force")
+        self.assertTrue(os.path.islink(self.path("other")))
+        self.assertGreater(os.path.getsize(self.path("a.script")), 100)
+
     def test_the_bag_holds_the_table_as_a_trajectory(self):
         for name, how in (("a.csv", "csv"), ("a.bag", "bag")):
             self.succeed("checkup", "--arm", "ur5", "--joint", "elbow", "--out", name, "--format", how)
