@@ -33,21 +33,24 @@ fs::path findDirectory(const std::string& given)
 fs::path packageDirectory()
 {
   // PREFIX/share/harmonic_joint_twin belongs to the executable PREFIX/lib/harmonic_joint_twin/joint_twin, and to the
-  // library PREFIX/lib/libharmonic_joint_twin_core.so where another program has loaded it.
+  // library PREFIX/lib/libharmonic_joint_twin_core.so where another program has loaded it. In a development space its
+  // config is a link to that of the sources.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   static const int HERE = 0;
   Dl_info library{};
-  const fs::path loaded = dladdr(&HERE, &library) != 0 ? library.dli_fname : "";
-  for (const fs::path& beside : { executable.parent_path() / "../..", fs::absolute(loaded).parent_path() / ".." })
+  const fs::path loaded = dladdr(&HERE, &library) != 0 ? fs::absolute(library.dli_fname) : "";
+  for (const fs::path& beside : { executable.parent_path() / "../..", loaded.parent_path() / ".." })
   {
-    const fs::path installed = beside / "share/harmonic_joint_twin";
-    if (fs::exists(installed / "config" / STAGES))
+    const fs::path config = fs::canonical(beside / "share/harmonic_joint_twin/config", error);
+    if (!error && fs::exists(config / STAGES))
     {
-      return installed.lexically_normal();
+      return config.parent_path();
     }
   }
-  return HJT_SOURCE_DIR;
+  throw ParameterError("neither " + executable.string() + " nor " + loaded.string() +
+                       " lies in an installation or development space of harmonic_joint_twin: no default configuration "
+                       "found; name its directory with --config-dir or HJT_CONFIG_DIR");
 }
 
 fs::path configurationDirectory(const std::string& given)

@@ -6,7 +6,8 @@
 
 namespace hjt
 {
-/// Where config/ and scripts/ lie: of the installation, else of the checkout.
+/// Where config/ and scripts/ lie: in the installation, or in the sources of a development space.
+/// @throws ParameterError if the program lies in neither.
 std::filesystem::path packageDirectory();
 
 /// The directory of the default configuration: as given, else HJT_CONFIG_DIR, else of the package.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The static analyses and the command line of the offline tool."""
 import csv
+import glob
 import json
 import math
 import os
@@ -72,6 +73,21 @@ class CommandLine(tool.ToolTest):
         installed = self.succeed_json("parameters", "--config", "config/joints/elbow.yaml")
         self.assertEqual((given["gear"]["wave_amplitude"], installed["gear"]["wave_amplitude"]), (0.35e-3, 0.34e-3))
         self.assertEqual(installed["joint"]["name"], "elbow_joint")
+
+    def test_a_tool_copied_without_its_files_says_how_to_name_them(self):
+        folder = self.path("bare")
+        os.makedirs(folder)
+        shutil.copy(self.executable, folder)
+        for library in glob.glob(os.path.join(os.path.dirname(self.executable), "..", "lib*.so")):
+            shutil.copy(library, folder)
+        self.executable = os.path.join(folder, os.path.basename(self.executable))
+        bare = {"LD_LIBRARY_PATH": folder + ":" + os.environ.get("LD_LIBRARY_PATH", "")}
+        done = self.run_tool("stiffness", "--torques", "5", environment=bare)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        for part in (folder, "no default configuration found", "--config-dir or HJT_CONFIG_DIR"):
+            self.assertIn(part, done.stderr)
+        bare["HJT_CONFIG_DIR"] = os.path.join(tool.CHECKOUT, "config")
+        self.assertEqual(self.run_tool("stiffness", "--torques", "5", environment=bare).returncode, 0)
 
     def test_later_overlay_wins_and_set_wins_over_all(self):
         first = self.write("first.yaml", "motor:\n  torque_limit: 1.0\n")
