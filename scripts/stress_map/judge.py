@@ -60,7 +60,8 @@ class Runner:
         rate = 1e9 / round(step * 1e9)
         least = min(rate, 1000.0)
         changes = {"solver.rate": rate, "publish.joint_states_rate": least, "publish.encoders_rate": least,
-                   "publish.contact_forces_rate": 100.0, "publish.health_rate": 10.0, **cell.changes}
+                   "publish.contact_forces_rate": 100.0, "publish.health_rate": 10.0, "indicators.sample_rate": least,
+                   **cell.changes}
         line = [self.tool, "trial", "--profile", profile, "--duration", repr(DURATION), "--sample-period",
                 repr(max(step, SAMPLE_PERIOD)), "--advance", repr(advance), "--json"]
         for key, value in changes.items():

@@ -18,8 +18,9 @@ AMBIENT = 25.0  # degC, assumed: only temperatures above it matter
 SWEEP = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4)  # rad/s at the joint
 MOVING = 0.3  # rad/s
 STANDING = ("--torque", 0, "--set", "brake.engaged_at_start=true", "--set", "solver.rate=1000", "--set",
-            "publish.joint_states_rate=0.1", "--set", "publish.encoders_rate=1.0", "--set",
-            "publish.contact_forces_rate=1.0", "--set", "output.gravity_torque=0.0")
+            "indicators.sample_rate=1000", "--set", "publish.joint_states_rate=0.1", "--set",
+            "publish.encoders_rate=1.0", "--set", "publish.contact_forces_rate=1.0", "--set",
+            "output.gravity_torque=0.0")
 RATIO = 101
 
 

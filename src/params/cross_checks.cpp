@@ -24,6 +24,14 @@ bool divides(double rate, double of)
   return times >= 1.0 && std::abs(times * rate - of) <= 1e-9 * of;
 }
 
+/// "do: " and the rates beside `rate` that divide `of`.
+std::string nearestDivisors(double rate, double of)
+{
+  const double times = std::floor(of / rate);
+  return times < 1.0 ? "does: " + numberText(of) :
+                       "do: " + numberText(of / (times + 1.0)) + ", " + numberText(of / times);
+}
+
 /// Collects contradictions, each with the places of the keys it is about.
 class Contradictions
 {
@@ -155,10 +163,11 @@ void checkRates(const Parameters& p, Contradictions& check)
 
   const auto check_rate = [&](const std::string& key, double rate)
   {
-    check.require(
-        divides(rate, p.solver.rate), { key, "solver.rate" },
-        key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) + " [Hz]");
+    check.require(divides(rate, p.solver.rate), { key, "solver.rate" },
+                  key + " = " + numberText(rate) + " [Hz] must divide solver.rate = " + numberText(p.solver.rate) +
+                      " [Hz]; the nearest that " + nearestDivisors(rate, p.solver.rate) + " [Hz]");
   };
+  check_rate("indicators.sample_rate", p.indicators.sample_rate);
   // Every number below publish is the rate of a topic.
   visitFields(p,
               [&check_rate](const std::string& key, const auto&... rest)

@@ -305,7 +305,7 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("time constant over which efficiency and stiffness forget"));
 
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
-        ofOthers("sample rate of the twin's own indicators; the nearest that divides solver.rate"));
+        ofOthers("sample rate of the twin's own indicators; must divide solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
         ofOthers("motor turns at steady speed that make one window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },

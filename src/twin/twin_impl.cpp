@@ -35,7 +35,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , monitor(given.health, given.gear)
   , signals(given)
   , assessor(given)
-  , steps_per_sample(std::max<Stamp>(std::llround(given.solver.rate / given.indicators.sample_rate), 1))
+  , steps_per_sample(std::llround(given.solver.rate / given.indicators.sample_rate))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))

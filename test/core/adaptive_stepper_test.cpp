@@ -35,8 +35,8 @@ Parameters onSurface(std::vector<std::string> assignments)
 
 Parameters adaptive(const std::string& tolerance, std::vector<std::string> assignments = {})
 {
-  assignments.insert(assignments.begin(),
-                     { "solver.stepper=adaptive", "solver.rate=1000", "solver.tolerance=" + tolerance });
+  assignments.insert(assignments.begin(), { "solver.stepper=adaptive", "solver.rate=1000",
+                                            "indicators.sample_rate=1000", "solver.tolerance=" + tolerance });
   return onSurface(assignments);
 }
 
@@ -282,7 +282,8 @@ TEST(AdaptiveStepper, leavesToTheLeapfrogWhatItDoesNotCover)
   for (const char* other : { "solver.scene=full_ring", "cup.friction_angle=0.0" })
   {
     const Stamp duration = other == std::string("solver.scene=full_ring") ? 20 * MILLISECOND : EVENTFUL;
-    const Course same = run(onSurface({ "solver.rate=1000", other }), eventfulInputs(), duration);
+    const Course same =
+        run(onSurface({ "solver.rate=1000", "indicators.sample_rate=1000", other }), eventfulInputs(), duration);
     const Course course = run(adaptive("1.0e-8", { other }), eventfulInputs(), duration);
     ASSERT_EQ(course.size(), same.size());
     for (std::size_t i = 0; i < course.size(); ++i)

@@ -469,7 +469,7 @@ TEST(StepLength, ThatTheJointCannotBeMarchedWithIsRefused)
   };
   EXPECT_NO_THROW(make({}));
   EXPECT_NO_THROW(make({ "output.load_inertia=0.0" }));
-  EXPECT_THROW(make({ "output.load_inertia=0.0", "solver.rate=5000" }), ParameterError);
+  EXPECT_THROW(make({ "output.load_inertia=0.0", "solver.rate=5000", "indicators.sample_rate=1000" }), ParameterError);
   EXPECT_THROW(make({ "solver.stepper=runge_kutta4" }), ParameterError);
 }
 

@@ -100,10 +100,9 @@ std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const Moti
 
 std::vector<std::string> hiddenParameters()
 {
-  return { "bearing.race_preload=750.0", "bearing.viscosity=220.0e-6",
-           "motor.rotor_inertia=1.2e-4", "telemetry.torque_per_current=9.84",
-           "motor.viscous_friction=0.0", "output.gravity_torque=40.0",
-           "output.load_inertia=1.5",    "solver.rate=5000" };
+  return { "bearing.race_preload=750.0",        "bearing.viscosity=220.0e-6", "motor.rotor_inertia=1.2e-4",
+           "telemetry.torque_per_current=9.84", "motor.viscous_friction=0.0", "output.gravity_torque=40.0",
+           "output.load_inertia=1.5",           "solver.rate=5000",           "indicators.sample_rate=1000" };
 }
 
 Parameters knownParameters()

@@ -124,7 +124,8 @@ double shareInside(const std::vector<Seen>& seen)
   return inside / moving;
 }
 
-const std::vector<std::string> JOINT{ "motor.viscous_friction=0.0", "output.load_inertia=1.5", "solver.rate=5000" };
+const std::vector<std::string> JOINT{ "motor.viscous_friction=0.0", "output.load_inertia=1.5", "solver.rate=5000",
+                                      "indicators.sample_rate=1000" };
 
 Parameters jointWith(const std::string& assignment)
 {

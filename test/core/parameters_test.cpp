@@ -492,6 +492,14 @@ const std::vector<Contradiction>& contradictionTable()
     { { "publish.health_rate=300" }, "publish.health_rate = 300.0 [Hz] must divide", { "publish.health_rate=0.1" } },
     { { "publish.stress_rate=300" }, "publish.stress_rate = 300.0 [Hz] must divide", {} },
     { { "publish.indicators_rate=300" }, "publish.indicators_rate = 300.0 [Hz] must divide", {} },
+    { { "indicators.sample_rate=3000" },
+      "indicators.sample_rate = 3000.0 [Hz] must divide solver.rate = 10000.0 [Hz]; the nearest that do: 2500.0, "
+      "3333.3333333333335 [Hz]",
+      { "indicators.sample_rate=2500" } },
+    { { "indicators.sample_rate=20000" },
+      "indicators.sample_rate = 20000.0 [Hz] must divide solver.rate = 10000.0 [Hz]; the nearest that does: 10000.0 "
+      "[Hz]",
+      { "indicators.sample_rate=3333.3333333333335" } },
   };
   return TABLE;
 }

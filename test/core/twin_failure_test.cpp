@@ -144,7 +144,7 @@ TEST(DoubtfulStep, IsSaidWhenItIsTooLongForTheSwing)
 
 TEST(DoubtfulStep, IsDividedWhereTheParametersSaySo)
 {
-  Twin coarse(goldenParameters({ "solver.rate=1000" }));
+  Twin coarse(goldenParameters({ "solver.rate=1000", "indicators.sample_rate=1000" }));
   EXPECT_EQ(countersAfter(coarse, 20 * MILLISECOND).coarse_steps, 0U);
   EXPECT_EQ(coarse.health().solver_state, SolverState::OK);
   EXPECT_EQ(coarse.outputs().substeps, 11U);

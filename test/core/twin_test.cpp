@@ -360,7 +360,7 @@ TEST(TwinConstruction, RefusesWhatItCannotRun)
       Twin(goldenParameters({ "contact.stiffness=1.0e+12", "solver.max_iterations=1", "solver.max_step_cuts=0" })),
       ParameterError);
   EXPECT_THROW(Twin(shippedParameters({ "solver.rate=100", "publish.joint_states_rate=100", "publish.encoders_rate=100",
-                                        "output.load_inertia=0.0" })),
+                                        "indicators.sample_rate=100", "output.load_inertia=0.0" })),
                ParameterError);
   EXPECT_THROW(Twin(shippedParameters({ "solver.stepper=runge_kutta4" })), ParameterError);
   // A light motor on the gear swings as fast as a light output.

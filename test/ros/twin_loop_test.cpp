@@ -42,8 +42,8 @@ protected:
   void start(bool wait_for_first_input, ClockKind clock_kind = ClockKind::STEPPED)
   {
     const std::string wait = wait_for_first_input ? "true" : "false";
-    twin_ = std::make_unique<Twin>(
-        shippedParameters({ "solver.rate=1000", "input.delay=0.02", "input.wait_for_first_input=" + wait }));
+    twin_ = std::make_unique<Twin>(shippedParameters({ "solver.rate=1000", "indicators.sample_rate=1000",
+                                                       "input.delay=0.02", "input.wait_for_first_input=" + wait }));
     instants_.reserve(1 << 20);
     loop_ = std::make_unique<TwinLoop>(
         *twin_, inbox_, [this] { return clock_.load(); }, clock_kind,
@@ -238,7 +238,8 @@ TEST_F(LoopFixture, SleepsUntilTheNextInstantThatIsAwaited)
            std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start_time).count();
   };
   std::atomic<Stamp> period{ SECOND };
-  Twin twin(shippedParameters({ "solver.rate=1000", "input.delay=0.02", "realtime.deadline=1.0" }));
+  Twin twin(shippedParameters(
+      { "solver.rate=1000", "indicators.sample_rate=1000", "input.delay=0.02", "realtime.deadline=1.0" }));
   instants_.reserve(1 << 20);
   TwinLoop loop(
       twin, inbox_, clock, ClockKind::RUNNING,
