@@ -59,23 +59,6 @@ void requireFinite(const char* name, const std::vector<double>& values)
   }
 }
 
-void requireAtLeast(const char* name, int value, int least)
-{
-  if (value < least)
-  {
-    throw InputError(std::string(name) + " = " + std::to_string(value) +
-                     " [-] is out of range, allowed: >= " + std::to_string(least));
-  }
-}
-
-void requirePositive(const char* name, double value)
-{
-  if (!(value > 0.0))
-  {
-    throw InputError(std::string(name) + " = " + numberText(value) + " [N.m] is out of range, allowed: > 0");
-  }
-}
-
 std::string valueWithUnit(double value, const char* unit)
 {
   return numberText(value) + ' ' + unit;
@@ -131,7 +114,6 @@ py::array_t<TurnValues> turn(const Configuration& parameters, double load, doubl
 {
   requireFinite("load", { load });
   requireFinite("angle_range", { angle_range });
-  requireAtLeast("steps", steps, 1);
   const std::vector<TurnRow> rows = withoutLock(
       [&, given = parameters.values()]
       {
@@ -158,7 +140,6 @@ py::array_t<LossValues> losses(const Configuration& parameters, const std::vecto
 {
   requireFinite("speeds", speeds);
   requireFinite("loads", loads);
-  requireAtLeast("positions", positions, 1);
   const std::vector<LossRow> rows = withoutLock(
       [&, given = parameters.values()]
       {
@@ -183,7 +164,6 @@ py::array_t<LossValues> losses(const Configuration& parameters, const std::vecto
 
 Breakaway breakaway(const Configuration& parameters, int positions)
 {
-  requireAtLeast("positions", positions, 1);
   Breakaway result =
       withoutLock([given = parameters.values(), positions] { return analyseBreakaway(given, positions); });
   if (!result.status.ok())
@@ -196,14 +176,6 @@ Breakaway breakaway(const Configuration& parameters, int positions)
 TorsionLoop torsionLoop(const Configuration& parameters, double amplitude, double lost_motion_torque, int steps)
 {
   requireFinite("amplitude", { amplitude });
-  requirePositive("amplitude", amplitude);
-  requirePositive("lost_motion_torque", lost_motion_torque);
-  if (lost_motion_torque > amplitude)
-  {
-    throw InputError("lost_motion_torque = " + valueWithUnit(lost_motion_torque, "[N.m]") +
-                     " is out of range, allowed: 0 ... " + numberText(amplitude) + " (amplitude)");
-  }
-  requireAtLeast("steps", steps, 2);
   TorsionLoop loop = withoutLock([&, given = parameters.values()]
                                  { return analyseTorsionLoop(given, amplitude, lost_motion_torque, steps); });
   if (!loop.status.ok())

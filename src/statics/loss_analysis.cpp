@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gear/ratio.hpp"
+#include "statics/arguments.hpp"
 #include "statics/pitch_walk.hpp"
 
 namespace hjt
@@ -73,8 +74,10 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
                                    const std::vector<double>& loads, int positions,
                                    const std::function<void(int)>& progress)
 {
+  requireAtLeast("positions", positions, 1);
   LossMeter meter(parameters, positions);
   std::vector<LossRow> rows;
+  int done = 0;
   for (const double load : loads)
   {
     const std::size_t first = rows.size();
@@ -111,7 +114,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
     }
     if (progress)
     {
-      progress(static_cast<int>(rows.size() / speeds.size()));
+      progress(++done);
     }
   }
   return rows;
@@ -119,6 +122,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
 
 Breakaway analyseBreakaway(const Parameters& parameters, int positions)
 {
+  requireAtLeast("positions", positions, 1);
   constexpr int MAX_ITERATIONS = 30;
   constexpr double ENOUGH = 1e-6;  // relative change of the load
   LossMeter meter(parameters, positions);

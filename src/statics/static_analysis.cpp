@@ -10,6 +10,7 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "solver/output_balance.hpp"
+#include "statics/arguments.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/static_solver.hpp"
 
@@ -158,6 +159,7 @@ std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double 
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
                                  const std::function<void(int)>& progress)
 {
+  requireAtLeast("steps", steps, 1);
   const RingModel model(parameters);
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });

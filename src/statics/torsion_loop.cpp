@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 
+#include "base/number_text.hpp"
 #include "model/joint_model.hpp"
 #include "solver/output_balance.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "statics/arguments.hpp"
 #include "statics/static_solver.hpp"
 
 namespace hjt
 {
 namespace
 {
+/// @throws InputError.
+void requirePositive(const char* name, double value)
+{
+  if (!(value > 0.0))
+  {
+    throw InputError(std::string(name) + " = " + numberText(value) + " [N.m] is out of range, allowed: > 0");
+  }
+}
+
 /// Where the polyline (torque ascending) passes a torque [rad].
 double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
 {
@@ -28,6 +39,14 @@ double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
 
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps)
 {
+  requirePositive("amplitude", amplitude);
+  requirePositive("lost_motion_torque", lost_motion_torque);
+  if (lost_motion_torque > amplitude)
+  {
+    throw InputError("lost_motion_torque = " + numberText(lost_motion_torque) +
+                     " [N.m] is out of range, allowed: 0 ... " + numberText(amplitude) + " (amplitude)");
+  }
+  requireAtLeast("steps", steps, 2);
   const JointModel model(parameters);
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
   JointFriction friction(parameters.gear.teeth_flexspline);

@@ -39,6 +39,7 @@ struct LossRow
 
 /// One row for every speed and load, in this order: all speeds of the first load, then of the next.
 /// `positions`: wave generator angles per tooth pitch, >= 1. `progress`: called with the loads done.
+/// @throws InputError if positions < 1.
 std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vector<double>& speeds,
                                    const std::vector<double>& loads, int positions,
                                    const std::function<void(int)>& progress);
@@ -50,5 +51,6 @@ struct Breakaway
   double starting{};      ///< at the wave generator, no load: the largest over a tooth pitch [N.m]
   double back_driving{};  ///< at the output, wave generator free: the load whose own pull overcomes the friction [N.m]
 };
+/// `positions`: as of analyseLosses. @throws InputError if positions < 1.
 Breakaway analyseBreakaway(const Parameters& parameters, int positions);
 }  // namespace hjt

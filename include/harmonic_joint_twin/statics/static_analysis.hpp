@@ -69,7 +69,7 @@ struct StiffnessRow
   SolveStatus status;
   double torque{};                 ///< load [N.m]
   double output_angle{};           ///< relative to zero load [rad]
-  double wave_generator_torque{};  ///< of the flexspline on the wave generator, -torque/101 [N.m]
+  double wave_generator_torque{};  ///< of the flexspline on the wave generator, about -torque over the ratio [N.m]
   double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
   double cup_rotation{};           ///< mean rotation of the teeth from rest [rad]
   int teeth_loaded{};
@@ -93,7 +93,8 @@ struct TurnRow
   double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
   double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
 };
-/// `progress` is called with each step done.
+/// From angle 0 to `angle_range` [rad] in `steps` >= 1. `progress` is called with each step done.
+/// @throws InputError if steps < 1.
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
                                  const std::function<void(int)>& progress);
 }  // namespace hjt

@@ -24,7 +24,7 @@ struct TorsionLoop
   double lost_motion{};              ///< angle between the middles of the loop at + and - the lost motion torque [rad]
 };
 
-/// `amplitude`: largest load [N.m]; `lost_motion_torque`: e.g. 4 % of the rated torque, below the amplitude [N.m];
-/// `steps`: angles of one sweep, >= 2.
+/// `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: e.g. 4 % of the rated torque, > 0, at most the amplitude
+/// [N.m]; `steps`: angles of one sweep, >= 2. @throws InputError if one is out of range.
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps);
 }  // namespace hjt
