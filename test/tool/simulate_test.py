@@ -115,6 +115,9 @@ class Simulate(tool.ToolTest):
                             ("time,motor_torque\n0,zero\n", ["'zero' is not a finite number"]),
                             ("time,motor_torque\n0,1\n0,1\n", [":3: column 'time' must start at 0 or later"]),
                             ("time,motor_torque\n-1,1\n", [":2: column 'time' must start at 0 or later"]),
+                            ("time,motor_torque\n0,1\n9.3e9,1\n",
+                             [":3: column 'time' = 9.3e+9 [s] is out of range, allowed: 0 ... 1.0e+9 [s]"]),
+                            ("time,motor_torque\n0,1\n1e300,1\n", [":3: column 'time' = 1.0e+300 [s] is out of range"]),
                             ("time,motor_torque,brake\n0,1,2\n", [":2: column 'brake' must be 0 or 1"]),
                             ("time,torque\n0,1\n", [":1: column 'motor_torque' is missing"]),
                             ("time,motor_torque\n", ["has no rows"]), ("", ["p.csv"])]:

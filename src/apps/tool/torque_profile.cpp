@@ -17,6 +17,8 @@ enum Column
   BRAKE,
   COLUMNS
 };
+
+constexpr Range TIMES{ 0.0, 1e9 };  // a stamp holds them [s]
 }  // namespace
 
 TorqueProfile TorqueProfile::constant(double motor_torque)
@@ -39,6 +41,7 @@ TorqueProfile TorqueProfile::fromFile(const std::string& path)
     {
       throw InputError(table.place() + ": column 'time' must start at 0 or later and ascend");
     }
+    table.requireRange(TIME, row[TIME], TIMES, "s");
     const auto stamp = static_cast<Stamp>(std::llround(row[TIME] * 1e9));
     profile.inputs_.push_back({ stamp, InputKind::MOTOR_TORQUE, row[MOTOR_TORQUE] });
     if (table.hasColumn(LOAD_TORQUE))
