@@ -262,7 +262,7 @@ void visitFields(P& p, Visitor&& visit)
                  "adaptive: steps of their own length on the response surface (solver.scene: auto), offline"));
   visit("solver.tolerance", "rad", p.solver.tolerance, Range{ 1e-13, 1e-5 },
         ofOthers("adaptive: error of a step, of the output's angle"));
-  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 10.0 },
+  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
         ofOthers("largest out-of-balance force on any tooth"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
         ofOthers("Newton iterations per attempt"));
