@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <climits>
 #include <string>
 #include <vector>
+
+#include <boost/make_shared.hpp>
+#include <boost/program_options.hpp>
 
 #include "apps/common/command_node.hpp"
 
@@ -12,26 +16,21 @@ namespace hjt
 {
 namespace
 {
+namespace po = boost::program_options;
+
 using Words = std::vector<std::string>;
-using Word = Words::const_iterator;
 
 [[noreturn]] void refuse(const std::string& reason)
 {
   throw UsageError(reason + "\nRun with --help for more information.");
 }
 
-/// Negative numbers are values.
-bool looksLikeOption(const std::string& word)
+template <class Command>
+auto findOption(Command& command, const std::string& name)
 {
-  return word.size() > 1 && word[0] == '-' && word[1] != '.' && (word[1] < '0' || word[1] > '9');
-}
-
-DeclaredOption* findOption(CommandNode& command, const std::string& name)
-{
-  const auto found = std::find_if(command.options.begin(), command.options.end(),
-                                  [&](const DeclaredOption& option) {
-                                    return !option.isArgument() && (option.name == name || option.short_name == name);
-                                  });
+  const auto found =
+      std::find_if(command.options.begin(), command.options.end(),
+                   [&](const DeclaredOption& option) { return !option.isArgument() && option.name == name; });
   return found == command.options.end() ? nullptr : &*found;
 }
 
@@ -60,54 +59,83 @@ void addValues(DeclaredOption& option, const std::string& text)
   option.values.push_back(text.substr(begin));
 }
 
-/// Takes the values behind an option's name.
-void takeValues(DeclaredOption& option, Word& word, const Word end)
+/// Values behind an option's name: at most so many.
+class Values : public po::typed_value<Words>
 {
-  const std::size_t before = option.values.size();
-  const std::size_t wanted = option.commas ? option.most : std::min<std::size_t>(option.most, 1);
-  while (option.values.size() - before < wanted && word != end && !looksLikeOption(*word))
+public:
+  explicit Values(std::size_t most)
+    : typed_value(nullptr), most_(static_cast<unsigned>(std::min<std::size_t>(most, INT_MAX)))
   {
-    addValues(option, *word++);
   }
-  if (wanted > 0 && option.values.size() == before)
+
+  unsigned max_tokens() const override { return most_; }
+
+private:
+  const unsigned most_;
+};
+
+const po::value_semantic* valuesOf(const DeclaredOption& option)
+{
+  if (option.most == 0)
   {
-    refuse(option.name + ": " + std::to_string(option.least) + " required " + typeText(option) + " missing");
+    return po::bool_switch();
+  }
+  return new Values(option.commas ? option.most : 1);
+}
+
+/// Options with their values as Boost tells them apart. Whole names only; negative numbers are values.
+std::vector<po::option> split(const CommandNode& command, const Words& words)
+{
+  po::options_description known;
+  for (const DeclaredOption& option : command.options)
+  {
+    if (!option.isArgument())
+    {
+      known.add(boost::make_shared<po::option_description>(option.name.substr(2).c_str(), valuesOf(option), ""));
+    }
+  }
+  namespace style = po::command_line_style;
+  try
+  {
+    return po::command_line_parser(words)
+        .options(known)
+        .style(style::allow_long | style::long_allow_next | style::long_allow_adjacent)
+        .allow_unregistered()
+        .run()
+        .options;
+  }
+  catch (const po::error_with_option_name& error)
+  {
+    const std::string name = error.get_option_name();
+    const DeclaredOption* option = findOption(command, name);
+    if (option == nullptr)
+    {
+      refuse(error.what());
+    }
+    refuse(option->most == 0 ?
+               name + " takes no value" :
+               name + ": " + std::to_string(option->least) + " required " + typeText(*option) + " missing");
   }
 }
 
 /// Gives options and arguments their values. @returns the words that belong to none.
-Words distribute(CommandNode& command, Word word, const Word end)
+Words distribute(CommandNode& command, Words words)
 {
+  std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));
   Words unexpected;
-  bool arguments_only = false;
-  while (word != end)
+  for (const po::option& found : split(command, words))
   {
-    const std::string& text = *word++;
-    if (text == "--" && !arguments_only)
-    {
-      arguments_only = true;
-      continue;
-    }
-    const bool is_option = !arguments_only && looksLikeOption(text);
-    const std::size_t equals = is_option ? text.find('=') : std::string::npos;
-    DeclaredOption* option = is_option ? findOption(command, text.substr(0, equals)) : nextArgument(command);
+    const bool is_option = found.position_key < 0;
+    DeclaredOption* option = is_option ? findOption(command, "--" + found.string_key) : nextArgument(command);
     if (option == nullptr)
     {
-      unexpected.push_back(text);
+      unexpected.insert(unexpected.end(), found.original_tokens.begin(), found.original_tokens.end());
       continue;
     }
     option->given = true;
-    if (equals != std::string::npos && option->most == 0)
+    for (const std::string& value : found.value)
     {
-      refuse(option->name + " takes no value");
-    }
-    if (is_option && equals == std::string::npos)
-    {
-      takeValues(*option, word, end);
-    }
-    else
-    {
-      addValues(*option, is_option ? text.substr(equals + 1) : text);
+      addValues(*option, value);
     }
   }
   return unexpected;
@@ -194,11 +222,13 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
 }
 }  // namespace
 
-Request parseWords(CommandNode& command, const std::vector<std::string>& words)
+Request parseWords(CommandNode& command, const Words& words)
 {
-  const Word end =
-      command.subcommands.empty() ? words.end() : std::find_if_not(words.begin(), words.end(), looksLikeOption);
-  const Words unexpected = distribute(command, words.begin(), end);
+  // The options of a command that has subcommands take no values.
+  const auto end = std::find_if(words.begin(), words.end(),
+                                [&](const std::string& word)
+                                { return !command.subcommands.empty() && (word.empty() || word[0] != '-'); });
+  const Words unexpected = distribute(command, Words(words.begin(), end));
   if (isGiven(command, "--help"))
   {
     return { &command, helpText(command) };
