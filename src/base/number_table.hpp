@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
-// The files are small; a reading thread is not worth it.
-#define CSV_IO_NO_THREAD
-#include <libfccp/csv.h>
-
+#include "base/csv_rows.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -28,42 +25,39 @@ public:
 
   /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header.
   NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0)
-  try : path_(path), names_(names), strict_(N - lenient), reader_(path)
+    : names_(names), strict_(N - lenient), rows_(path)
   {
-    readHeader(std::make_index_sequence<N>{});
-    for (std::size_t i = 0; i + optional < N; ++i)
+    const std::vector<std::string>& header = rows_.header();
+    for (std::size_t i = 0; i < N; ++i)
     {
-      if (!hasColumn(i))
+      const auto found = std::find(header.begin(), header.end(), names[i]);
+      if (found == header.end() && i + optional < N)
       {
-        throw InputError(path + ":1: column '" + names[i] + "' is missing");
+        throw InputError(place() + ": column '" + names[i] + "' is missing");
       }
+      if (std::count(found, header.end(), names[i]) > 1)
+      {
+        throw InputError(place() + ": column '" + names[i] + "' is there twice");
+      }
+      places_[i] = static_cast<std::size_t>(found - header.begin());
     }
   }
-  catch (const io::error::can_not_open_file& error)
-  {
-    throw InputError(path + " cannot be read: " + std::strerror(error.errno_value));
-  }
-  catch (const io::error::base& error)
-  {
-    throw InputError(path + ": " + error.what());
-  }
 
-  bool hasColumn(std::size_t column) const { return present_[column]; }
+  bool hasColumn(std::size_t column) const { return places_[column] < rows_.header().size(); }
 
   /// The next row, in the order of the names; a missing column keeps its value. False at the end.
   /// @throws InputError naming line and column.
   bool read(std::array<double, N>& row)
   {
-    std::array<char*, N> texts{};
-    if (!readTexts(texts, std::make_index_sequence<N>{}))
+    if (!rows_.next())
     {
       return false;
     }
     for (std::size_t i = 0; i < N; ++i)
     {
-      if (texts[i] != nullptr)
+      if (hasColumn(i))
       {
-        row[i] = number(i, texts[i]);
+        row[i] = number(i, rows_.text(places_[i]));
       }
     }
     return true;
@@ -79,37 +73,9 @@ public:
     }
   }
 
-  std::string place() const { return path_ + ":" + std::to_string(reader_.get_file_line()); }
+  std::string place() const { return rows_.place(); }
 
 private:
-  template <std::size_t... I>
-  void readHeader(std::index_sequence<I...>)
-  {
-    reader_.read_header(io::ignore_extra_column | io::ignore_missing_column, names_[I]...);
-    ((present_[I] = reader_.has_column(names_[I])), ...);
-  }
-
-  template <std::size_t... I>
-  bool readTexts(std::array<char*, N>& texts, std::index_sequence<I...>)
-  {
-    try
-    {
-      return reader_.read_row(texts[I]...);
-    }
-    catch (const io::error::too_few_columns&)
-    {
-      throw InputError(place() + ": too few columns");
-    }
-    catch (const io::error::too_many_columns&)
-    {
-      throw InputError(place() + ": too many columns");
-    }
-    catch (const io::error::base& error)
-    {
-      throw InputError(place() + ": " + error.what());
-    }
-  }
-
   double number(std::size_t column, const char* text) const
   {
     const std::optional<double> value = decimalNumber(text);
@@ -125,10 +91,9 @@ private:
     throw InputError(place() + ": column '" + names_[column] + "': '" + text + "' is not a finite number");
   }
 
-  std::string path_;
   Names names_;
   std::size_t strict_;  // columns
-  io::CSVReader<N> reader_;
-  std::array<bool, N> present_{};
+  CsvRows rows_;
+  std::array<std::size_t, N> places_{};  // in the header; its size if not there
 };
 }  // namespace hjt

@@ -42,7 +42,7 @@ SEES = {
 WITH_ROS = {"ros_io", "apps", "apps/common", "apps/sweep", "apps/compare", "apps/tool", "test/ros"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
 LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/stat|time|unistd)\.h|"
-                       r"(Eigen|boost|libfccp|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
+                       r"(Eigen|boost|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
 # Libraries that one folder alone may use.
 OWN_LIBRARIES = {
     "arm": re.compile(r"<(kdl|kdl_parser)/[\w/.-]+>$"),

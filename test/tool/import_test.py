@@ -77,15 +77,30 @@ class Import(tool.ToolTest):
         for text, parts in [("\n".join([good[0].replace("actual_q_3", "q3")] + good[1:]),
                              ["a.csv:1: column 'actual_q_3' is missing"]),
                             ("time,motor_torque\n0,1\n", ["column 'timestamp' is missing"]),
-                            (good[0].replace("target_q_1", "actual_q_1") + "\n", ["actual_q_1"]),
+                            (good[0].replace("target_q_1", "actual_q_1") + "\n", ["a.csv:1: column 'actual_q_1' is there twice"]),
                             (good[0] + "\n", ["a.csv has no rows"]),
                             (good[0] + "\n" + ",".join(["x"] * 31) + "\n", ["a.csv:2: ", "nothing was written"]),
-                            ("", ["a.csv"]), ("#ROSBAG V2.0\n\0\1\2", ["a.csv"])]:
+                            (good[0] + "\n" + good[1] + "\0\n", ["a.csv:2: a zero byte"]),
+                            ("", ["a.csv:1: the header is missing"]), ("#ROSBAG V2.0\n\0\1\2", ["a.csv"])]:
             with self.subTest(parts):
                 self.write("a.csv", text)
                 self.fail_with(1, parts, "import", "a.csv", "--joint", 0, "--out", "a.bag")
                 self.assertEqual(sorted(os.listdir(self.directory)), ["a.csv"])
-        self.fail_with(1, ["nowhere.csv cannot be read"], "import", "nowhere.csv", "--joint", 0, "--out", "a.bag")
+        for path, reason in [("nowhere.csv", "No such file"), (".", "Is a directory")]:
+            self.fail_with(1, [f"{path} cannot be read: {reason}"], "import", path, "--joint", 0, "--out", "a.bag")
+
+    def test_marks_of_other_editors_change_nothing(self):
+        lines = tool.telemetry_csv()
+        texts = ["\n".join(lines) + "\n", "\n".join(lines), "\ufeff" + "\r\n".join(lines) + "\r\n",
+                 "\n".join(line.replace(",", " ,\t") for line in lines) + "\n"]
+        found = []
+        for text in texts:
+            self.write("a.csv", text)
+            self.succeed("import", "a.csv", "--joint", 0, "--out", "a.bag", "--force")
+            found.append(tool.series(self.path("a.bag"), "/joint_twin/command"))
+        self.assertGreater(len(found[0]), 0)
+        for other in found[1:]:
+            self.assertEqual(other, found[0])
 
     def test_existing_output_is_kept_without_force(self):
         self.write("a.csv", "\n".join(tool.telemetry_csv()))

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace hjt
+{
+/// Rows of a CSV file with a header: texts between commas, without quotes. Blanks around a text, a byte order mark and a
+/// carriage return before a line's end are not part of it.
+class CsvRows
+{
+public:
+  /// Reads the header. @throws InputError on an unreadable or empty file.
+  explicit CsvRows(const std::string& path);
+
+  const std::vector<std::string>& header() const { return header_; }
+
+  /// Reads the next row; false at the end. @throws InputError naming the line if it has not as many texts as the header.
+  bool next();
+
+  /// Of the row read last; valid until the next is.
+  const char* text(std::size_t column) const { return texts_[column]; }
+
+  /// File and line of the row read last.
+  std::string place() const { return path_ + ":" + std::to_string(line_number_); }
+
+private:
+  bool readLine();
+  void split();
+
+  std::string path_;
+  std::ifstream file_;
+  std::vector<char> line_;
+  std::size_t length_ = 0;  // of the line
+  std::size_t line_number_ = 0;
+  std::vector<std::string> header_;
+  std::vector<const char*> texts_;
+};
+}  // namespace hjt
