@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_configuration.hpp"
 
+#include <system_error>
 #include <utility>
 
 #include "gear/ratio.hpp"
@@ -16,12 +17,13 @@ namespace fs = std::filesystem;
 
 std::string findArm(const std::string& name, const fs::path& directory)
 {
-  if (fs::exists(name) && !fs::is_directory(name))
+  std::error_code error;
+  if (fs::exists(name, error) && !fs::is_directory(name, error))
   {
     return name;
   }
   const fs::path shipped = directory / "arms" / (name + ".yaml");
-  if (!fs::exists(shipped))
+  if (!fs::exists(shipped, error))
   {
     throw ParameterError("arm " + name + ": neither a file nor an arm in " + shipped.parent_path().string());
   }
@@ -36,12 +38,12 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
   {
     readYamlFile(findConfiguration(overlay, directory), map);
   }
-  for (const std::string& parameter : joint.parameters)
+  for (const auto& [key, value] : joint.parameters)
   {
-    readAssignment(parameter, map);
+    map[key] = value;
   }
-  readAssignment("joint.name=" + joint.name, map);
-  readAssignment("telemetry.load=arm", map);
+  map["joint.name"].value = joint.name;
+  map["telemetry.load"].value = std::string("arm");
   if (!identified.empty())
   {
     readYamlFile((fs::path(identified) / (joint.short_name + ".yaml")).string(), map);

@@ -2,189 +2,161 @@
 #include "arm/arm_description.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
-#include <sstream>
+#include <cctype>
 
-#include <yaml-cpp/yaml.h>
-
-#include "harmonic_joint_twin/base/errors.hpp"
+#include "arm/arm_file.hpp"
+#include "params/field_reader.hpp"
 
 namespace hjt
 {
 namespace
 {
-std::string textOf(const std::filesystem::path& path)
+constexpr double LARGEST_ANGLE = 6.283185307179586;  // a turn either way, as a UR's joints [rad]
+
+/// Whether there is `key`, or one below it.
+bool holds(const ParameterMap& map, const std::string& key)
 {
-  std::ifstream file(path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf()))
-  {
-    throw ParameterError(path.string() + " cannot be read, or is empty");
-  }
-  return text.str();
+  const auto below = map.lower_bound(key + ".");
+  return map.count(key) != 0 || (below != map.end() && below->first.rfind(key + ".", 0) == 0);
 }
 
-std::string beside(const std::filesystem::path& path, const std::string& name)
+/// Takes out of the map what is below `key`, under the rest of its keys.
+ParameterMap takeBelow(ParameterMap& map, const std::string& key)
 {
-  return (path.parent_path() / name).string();
+  const std::string prefix = key + ".";
+  ParameterMap taken;
+  for (auto entry = map.lower_bound(prefix); entry != map.end() && entry->first.rfind(prefix, 0) == 0;)
+  {
+    taken[entry->first.substr(prefix.size())] = entry->second;
+    entry = map.erase(entry);
+  }
+  return taken;
 }
 
-/// The file's map; the description as found from here.
-YAML::Node load(const std::string& path)
+/// As ROS allows a name that is neither a path nor anonymous.
+bool isBaseName(const std::string& name)
 {
-  try
-  {
-    YAML::Node root = YAML::Load(textOf(path));
-    const YAML::Node& read = root;
-    if (read.IsMap() && read["description"] && read["description"].IsScalar())
-    {
-      root["description"] = beside(path, read["description"].Scalar());
-    }
-    return root;
-  }
-  catch (const YAML::Exception& error)
-  {
-    throw ParameterError(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
-  }
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  return !name.empty() && is_letter(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c)
+                     { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_'; });
 }
 
-/// `base` with the keys of `over`, whose `like` has named it.
-YAML::Node overlaid(YAML::Node base, const YAML::Node& over)
-{
-  for (const auto& entry : over)
-  {
-    if (entry.first.Scalar() != "like")
-    {
-      base[entry.first.Scalar()] = entry.second;
-    }
-  }
-  return base;
-}
-
-/// One map of the file; `place` is its name in error texts.
-class Section
+/// Reads the joints one after the other.
+class JointReader
 {
 public:
-  Section(std::string place, const YAML::Node& node, std::initializer_list<const char*> keys)
-    : place_(std::move(place)), node_(node)
+  JointReader(ParameterMap& map, FieldReader& fields) : map_(map), fields_(fields) {}
+
+  void read(const std::string& place, std::size_t joints, ArmJoint& joint)
   {
-    if (!node.IsMap())
+    fields_(place + ".name", joint.name, "of the joint in the messages and in the URDF");
+    readShortName(place + ".short_name", joint.short_name);
+    readOverlays(place + ".overlays", joint.overlays);
+    if (isMapOrNone(place + ".parameters"))
     {
-      throw ParameterError(place_ + ": keys and values expected");
+      joint.parameters = takeBelow(map_, place + ".parameters");
     }
-    for (const auto& entry : node)
+    if (isMapOrNone(place + ".limits") && holds(map_, place + ".limits"))
     {
-      const auto& key = entry.first.Scalar();
-      if (std::none_of(keys.begin(), keys.end(), [&](const char* known) { return key == known; }))
-      {
-        throw ParameterError(place_ + ": unknown key '" + key + "'");
-      }
+      fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "greatest speed");
+      fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "greatest torque at the output");
+    }
+    if (holds(map_, place + ".check_up"))
+    {
+      joint.check_up.resize(joints);
+      fields_(place + ".check_up", "rad", joint.check_up, Range{ -LARGEST_ANGLE, LARGEST_ANGLE },
+              "angles of all joints where its check-up begins");
     }
   }
-
-  YAML::Node at(const char* key) const
-  {
-    const YAML::Node value = node_[key];
-    if (!value || value.IsNull())
-    {
-      throw ParameterError(place_ + ": " + key + " is missing");
-    }
-    return value;
-  }
-
-  template <class T>
-  T value(const char* key) const
-  {
-    try
-    {
-      return at(key).as<T>();
-    }
-    catch (const YAML::Exception&)
-    {
-      throw ParameterError(place_ + ": " + key + " is not of the form expected");
-    }
-  }
-
-  bool has(const char* key) const { return node_[key].IsDefined(); }
-  const std::string& place() const { return place_; }
 
 private:
-  std::string place_;
-  YAML::Node node_;
+  void readShortName(const std::string& key, std::string& name)
+  {
+    fields_(key, name, "of files and namespaces");
+    if (name.empty())
+    {
+      return;
+    }
+    const auto other = std::find_if(short_names_.begin(), short_names_.end(),
+                                    [&](const auto& before) { return before.second == name; });
+    if (!isBaseName(name))
+    {
+      fields_.refuse(key, "a name: a letter, then letters, digits and underscores");
+    }
+    else if (other != short_names_.end())
+    {
+      fields_.refuse(key, "another than " + other->first);
+    }
+    short_names_.emplace_back(key, name);
+  }
+
+  void readOverlays(const std::string& key, std::vector<std::string>& overlays)
+  {
+    const auto whole = map_.find(key);
+    if (whole != map_.end())
+    {
+      const auto* numbers = std::get_if<std::vector<double>>(&whole->second.value);
+      if (numbers == nullptr || !numbers->empty())
+      {
+        fields_.refuse(key, "a list of configuration files");
+      }
+      map_.erase(whole);
+    }
+    for (std::string one = key + ".0"; map_.count(one) != 0; one = key + "." + std::to_string(overlays.size()))
+    {
+      overlays.emplace_back();
+      fields_(one, overlays.back(), "a configuration file");
+    }
+  }
+
+  /// Otherwise it is refused, and taken out of the map.
+  bool isMapOrNone(const std::string& key)
+  {
+    if (map_.count(key) == 0)
+    {
+      return true;
+    }
+    fields_.refuse(key, "keys and values");
+    map_.erase(key);
+    return false;
+  }
+
+  ParameterMap& map_;
+  FieldReader& fields_;
+  std::vector<std::pair<std::string, std::string>> short_names_;  // key and name of the joints so far
 };
-
-ArmJoint readJoint(const std::string& place, const YAML::Node& node)
-{
-  const Section section(place, node, { "name", "short_name", "overlays", "parameters", "limits", "check_up" });
-  ArmJoint joint;
-  joint.name = section.value<std::string>("name");
-  joint.short_name = section.value<std::string>("short_name");
-  joint.overlays = section.value<std::vector<std::string>>("overlays");
-  for (const auto& entry : section.at("parameters"))
-  {
-    joint.parameters.push_back(entry.first.Scalar() + "=" + entry.second.Scalar());
-  }
-  if (section.has("limits"))
-  {
-    const Section limits(place + ": limits", section.at("limits"), { "speed", "torque" });
-    joint.speed_limit = limits.value<double>("speed");
-    joint.torque_limit = limits.value<double>("torque");
-  }
-  if (section.has("check_up"))
-  {
-    joint.check_up = section.value<std::vector<double>>("check_up");
-  }
-  return joint;
-}
-
-/// The file's map over that of the file that it is like, and so on.
-YAML::Node loadWhole(const std::string& path, int depth = 0)
-{
-  constexpr int MAX_DEPTH = 8;
-  const YAML::Node root = load(path);
-  const Section own(path, root, { "like", "description", "base", "tip", "gravity", "payload", "joints" });
-  if (!own.has("like"))
-  {
-    return root;
-  }
-  if (depth == MAX_DEPTH)
-  {
-    throw ParameterError(path + ": like: more than " + std::to_string(MAX_DEPTH) + " files in a row");
-  }
-  return overlaid(loadWhole(beside(path, own.value<std::string>("like")), depth + 1), root);
-}
 }  // namespace
 
 ArmDescription readArmDescription(const std::string& path)
 {
-  const YAML::Node root = loadWhole(path);
-  const Section section(path, root, { "description", "base", "tip", "gravity", "payload", "joints" });
+  ParameterMap map = readArmFile(path);
+  FieldReader fields(map, path);
   ArmDescription arm;
   arm.origin = path;
-  arm.urdf = textOf(section.value<std::string>("description"));
-  arm.base = section.value<std::string>("base");
-  arm.tip = section.value<std::string>("tip");
-  arm.gravity = section.value<std::array<double, 3>>("gravity");
-  const Section payload(path + ": payload", section.at("payload"), { "mass", "centre" });
-  arm.payload.mass = payload.value<double>("mass");
-  arm.payload.centre = payload.value<std::array<double, 3>>("centre");
-  for (const auto& node : section.at("joints"))
+  std::string description;
+  fields("description", description, "URDF beside the file");
+  fields("base", arm.base, "link that stands still");
+  fields("tip", arm.tip, "link that carries the payload");
+  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
+  fields("payload.mass", "kg", arm.payload.mass, Range{ 0.0, 1e4 }, "at the tip");
+  fields("payload.centre", "m", arm.payload.centre, Range{ -100.0, 100.0 }, "of its mass, in the frame of the tip");
+  const auto place = [](std::size_t joint) { return "joints." + std::to_string(joint); };
+  std::size_t joints = 0;
+  while (holds(map, place(joints)))
   {
-    arm.joints.push_back(readJoint(path + ": joint " + std::to_string(arm.joints.size()), node));
+    ++joints;
   }
-  if (arm.joints.empty())
+  arm.joints.resize(std::max<std::size_t>(joints, 1));
+  JointReader reader(map, fields);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    throw ParameterError(path + ": joints is an empty list");
+    reader.read(place(i), joints, arm.joints[i]);
   }
-  for (const ArmJoint& joint : arm.joints)
-  {
-    if (!joint.check_up.empty() && joint.check_up.size() != arm.joints.size())
-    {
-      throw ParameterError(path + ": check_up of " + joint.name + " must have an angle for each joint");
-    }
-  }
+  fields.refuseUnknownKeys();
+  throwIfAny(fields.errors());
+  arm.urdf = textOf(description);
   return arm;
 }
 }  // namespace hjt

@@ -5,18 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
 namespace hjt
 {
 /// One joint of an arm and the drive in it.
 struct ArmJoint
 {
-  std::string name;                     ///< in the messages and in the URDF
-  std::string short_name;               ///< of files and namespaces
-  std::vector<std::string> overlays;    ///< configuration files of its drive, later wins
-  std::vector<std::string> parameters;  ///< section.key=value, over the overlays
-  double speed_limit{};                 ///< 0: none given [rad/s]
-  double torque_limit{};                ///< at the output, 0: none given [N.m]
-  std::vector<double> check_up;         ///< angles of all joints where its check-up begins; empty: none [rad]
+  std::string name;                   ///< in the messages and in the URDF
+  std::string short_name;             ///< of files and namespaces, a name in ROS; no other joint's
+  std::vector<std::string> overlays;  ///< configuration files of its drive, later wins
+  ParameterMap parameters;            ///< over the overlays
+  double speed_limit{};               ///< 0: none given [rad/s]
+  double torque_limit{};              ///< at the output, 0: none given [N.m]
+  std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
 };
 
 /// Mass at the tip of an arm.
@@ -38,6 +40,6 @@ struct ArmDescription
   std::vector<ArmJoint> joints;  ///< from the base on; at least one
 };
 
-/// @throws ParameterError naming file and line or key: unreadable, missing, unknown or mistyped.
+/// @throws ParameterError naming file, line and key: unreadable, missing, unknown, mistyped or out of range.
 ArmDescription readArmDescription(const std::string& path);
 }  // namespace hjt

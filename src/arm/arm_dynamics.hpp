@@ -23,8 +23,8 @@ struct JointMotion
 class ArmDynamics
 {
 public:
-  /// @throws ParameterError if the URDF cannot be read, has no chain from base to tip, or has other joints than the
-  /// description names.
+  /// @throws ParameterError if the URDF cannot be read, has no chain from base to tip, has other joints than the
+  /// description names, or masses, inertia, places or axes that no robot has.
   explicit ArmDynamics(const ArmDescription& arm);
   ~ArmDynamics();
   ArmDynamics(ArmDynamics&&) noexcept;

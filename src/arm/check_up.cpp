@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/number_text.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -16,6 +17,7 @@ namespace
 constexpr double DEGREE = TWO_PI / 360.0;
 constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: 17 N.m at a stretched UR5 [rad/s^2]
 constexpr double REST = 0.5;                     // before and after [s]
+constexpr std::size_t MAX_INSTANTS = 450'000;    // an hour at a controller's 125 Hz
 constexpr double LIMIT_SHARE = 5.0 / 6.0;        // of the joint's speed limit that a stroke takes at most [-]
 
 /// To an angle about the pose.
@@ -91,7 +93,8 @@ void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
     const ArmJoint& joint = arm.joints[i];
     const auto refuse = [&](const char* what, double value, double limit, const char* unit)
     {
-      if (limit > 0.0 && std::abs(value) > limit * (1.0 + 1e-9))
+      // Written so that NaN fails.
+      if (!(std::abs(value) <= limit * (1.0 + 1e-9)))
       {
         throw ParameterError(arm.origin + ": " + joint.name + " would have a " + what + " of " +
                              std::to_string(std::abs(value)) + " " + unit + " in the check-up, its limit is " +
@@ -111,11 +114,17 @@ std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)
   {
     throw ParameterError(arm.origin + ": joint " + own.name + " has no check_up, the angles where it begins");
   }
-  const double fastest = own.speed_limit > 0.0 ? LIMIT_SHARE * own.speed_limit : HUGE_VAL;
+  for (const ArmJoint& each : arm.joints)
+  {
+    if (each.speed_limit == 0.0 || each.torque_limit == 0.0)
+    {
+      throw ParameterError(arm.origin + ": joint " + each.name + " has no limits, within which a check-up stays");
+    }
+  }
   std::vector<ArmMove> moves;
   for (const Stroke& stroke : STROKES)
   {
-    moves.push_back({ own.check_up, std::min(stroke.speed * DEGREE, fastest), ACCELERATION });
+    moves.push_back({ own.check_up, std::min(stroke.speed * DEGREE, LIMIT_SHARE * own.speed_limit), ACCELERATION });
     moves.back().target[joint] += stroke.angle * DEGREE;
   }
   return moves;
@@ -162,6 +171,12 @@ std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& st
     if (distance > 0.0)
     {
       const Trapezoid trapezoid(distance, move.speed, move.acceleration);
+      if (begin + trapezoid.duration() > static_cast<double>(MAX_INSTANTS) * period)
+      {
+        throw ParameterError(arm.origin + ": the check-up would take more than " +
+                             roundedText(static_cast<double>(MAX_INSTANTS) * period, 4) + " s: it moves at " +
+                             roundedText(move.speed, 3) + " rad/s, by the limits of the joints' speed");
+      }
       add_until(
           begin + trapezoid.duration(), [&](double time) { return trapezoid.at(time - begin); }, move.target);
       begin += trapezoid.duration();

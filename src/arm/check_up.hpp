@@ -30,11 +30,12 @@ struct ArmInstant
 
 /// The motion in which a joint's faults are looked for: slow one way and the other over all of its stroke, for
 /// stiffness and friction by load; to and fro where the load goes through zero, for clearance and loop; fast. The joint
-/// moves alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose.
+/// moves alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose, or
+/// no limits of a joint.
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
 /// The moves at the times k `period` [s], at rest before and after. @throws ParameterError naming the joint that goes
-/// beyond the limit of its speed or its torque; where the arm's file gives none, there is none.
+/// beyond the limit of its speed or its torque, and if it takes too long to be kept.
 std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
                                     double period);
 }  // namespace hjt

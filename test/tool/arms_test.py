@@ -144,7 +144,7 @@ class Arms(tool.ToolTest):
         self.succeed("checkup", "--arm", "twice.yaml", "--joint", "base", "--out", "twice.csv")
         for text, parts in (("like: no.yaml\n", ["no.yaml cannot be read"]),
                             ("like: bad.yaml\n", ["bad.yaml", "more than 8 files in a row"]),
-                            (f"like: {ARMS}/ur3.yaml\nweight: 3\n", ["unknown key 'weight'"]),
+                            (f"like: {ARMS}/ur3.yaml\nweight: 3\n", ["bad.yaml:2: unknown parameter weight = 3"]),
                             ("- 3\n", ["keys and values expected"])):
             self.write("bad.yaml", text)
             self.fail_with(1, parts, "checkup", "--arm", "bad.yaml", "--out", "b.csv")

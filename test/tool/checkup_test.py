@@ -65,10 +65,30 @@ class Checkup(tool.ToolTest):
             self.assertEqual((point.positions[2], point.velocities[2], point.accelerations[2]),
                              (row["elbow_position"], row["elbow_velocity"], row["elbow_acceleration"]))
 
-    def test_a_payload_beyond_the_torque_limit_is_refused_by_the_joint(self):
+    def write_arm(self, name, *changes):
+        """The UR5's file, with texts replaced."""
+        urdf = os.path.join(tool.CHECKOUT, "config/arms/ur5.urdf")
         with open(os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml"), encoding="utf-8") as file:
-            text = file.read().replace("mass: 0.0", "mass: 15.0")
-        self.write("heavy.yaml", text.replace("ur5.urdf", os.path.join(tool.CHECKOUT, "config/arms/ur5.urdf")))
+            text = file.read().replace("description: ur5.urdf", f"description: {urdf}")
+        for before, after in changes:
+            self.assertIn(before, text)
+            text = text.replace(before, after)
+        self.write(name, text)
+
+    def test_no_program_is_written_without_limits_or_for_hours(self):
+        wrists = "limits: {speed: 3.141592653589793, torque: 28.0}"
+        for before, after, text in ((wrists, "", "wrist_1_joint has no limits"),
+                                    ("torque: 150.0", "torque: .nan", "arm.yaml:29: joints.0.limits.torque = .nan"),
+                                    ("[0.0, -1.5707963267948966,", "[0.0, -100.0,", "joints.1.check_up = [0.0, -100.0"),
+                                    ("speed: 3.141592653589793", "speed: 0.001",
+                                     "take more than 3600 s: it moves at 0.000833 rad/s")):
+            self.write_arm("arm.yaml", (before, after))
+            self.fail_with(1, [text], "checkup", "--arm", "arm.yaml", "--joint", "base", "--out", "a.script",
+                           "--format", "urscript")
+            self.assertFalse(os.path.exists(self.path("a.script")))
+
+    def test_a_payload_beyond_the_torque_limit_is_refused_by_the_joint(self):
+        self.write_arm("heavy.yaml", ("mass: 0.0", "mass: 15.0"))
         self.fail_with(1, ["shoulder_lift_joint", "limit is 150"], "checkup", "--arm", "heavy.yaml", "--joint",
                        "shoulder", "--out", "a.csv")
         self.fail_with(1, ["no joint 'knee'"], "checkup", "--arm", "ur5", "--joint", "knee", "--out", "a.csv")

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* LIKE = "like";
+constexpr const char* DESCRIPTION = "description";
+constexpr int MAX_FILES = 8;  // each like the next
+// An alias can stand for itself, or for ever more copies of others.
+constexpr int MAX_DEPTH = 32;
+constexpr std::size_t MAX_VALUES = 100'000;
+
+/// Takes the values of one file.
+class Reading
+{
+public:
+  explicit Reading(std::string file) : file_(std::move(file)) {}
+
+  ParameterMap read()
+  {
+    try
+    {
+      const YAML::Node root = YAML::Load(textOf(file_));
+      if (!root.IsMap())
+      {
+        throw ParameterError(file_ + ": keys and values expected");
+      }
+      take(root, "", 0);
+    }
+    catch (const YAML::Exception& error)
+    {
+      throw ParameterError(file_ + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    }
+    return std::move(values_);
+  }
+
+private:
+  void take(const YAML::Node& node, const std::string& key, int depth)
+  {
+    const std::string origin = file_ + ":" + std::to_string(node.Mark().line + 1);
+    if (depth > MAX_DEPTH || ++count_ > MAX_VALUES)
+    {
+      throw ParameterError(origin + ": " + key + " makes the file too large: at most " + std::to_string(MAX_DEPTH) +
+                           " levels and " + std::to_string(MAX_VALUES) + " values, aliases counted each time");
+    }
+    if (node.IsMap())
+    {
+      for (const auto& entry : node)
+      {
+        take(entry.second, below(key, entry.first.as<std::string>()), depth + 1);
+      }
+    }
+    else if (node.IsSequence() && !holdsNumbers(node, origin))
+    {
+      int number = 0;
+      for (const YAML::Node& element : node)
+      {
+        take(element, below(key, std::to_string(number++)), depth + 1);
+      }
+    }
+    else if (!node.IsDefined() || node.IsNull())
+    {
+      throw ParameterError(origin + ": " + key + " has no value");
+    }
+    else if (!values_.emplace(key, valueOf(node, key, origin)).second)
+    {
+      throw ParameterError(origin + ": " + key + " stands twice in this file (first at " + values_.at(key).origin +
+                           ")");
+    }
+  }
+
+  static std::string below(const std::string& key, const std::string& name)
+  {
+    return key.empty() ? name : key + "." + name;
+  }
+
+  /// Its first element tells, and of none it does.
+  static bool holdsNumbers(const YAML::Node& list, const std::string& origin)
+  {
+    return list.size() == 0 || (list[0].IsScalar() && numberIn(list[0], "", origin));
+  }
+
+  static std::optional<double> numberIn(const YAML::Node& node, const std::string& key, const std::string& origin)
+  {
+    return node.IsScalar() ? numberOf(scalarOf(node, key, origin).value) : std::nullopt;
+  }
+
+  static ParameterValue scalarOf(const YAML::Node& node, const std::string& key, const std::string& origin)
+  {
+    // yaml-cpp tags a quoted text "!", a plain one "?".
+    return parseScalar(node.Scalar(), node.Tag() == "!", key, origin);
+  }
+
+  static ParameterValue valueOf(const YAML::Node& node, const std::string& key, const std::string& origin)
+  {
+    if (node.IsScalar())
+    {
+      return scalarOf(node, key, origin);
+    }
+    std::vector<double> numbers;
+    for (const YAML::Node& element : node)
+    {
+      const std::optional<double> number = numberIn(element, key, origin);
+      if (!number)
+      {
+        throw ParameterError(origin + ": " + key + " must be a list of numbers alone");
+      }
+      numbers.push_back(*number);
+    }
+    return { numbers, origin };
+  }
+
+  std::string file_;
+  ParameterMap values_;
+  std::size_t count_{};
+};
+
+std::string sectionOf(const std::string& key)
+{
+  return key.substr(0, key.find('.'));
+}
+
+/// The value, which must be a text.
+std::string fileName(const ParameterMap& map, const char* key)
+{
+  const ParameterValue& value = map.at(key);
+  const auto* text = std::get_if<std::string>(&value.value);
+  if (text == nullptr)
+  {
+    throw ParameterError(value.origin + ": " + key + " = " + valueText(value) + " must be the name of a file");
+  }
+  return *text;
+}
+
+ParameterMap readLike(const std::string& path, int files)
+{
+  ParameterMap own = Reading(path).read();
+  if (own.count(DESCRIPTION) != 0)
+  {
+    own[DESCRIPTION].value = beside(path, fileName(own, DESCRIPTION));
+  }
+  if (own.count(LIKE) == 0)
+  {
+    return own;
+  }
+  if (files == MAX_FILES)
+  {
+    throw ParameterError(own[LIKE].origin + ": like: more than " + std::to_string(MAX_FILES) + " files in a row");
+  }
+  const ParameterMap other = readLike(beside(path, fileName(own, LIKE)), files + 1);
+  own.erase(LIKE);
+  ParameterMap whole = own;
+  for (const auto& [key, value] : other)
+  {
+    // A section that the file gives is its own as a whole.
+    const auto given = own.lower_bound(sectionOf(key));
+    if (given == own.end() || sectionOf(given->first) != sectionOf(key))
+    {
+      whole.emplace(key, value);
+    }
+  }
+  return whole;
+}
+}  // namespace
+
+std::string beside(const std::string& path, const std::string& name)
+{
+  return (std::filesystem::path(path).parent_path() / name).string();
+}
+
+std::string textOf(const std::string& path)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+  {
+    throw ParameterError(path + " cannot be read: it is a folder, a device or a pipe");
+  }
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) > MAX_TEXT)
+  {
+    throw ParameterError(path + " is larger than " + std::to_string(MAX_TEXT) + " bytes");
+  }
+  std::ifstream file(path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf()))
+  {
+    throw ParameterError(path + " cannot be read, or is empty");
+  }
+  return text.str();
+}
+
+ParameterMap readArmFile(const std::string& path)
+{
+  return readLike(path, 0);
+}
+}  // namespace hjt

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// The text of a file of at most MAX_TEXT bytes. @throws ParameterError if it is no regular file, larger, empty, or
+/// cannot be read.
+constexpr std::size_t MAX_TEXT = 10'000'000;
+std::string textOf(const std::string& path);
+
+/// `name` in the folder of the file `path`; `name` if it is absolute.
+std::string beside(const std::string& path, const std::string& name);
+
+/// What an arm's YAML file holds, under keys joined by dots: "payload.mass", "joints.0.name". A list of numbers is one
+/// value; elements of another have keys of their own. Keys that the file does not give are those of the file that it is
+/// `like`, and so on; "description" is beside the file that gives it.
+/// @throws ParameterError naming file and line.
+ParameterMap readArmFile(const std::string& path);
+}  // namespace hjt
