@@ -95,7 +95,7 @@ int main(int argc, char** argv)
     const std::string arm = node.param<std::string>(hjt::ARM, "");
     arm.empty() ? runJoint(node) : runArm(node, arm);
   }
-  catch (const hjt::ParameterError& error)
+  catch (const std::exception& error)  // hjt::ParameterError, and what ROS refuses
   {
     ROS_FATAL_STREAM(error.what());
     return 1;

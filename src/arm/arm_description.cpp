@@ -156,7 +156,7 @@ ArmDescription readArmDescription(const std::string& path)
   }
   fields.refuseUnknownKeys();
   throwIfAny(fields.errors());
-  arm.urdf = textOf(description);
+  arm.urdf = textOf(description, map.at("description").origin + ": description: ");
   return arm;
 }
 }  // namespace hjt

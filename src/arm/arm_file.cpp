@@ -30,11 +30,12 @@ class Reading
 public:
   explicit Reading(std::string file) : file_(std::move(file)) {}
 
-  ParameterMap read()
+  /// `place`: where the file is named.
+  ParameterMap read(const std::string& place)
   {
     try
     {
-      const YAML::Node root = YAML::Load(textOf(file_));
+      const YAML::Node root = YAML::Load(textOf(file_, place));
       if (!root.IsMap())
       {
         throw ParameterError(file_ + ": keys and values expected");
@@ -146,9 +147,9 @@ std::string fileName(const ParameterMap& map, const char* key)
   return *text;
 }
 
-ParameterMap readLike(const std::string& path, int files)
+ParameterMap readLike(const std::string& path, const std::string& place, int files)
 {
-  ParameterMap own = Reading(path).read();
+  ParameterMap own = Reading(path).read(place);
   if (own.count(DESCRIPTION) != 0)
   {
     own[DESCRIPTION].value = beside(path, fileName(own, DESCRIPTION));
@@ -161,7 +162,7 @@ ParameterMap readLike(const std::string& path, int files)
   {
     throw ParameterError(own[LIKE].origin + ": like: more than " + std::to_string(MAX_FILES) + " files in a row");
   }
-  const ParameterMap other = readLike(beside(path, fileName(own, LIKE)), files + 1);
+  const ParameterMap other = readLike(beside(path, fileName(own, LIKE)), own[LIKE].origin + ": like: ", files + 1);
   own.erase(LIKE);
   ParameterMap whole = own;
   for (const auto& [key, value] : other)
@@ -182,29 +183,29 @@ std::string beside(const std::string& path, const std::string& name)
   return (std::filesystem::path(path).parent_path() / name).string();
 }
 
-std::string textOf(const std::string& path)
+std::string textOf(const std::string& path, const std::string& place)
 {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
   {
-    throw ParameterError(path + " cannot be read: it is a folder, a device or a pipe");
+    throw ParameterError(place + path + " cannot be read: it is a folder, a device or a pipe");
   }
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) > MAX_TEXT)
   {
-    throw ParameterError(path + " is larger than " + std::to_string(MAX_TEXT) + " bytes");
+    throw ParameterError(place + path + " is larger than " + std::to_string(MAX_TEXT) + " bytes");
   }
   std::ifstream file(path);
   std::stringstream text;
   if (!file || !(text << file.rdbuf()))
   {
-    throw ParameterError(path + " cannot be read, or is empty");
+    throw ParameterError(place + path + " cannot be read, or is empty");
   }
   return text.str();
 }
 
 ParameterMap readArmFile(const std::string& path)
 {
-  return readLike(path, 0);
+  return readLike(path, "", 0);
 }
 }  // namespace hjt

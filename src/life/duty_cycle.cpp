@@ -9,12 +9,33 @@
 
 namespace hjt
 {
+namespace
+{
+NumberTable<4> tableOf(const std::string& path)
+{
+  return NumberTable<4>(path, { "duration", "motor_speed", "load_torque", "temperature" });
+}
+}  // namespace
+
+bool DutyCycle::isOne(const std::string& path)
+{
+  try
+  {
+    tableOf(path);
+    return true;
+  }
+  catch (const InputError&)
+  {
+    return false;
+  }
+}
+
 DutyCycle DutyCycle::fromFile(const std::string& path)
 {
   // Beyond these no drive lives or works; sums over as many rows as a file may have stay finite.
   constexpr Range ALLOWED[] = { { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { MIN_TEMPERATURE, MAX_TEMPERATURE } };
   constexpr const char* UNITS[] = { "s", "rad/s", "N.m", "degC" };
-  NumberTable<4> table(path, { "duration", "motor_speed", "load_torque", "temperature" });
+  NumberTable<4> table = tableOf(path);
   DutyCycle duty;
   for (std::array<double, 4> row{}; table.read(row);)
   {

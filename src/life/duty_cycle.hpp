@@ -28,6 +28,9 @@ struct DutyCycle
   /// and temperature (-40 ... 150 degC). @throws InputError naming line, column, value, unit and range.
   static DutyCycle fromFile(const std::string& path);
 
+  /// Whether the file can be read and its first line names these columns, whatever follows.
+  static bool isOne(const std::string& path);
+
   double turnsPerHour() const;
 };
 }  // namespace hjt

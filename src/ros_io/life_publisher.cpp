@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <system_error>
 
@@ -28,7 +29,8 @@ constexpr std::size_t STRETCH_SLOTS = 2;
 std::string unusedName(const std::string& path)
 {
   std::string name = path;
-  for (int number = 1; std::filesystem::exists(name); ++number)
+  std::error_code error;
+  for (int number = 1; std::filesystem::exists(name, error); ++number)
   {
     name = path + "." + std::to_string(number);
   }
@@ -69,11 +71,23 @@ void LifePublisher::readRecord()
   {
     return;
   }
-  if (!std::filesystem::exists(path_))
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path_, error);
+  if (status.type() == std::filesystem::file_type::not_found)
   {
     ROS_INFO_STREAM("No record of the drive's use at " << path_ << " yet: it is counted from new");
     return;
   }
+  const auto require = [this](bool good, const std::string& why)
+  {
+    if (!good)
+    {
+      throw ParameterError("life.use_record = '" + path_ + "' " + why);
+    }
+  };
+  require(std::filesystem::status_known(status), "cannot be reached: " + error.message());
+  require(std::filesystem::is_regular_file(status), "must be a file, not a folder, a device or a pipe");
+  require(DutyCycle::isOne(path_), "is no record of a drive's use, or cannot be read: another file is not replaced");
   try
   {
     record_ = UsageHistory(parameters_.life, path_);
@@ -189,7 +203,7 @@ void LifePublisher::publish()
     message.grease_used = estimate.grease_used;
     publisher_.publish(message);
   }
-  catch (const ParameterError& error)
+  catch (const std::exception& error)  // the thread's border, as below
   {
     ROS_WARN_STREAM_ONCE("No forecast of the remaining life: " << error.what());
   }
@@ -205,7 +219,7 @@ void LifePublisher::write()
   {
     writeTextFile(path_, record_.text());
   }
-  catch (const InputError& error)
+  catch (const std::exception& error)
   {
     ROS_WARN_STREAM_THROTTLE(60.0, "The record of the drive's use is not kept: " << error.what());
   }

@@ -21,10 +21,11 @@ namespace hjt
 /// publishing and the file are done in a thread of its own, every life.forecast_period by the wall clock and at the
 /// end.
 ///
-/// A file that cannot be read is renamed, and the count restarts.
+/// A record with a row that cannot be read is renamed, and the count restarts.
 class LifePublisher
 {
 public:
+  /// @throws ParameterError if life.use_record is there and no record.
   LifePublisher(ros::NodeHandle& node, const Parameters& parameters);
 
   /// After the last `offer`: takes in what was counted, and writes.

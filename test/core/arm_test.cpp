@@ -276,7 +276,7 @@ TEST(ArmDescription, WhatIsWrongIsNamedWithLineKeyValueUnitAndRange)
     { "overlays: [joints/base.yaml, recorded_load.yaml, beside_robot.yaml]", "overlays: joints/base.yaml",
       "arm.yaml:27: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
     { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass stands twice in this file (first at" },
-    { "ur5.urdf", "/dev/zero", "/dev/zero cannot be read: it is a folder, a device or a pipe" },
+    { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a folder, a device or a pipe" },
   };
   for (const Case& one : cases)
   {

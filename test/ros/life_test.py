@@ -119,6 +119,22 @@ class Life(unittest.TestCase):
         self.assertEqual(node.stop(signal.SIGINT)[0], 0)
         self.assertGreater(len(self.rows()), 1)
 
+    def test_a_file_that_is_no_record_stays_and_ends_the_node(self):
+        folder = os.path.dirname(self.record)
+        text, pipe, loop = (os.path.join(folder, name) for name in ("notes.txt", "pipe", "loop"))
+        with open(text, "w") as file:
+            file.write("duration of the trip: 3 h\n")
+        os.mkfifo(pipe)
+        os.symlink(loop, loop)
+        for path, reason in ((text, "is no record of a drive's use"), (pipe, "must be a file, not a folder, a device"),
+                             (folder, "must be a file, not a folder"), (loop, "cannot be reached"),
+                             (os.path.join(folder, 300 * "a"), "cannot be reached")):
+            with self.subTest(path=path):
+                node = self.start(**{"life/use_record": path})
+                self.assertEqual(node.wait_for_exit(), 1)
+                self.assertIn(f"life.use_record = '{path}' {reason}", node.output())
+        self.assertEqual(sorted(os.listdir(folder)), ["loop", "notes.txt", "pipe"])
+
     def test_records_set_aside_do_not_replace_each_other(self):
         asides = [self.record + end for end in (".unreadable", ".unreadable.1", ".unreadable.2")]
         for number, aside in enumerate(asides):
