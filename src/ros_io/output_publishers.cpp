@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <limits>
 
 #include "base/text_stream.hpp"
+
+#include <ros/console.h>
 
 namespace hjt
 {
@@ -118,8 +121,15 @@ void OutputPublishers::run()
     }
     stopping = stopping_;
     lock.unlock();
-    outputs_.forEachSink([](auto& sink) { sink.drain(); });
-    drainFaults();
+    try
+    {
+      outputs_.forEachSink([](auto& sink) { sink.drain(); });
+      drainFaults();
+    }
+    catch (const std::exception& error)  // the thread's border: the next round goes on
+    {
+      ROS_WARN_STREAM_THROTTLE(60.0, "Messages of the twin are not published: " << error.what());
+    }
     lock.lock();
   }
 }

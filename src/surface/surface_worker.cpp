@@ -161,7 +161,15 @@ void SurfaceWorker::run()
     const FaultList faults = faults_;
     taken = asked_;
     lock.unlock();
-    obtain(taken, faults);
+    try
+    {
+      obtain(taken, faults);
+    }
+    catch (const std::exception&)  // the thread's border: not even the reason could be told
+    {
+      surface_ = nullptr;
+    }
+    done_.store(taken, std::memory_order_release);
     lock.lock();
   }
 }
@@ -194,6 +202,5 @@ void SurfaceWorker::obtain(std::uint64_t request, const FaultList& faults)
     }
   }
   surface_ = std::move(surface);
-  done_.store(request, std::memory_order_release);
 }
 }  // namespace hjt
