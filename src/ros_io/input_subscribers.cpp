@@ -13,6 +13,8 @@ namespace
 {
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
+/// Faults come one by one, and each warning has a reason of its own [s].
+constexpr double FAULT_WARNING_PERIOD = 1.0;
 }  // namespace
 
 InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox)
@@ -69,7 +71,8 @@ void InputSubscribers::receiveFault(const harmonic_joint_twin::Fault& message)
   if (!errors.empty())
   {
     ++refused_fault_;
-    ROS_WARN_STREAM("Refused a message on ~" << topics::INJECT_FAULT << ": " << errors);
+    ROS_WARN_STREAM_THROTTLE(FAULT_WARNING_PERIOD, "Refused a message on ~" << topics::INJECT_FAULT << ", "
+                                                                            << refused_fault_ << " so far: " << errors);
     return;
   }
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());

@@ -25,6 +25,7 @@ from ros_support import (PACKAGE, WARN, Diagnostics, Node, configuration_files, 
 NODE = "/twin_under_test"
 NAMES = 100_000         # in one message
 HUGE_MESSAGES = 300     # of 3.9 MB each
+BAD_FAULTS = 300
 MOST_MEMORY = 250e6     # of the node's, at the most it ever had [bytes]
 MEGABYTE = 2**20
 
@@ -86,6 +87,16 @@ class AbusedNode:
         lines = self.node.output().splitlines()
         self.assertEqual([line for line in lines if line.startswith("[FATAL]")], [])
         self.assertLess(max(len(line) for line in lines if "Refused a message" in line), 1000)
+
+    def test_a_storm_of_bad_faults_is_told_once_a_second(self):
+        self.start("commands")
+        fault = self.publisher("inject_fault", Fault)
+        begin = time.monotonic()
+        for _ in range(BAD_FAULTS):
+            fault.publish(Fault(kind="rust", severity=0.5, place=-1))
+        self.diagnostics.wait_for("Input", "Faults, refused", BAD_FAULTS)
+        seconds = time.monotonic() - begin
+        self.assertLessEqual(self.node.output().count("Refused a message"), 1 + seconds)
 
     def test_a_hangup_ends_it_cleanly(self):
         self.start("commands")

@@ -142,8 +142,10 @@ class FaultsOfANode(unittest.TestCase):
         self.assertEqual(self.diagnostics.fresh("Input")["Faults, refused"], "0")
         bad = [("rust", 0.5, -1), ("pitting", 1.5, 7), ("pitting", math.nan, 7), ("pitting", 0.5, 200),
                ("tooth_root_crack", 0.5, -1)]
-        for fault in bad:
+        for number, fault in enumerate(bad, 1):
             self.send(*fault)
+            wait_until(lambda said=f", {number} so far": said in self.node.output(), f"the warning of {fault}")
+            self.run_clock(1.0)  # one warning a second
         self.send("pitting", 0.5, 7, ramp=-1.0)
         self.diagnostics.wait_for("Input", "Faults, refused", len(bad) + 1)
         self.assertEqual(self.diagnostics.level("Input"), WARN)
