@@ -62,6 +62,8 @@ def shift_to(course, twin, name):
 
 def draw_course(width, data):
     course, twin = data["course"], data["twin_states"]
+    if course is None:
+        return None
     figure, axes = new_figure(width, 7.4, 4, sharex=True, gridspec_kw={"height_ratios": [1, 1, 1.5, 1]})
     position, speed, current, residual = axes[:, 0]
     time, angle, velocity, measured, predicted, band = with_gaps(

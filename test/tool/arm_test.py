@@ -197,6 +197,14 @@ class Arm(tool.ToolTest):
         self.assertIn("temperature or gain", every["reason"])
         self.assertAlmostEqual(every["friction_ratio"], 1.3, delta=0.05)
 
+    def test_an_arm_whose_loads_no_joint_bears_is_not_judged_and_has_a_page(self):
+        like = os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml")
+        self.write("heavy.yaml", f"like: {like}\npayload: {{mass: 10000.0, centre: [100.0, 100.0, 100.0]}}\n")
+        self.write("arm.csv", arm_csv(seconds=5.0))
+        heavy = self.succeed_json("compare", "arm.csv", "--arm", "heavy.yaml", "--report", "heavy")
+        self.assertEqual({joint["level"] for joint in heavy["joints"]}, {"NOT JUDGED"})
+        self.assertTrue(os.path.exists(self.path("heavy/report.html")))
+
     def test_a_joint_that_is_pushed_is_not_judged(self):
         path = self.robot_with_friction([])
         with open(self.path(path)) as file:
