@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,9 +31,11 @@ namespace hjt
 /// A velocity is the difference of two readings of an angle, as a drive takes it:
 /// Law:   v = (a_k - a_(k-n)) / (n P),  n = sensors.velocity_window / P rounded, at least 1
 /// where  P    time between two steps                                                [s]
-/// Until n + 1 angles have come in, the difference is taken over what there is; with one angle the velocity is zero.
+/// Until n + 1 angles have been read, the difference is taken over what there is; with one angle, and before the delay
+/// is over, the velocity is zero.
 ///
-/// Steps are only kept: errors are those of what is read, of the encoders once for each step.
+/// Steps are only kept: errors are those of what is read, of the encoders once for each step. Between two updates any
+/// number of threads may read.
 class JointSensors
 {
 public:
@@ -55,27 +58,31 @@ public:
   void update(std::int64_t step, double motor_angle, double output_angle, double motor_torque) noexcept
   {
     newest_ = newest_ + 1 == instants_.size() ? 0 : newest_ + 1;
-    instants_[newest_] = { step, motor_angle, output_angle, motor_torque, false };
+    Instant& now = instants_[newest_];
+    now.step = step;
+    now.angles = { motor_angle, output_angle };
+    now.motor_torque = motor_torque;
+    now.sensed.store(false, std::memory_order_relaxed);
     count_ = std::min(count_ + 1, instants_.size());
   }
 
   /// After an update.
   EncoderReadings encoders() const noexcept
   {
-    const std::size_t intervals = std::min(window_, count_ - 1);
-    const Instant& now = sensed(delay_);
+    const std::size_t intervals = std::min(window_, count_ - 1 - std::min(delay_, count_ - 1));
+    const Angles now = sensed(delay_);
     EncoderReadings readings;
-    readings.motor_count = motor_encoder_.count(now.motor_angle);
+    readings.motor_count = motor_encoder_.count(now.motor);
     readings.motor_angle = motor_encoder_.angle(readings.motor_count);
-    readings.output_count = output_encoder_.count(now.output_angle);
-    readings.output_angle = output_encoder_.unwrappedAngle(now.output_angle);
+    readings.output_count = output_encoder_.count(now.output);
+    readings.output_angle = output_encoder_.unwrappedAngle(now.output);
     if (intervals > 0)
     {
-      const Instant& before = sensed(delay_ + intervals);
+      const Angles before = sensed(delay_ + intervals);
       const double time = static_cast<double>(intervals) * period_;
       readings.motor_velocity =
-          (readings.motor_angle - motor_encoder_.angle(motor_encoder_.count(before.motor_angle))) / time;
-      readings.output_velocity = (readings.output_angle - output_encoder_.unwrappedAngle(before.output_angle)) / time;
+          (readings.motor_angle - motor_encoder_.angle(motor_encoder_.count(before.motor))) / time;
+      readings.output_velocity = (readings.output_angle - output_encoder_.unwrappedAngle(before.output)) / time;
     }
     return readings;
   }
@@ -100,38 +107,50 @@ private:
     TORQUE
   };
 
+  struct Angles
+  {
+    double motor{};   // [rad]
+    double output{};  // [rad]
+  };
+
   struct Instant
   {
     std::int64_t step{};
-    double motor_angle{};   // [rad]
-    double output_angle{};  // [rad]
+    Angles angles;
     double motor_torque{};  // [N.m]
-    bool sensed{};          // the angles are with the encoders' errors
+    // With the encoders' errors, from the first reading on. Readers that meet store the same.
+    mutable std::atomic<bool> sensed{};
+    mutable std::atomic<double> sensed_motor{};   // [rad]
+    mutable std::atomic<double> sensed_output{};  // [rad]
   };
 
   /// That of `back` steps ago, or the first there was.
-  Instant& instant(std::size_t back) const noexcept
+  const Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);
     return instants_[newest_ >= kept ? newest_ - kept : newest_ + instants_.size() - kept];
   }
 
-  const Instant& sensed(std::size_t back) const noexcept
+  Angles sensed(std::size_t back) const noexcept
   {
-    Instant& at = instant(back);
-    if (!at.sensed)
+    const Instant& at = instant(back);
+    if (at.sensed.load(std::memory_order_acquire))
     {
-      at.sensed = true;
-      at.motor_angle += lines(at.motor_angle, parameters_.motor_eccentricity, parameters_.motor_lines);
-      at.output_angle += lines(at.output_angle, parameters_.output_eccentricity, parameters_.output_lines);
-      if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
-      {
-        const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
-        at.motor_angle += parameters_.motor_noise * normals[0];
-        at.output_angle += parameters_.output_noise * normals[1];
-      }
+      return { at.sensed_motor.load(std::memory_order_relaxed), at.sensed_output.load(std::memory_order_relaxed) };
     }
-    return at;
+    Angles angles = at.angles;
+    angles.motor += lines(angles.motor, parameters_.motor_eccentricity, parameters_.motor_lines);
+    angles.output += lines(angles.output, parameters_.output_eccentricity, parameters_.output_lines);
+    if (parameters_.motor_noise > 0.0 || parameters_.output_noise > 0.0)
+    {
+      const std::array<double, 2> normals = noise_.normals(ENCODERS, at.step);
+      angles.motor += parameters_.motor_noise * normals[0];
+      angles.output += parameters_.output_noise * normals[1];
+    }
+    at.sensed_motor.store(angles.motor, std::memory_order_relaxed);
+    at.sensed_output.store(angles.output, std::memory_order_relaxed);
+    at.sensed.store(true, std::memory_order_release);
+    return angles;
   }
 
   /// Error of an encoder that comes back every turn [rad].
@@ -156,9 +175,9 @@ private:
   CounterNoise noise_;
   IncrementalEncoder motor_encoder_;
   AbsoluteEncoder output_encoder_;
-  std::size_t delay_;                      // of the readings [steps]
-  std::size_t window_;                     // of the velocities [steps]
-  mutable std::vector<Instant> instants_;  // ring of the last
+  std::size_t delay_;              // of the readings [steps]
+  std::size_t window_;             // of the velocities [steps]
+  std::vector<Instant> instants_;  // ring of the last
   std::size_t newest_{};
   std::size_t count_{};  // instants held
 };

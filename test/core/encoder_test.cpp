@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -208,11 +210,57 @@ TEST(JointSensors, LagByTheirDelay)
     const EncoderReadings& expected = prompt[std::max(0, step - 7)];
     ASSERT_EQ(late[step].motor_count, expected.motor_count);
     ASSERT_EQ(late[step].output_count, expected.output_count);
-    if (step >= 200)
+    ASSERT_EQ(late[step].motor_velocity, expected.motor_velocity) << step;
+    ASSERT_EQ(late[step].output_velocity, expected.output_velocity) << step;
+  }
+}
+
+TEST(JointSensors, GiveTheSameToAnyNumberOfReaders)
+{
+  SensorParameters parameters = SENSORS;
+  parameters.motor_counts_per_turn = 1 << 30;
+  parameters.motor_noise = 1e-3;
+  JointSensors read(parameters, PERIOD);
+  JointSensors read_by_one(parameters, PERIOD);
+  constexpr int STEPS = 2000;
+  std::atomic<int> step{ -1 };  // that may be read
+  std::atomic<int> readers{ 0 };
+  std::array<std::vector<double>, 2> velocities;
+  std::vector<std::thread> threads;
+  for (std::vector<double>& found : velocities)
+  {
+    threads.emplace_back(
+        [&]
+        {
+          for (int i = 0; i < STEPS; ++i)
+          {
+            while (step < i)
+            {
+              std::this_thread::yield();
+            }
+            found.push_back(read.encoders().motor_velocity);
+            ++readers;
+          }
+        });
+  }
+  std::vector<double> expected;
+  for (int i = 0; i < STEPS; ++i)
+  {
+    read.update(i, 0.01 * i, 1e-4 * i, 0.5);
+    read_by_one.update(i, 0.01 * i, 1e-4 * i, 0.5);
+    expected.push_back(read_by_one.encoders().motor_velocity);
+    step = i;
+    while (readers < 2 * (i + 1))
     {
-      ASSERT_EQ(late[step].motor_velocity, expected.motor_velocity);
+      std::this_thread::yield();
     }
   }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(velocities[0], expected);
+  EXPECT_EQ(velocities[1], expected);
 }
 
 TEST(JointSensors, ErrOnceATurnByTheirEccentricity)
