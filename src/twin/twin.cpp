@@ -95,9 +95,9 @@ Stamp Twin::stepLength() const noexcept
   return impl_->step_length;
 }
 
-const JointOutputs& Twin::outputs() const noexcept
+JointOutputs Twin::outputs() const noexcept
 {
-  return impl_->presentOutputs();
+  return impl_->outputs();
 }
 
 const TwinCounters& Twin::counters() const noexcept

@@ -169,7 +169,6 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   last_failed = std::numeric_limits<Stamp>::min();
   last_doubtful = last_failed;
   converged = true;
-  outputs_known = false;
   observe();
   return settled;
 }
@@ -297,7 +296,6 @@ void Twin::Impl::step() noexcept
   const double wanted = commandInForce();
   const double within_limit = model.motor.clamped(wanted);
   converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
-  outputs_known = false;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
   counters.torque_clamped += within_limit != wanted ? 1 : 0;
@@ -364,22 +362,13 @@ void Twin::Impl::takeHeat(double motor_torque) noexcept
   }
 }
 
-const JointOutputs& Twin::Impl::presentOutputs() noexcept
-{
-  if (!outputs_known)
-  {
-    outputs_known = true;
-    fillOutputs();
-  }
-  return outputs;
-}
-
-void Twin::Impl::fillOutputs() noexcept
+JointOutputs Twin::Impl::outputs() const noexcept
 {
   const RingResponse& ring = stepper.dynamics().response();
   const Eigen::Vector2d& friction = stepper.frictionTorque();
   outputs.stamp = now;
   outputs.motor_angle = stepper.motorAngle();
+  JointOutputs outputs;
   outputs.motor_velocity = stepper.speeds()[0];
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
@@ -402,6 +391,7 @@ void Twin::Impl::fillOutputs() noexcept
   outputs.phase_advance = stepper.phaseAdvance();
 }
 
+  return outputs;
 /// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {

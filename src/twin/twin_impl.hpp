@@ -31,8 +31,7 @@ struct Twin::Impl
   void step() noexcept;
   LobeLoads lobes() const noexcept;
   SolverState solverState(Stamp since) const noexcept;
-  /// Filled when they are asked for.
-  const JointOutputs& presentOutputs() noexcept;
+  JointOutputs outputs() const noexcept;
 
   Parameters parameters;
   JointFaults faults;
@@ -72,8 +71,6 @@ struct Twin::Impl
   bool brake_engaged{};
   bool brake_commanded{};
   Stamp brake_moves{};  // when the command is carried out
-  JointOutputs outputs;
-  bool outputs_known{};  // those of the present instant
   bool converged{ true };
   JointSensors sensors;
   HealthMonitor monitor;
@@ -101,7 +98,6 @@ private:
   void resetHeat() noexcept;
   void takeHeat(double motor_torque) noexcept;
   void moveBrake() noexcept;
-  void fillOutputs() noexcept;
   void observe() noexcept;
   void takeReadings() noexcept;
 };

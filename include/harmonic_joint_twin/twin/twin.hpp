@@ -95,7 +95,7 @@ struct TwinCounters
 /// Time is the time of the messages: instants are whole multiples of the solver step, so that the same stamped inputs
 /// give the same numbers live, replayed and offline, in one go or in chunks.
 /// After construction no member throws or allocates unless stated. No question asked of the twin changes a bit of its
-/// run.
+/// run. Between two steps several threads may call its const members at once.
 class Twin
 {
 public:
@@ -136,7 +136,7 @@ public:
   Stamp stamp() const noexcept;       ///< current instant [ns]
   Stamp stepLength() const noexcept;  ///< [ns]
 
-  const JointOutputs& outputs() const noexcept;
+  JointOutputs outputs() const noexcept;
   EncoderReadings encoders() const noexcept;
   double motorTorqueReading() const noexcept;  ///< as the drive estimates it from its current [N.m]
   const TwinCounters& counters() const noexcept;

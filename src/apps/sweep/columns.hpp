@@ -11,7 +11,7 @@ namespace hjt
 /// The joint at one instant, for the columns of a data set.
 struct Instant
 {
-  const JointOutputs& outputs;
+  JointOutputs outputs;
   EncoderReadings encoders;
   double motor_torque_reading{};  ///< [N.m]
   double speed_reference{};       ///< [rad/s]
