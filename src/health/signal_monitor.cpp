@@ -6,6 +6,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/stamp.hpp"
 
 namespace hjt
 {
@@ -89,7 +90,8 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   // One encoder is enough to know where the motor stands.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
-  if (!std::isfinite(motor_angle) || !std::isfinite(sample.motor_torque) || (started_ && sample.stamp <= last_.stamp))
+  if (!std::isfinite(motor_angle) || !std::isfinite(sample.motor_torque) || !isStamp(sample.stamp) ||
+      (started_ && sample.stamp <= last_.stamp))
   {
     ++refused_;
     return false;

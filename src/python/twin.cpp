@@ -312,10 +312,21 @@ private:
   InUse in_use_{ "twin" };
 };
 
+/// @throws InputError beyond +-MAX_STAMP.
+Stamp checked(Stamp stamp)
+{
+  if (!isStamp(stamp))
+  {
+    throw InputError("stamp = " + std::to_string(stamp) + " [ns] is out of range, allowed: " +
+                     std::to_string(-MAX_STAMP) + " ... " + std::to_string(MAX_STAMP) + " [ns]");
+  }
+  return stamp;
+}
+
 /// Stamp of an input: given, or the twin's next instant.
 Stamp stampOf(const Twin& twin, const std::optional<Stamp>& stamp)
 {
-  return stamp.value_or(twin.stamp());
+  return checked(stamp.value_or(twin.stamp()));
 }
 
 void push(TwinObject& self, InputKind kind, double value, const std::optional<Stamp>& stamp, const char* name)
@@ -508,7 +519,7 @@ void bindTwin(py::module& module)
   twin.def(py::init<const Configuration&, const std::optional<std::string>&, const py::object&>(),
            py::arg("parameters"), py::arg("cache") = py::none(), py::arg("progress") = py::none())
       .def(
-          "reset", [](TwinObject& self, Stamp stamp) { self.twin().reset(stamp); }, py::arg("stamp") = 0,
+          "reset", [](TwinObject& self, Stamp stamp) { self.twin().reset(checked(stamp)); }, py::arg("stamp") = 0,
           "Restarts at rest, zero angles, at the first instant not before stamp [ns], with the configured faults.")
       .def("__repr__",
            [](TwinObject& self)

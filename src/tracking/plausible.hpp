@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/stamp.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
-/// Beyond these a message was damaged [rad], [A] or [N.m].
+/// Beyond these a message was damaged [s], [rad], [A] or [N.m].
+constexpr double MAX_TIME = 1e-9 * static_cast<double>(MAX_STAMP);
 constexpr double MAX_ANGLE = 1.0e4;
 constexpr double MAX_EFFORT = 1.0e4;
 
@@ -21,7 +23,7 @@ inline bool isPlausibleEffort(double effort) noexcept
 /// The motor's angle may be missing.
 inline bool isPlausible(const MotionRow& row) noexcept
 {
-  return std::isfinite(row.time) && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
+  return std::abs(row.time) < MAX_TIME && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
          !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
 }
 

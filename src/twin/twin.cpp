@@ -36,15 +36,20 @@ const Parameters& Twin::parameters() const noexcept
   return impl_->parameters;
 }
 
-void Twin::reset(Stamp stamp) noexcept
+bool Twin::reset(Stamp stamp) noexcept
 {
+  if (!isStamp(stamp))
+  {
+    return false;
+  }
   impl_->reset(stamp);
+  return true;
 }
 
 void Twin::injectFault(Stamp stamp, const Fault& fault) noexcept
 {
   FaultCounters& counted = impl_->counters.faults;
-  if (!isValid(fault, impl_->parameters))
+  if (!isStamp(stamp) || !isValid(fault, impl_->parameters))
   {
     ++counted.refused;
     return;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -110,6 +111,24 @@ TEST_F(TransmissionRatio, ReachesBackExactlyOneTurn)
     const double expected = TWO_PI / (output(angle) - output(angle - TWO_PI));
     // Linear interpolation of the samples: 1e-6 * 0.03^2 / 4 of 0.062 rad.
     EXPECT_NEAR(indicators().transmission_ratio.value, expected, 1e-6) << "at " << angle;
+  }
+}
+
+TEST_F(TransmissionRatio, IsLostByAnAngleThatCountsNoMarks)
+{
+  for (const double angle : { 1e300, -1e18, std::numeric_limits<double>::quiet_NaN() })
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      sample_.motor_angle = i % 2 == 0 ? angle : -angle;
+      update();
+      EXPECT_FALSE(indicators().transmission_ratio.valid) << angle;
+    }
+    sample_.motor_angle = 0.0;
+    update();
+    turnTo(TWO_PI + 3 * MARK, 0.003, perfect);
+    ASSERT_TRUE(indicators().transmission_ratio.valid) << angle;
+    EXPECT_NEAR(indicators().transmission_ratio.value, RATIO, 1e-9);
   }
 }
 

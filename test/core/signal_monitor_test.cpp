@@ -500,7 +500,9 @@ TEST(SignalMonitor, PassesOverSamplesThatSayNothing)
   sample.motor_torque = 0.0;
   monitor.update(sample);
   monitor.update(sample);  // no progress in time
-  EXPECT_EQ(monitor.refused(), 2U);
+  sample.stamp = std::numeric_limits<std::int64_t>::max();
+  monitor.update(sample);  // of a damaged file
+  EXPECT_EQ(monitor.refused(), 3U);
 }
 
 TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)

@@ -101,6 +101,12 @@ TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
       }
     }
     if (i % 50 == 20)
+    if (i % 500 == 8)
+    {
+      tracker.push(rowAt(1e300));
+      tracker.push(rowAt(-5e9));
+      damaged += 2;
+    }
     {
       tracker.push(rowAt(PERIOD * (i - 3)));  // an earlier one
       i += 4;                                 // and some that never come

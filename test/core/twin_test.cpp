@@ -153,6 +153,27 @@ TEST(TwinReset, StartsAtTheFirstInstantNotBeforeTheStamp)
   }
 }
 
+TEST(TwinReset, RefusesAStampThatNoLengthOfTimeCanBeAddedTo)
+{
+  Twin twin(shippedParameters());
+  advance(twin, MILLISECOND);
+  for (const Stamp stamp : { MAX_STAMP + 1, -MAX_STAMP - 1, std::numeric_limits<Stamp>::max() })
+  {
+    EXPECT_FALSE(twin.reset(stamp));
+    EXPECT_EQ(twin.stamp(), MILLISECOND);
+    twin.injectFault(stamp, { FaultKind::TOOTH_WEAR, 1.0, 20, 1e9 });
+  }
+  EXPECT_EQ(twin.counters().faults.refused, 3U);
+  EXPECT_EQ(twin.counters().faults.late, 0U);
+  twin.injectFault(MAX_STAMP, { FaultKind::TOOTH_WEAR, 1.0, 20, 1e9 });
+  EXPECT_EQ(twin.counters().faults.accepted, 1U);
+  for (const Stamp stamp : { -MAX_STAMP, MAX_STAMP })
+  {
+    EXPECT_TRUE(twin.reset(stamp));
+    EXPECT_TRUE(twin.step(stamp + MILLISECOND));
+  }
+}
+
 TEST(TwinReset, ForgetsALoadThatWasTooLarge)
 {
   Twin twin(shippedParameters());

@@ -121,6 +121,13 @@ class Run(unittest.TestCase):
             twin.command_motor_torque(float("nan"))
         with self.assertRaisesRegex(hjt.ParameterError, "severity = 3"):
             twin.inject_fault("tooth_wear:3:1")
+        for stamp in (2**63 - 1, -2**63):
+            with self.assertRaisesRegex(hjt.InputError, rf"stamp = {stamp} \[ns\] is out of range"):
+                twin.inject_fault("tooth_wear:1:1:2", stamp=stamp)
+            with self.assertRaisesRegex(hjt.InputError, rf"stamp = {stamp} \[ns\] is out of range"):
+                twin.reset(stamp)
+        self.assertEqual(twin.active_faults, [])
+        self.assertEqual(twin.stamp, 0)
         self.assertEqual(twin.counters["steps"], 0)
 
     def test_faults_set_in(self):

@@ -12,6 +12,14 @@ using Stamp = std::int64_t;
 /// Of a stamp difference made of a duration [ns]: it can still be added to any time that a message can have.
 constexpr Stamp MAX_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
 
+/// Largest magnitude of a stamp that a MAX_STAMP_LENGTH is added to [ns]; messages stay below.
+constexpr Stamp MAX_STAMP = std::numeric_limits<Stamp>::max() / 2;
+
+constexpr bool isStamp(Stamp stamp)
+{
+  return stamp >= -MAX_STAMP && stamp <= MAX_STAMP;
+}
+
 /// Stamp difference [ns] of a duration [s], >= 0; MAX_STAMP_LENGTH for what is longer, and for NaN.
 inline Stamp toStampLength(double duration)
 {

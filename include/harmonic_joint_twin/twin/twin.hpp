@@ -111,8 +111,8 @@ public:
   const Parameters& parameters() const noexcept;
 
   /// Restarts at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
-  /// inputs, other faults and counters.
-  void reset(Stamp stamp) noexcept;
+  /// inputs, other faults and counters. False: the stamp is beyond +-MAX_STAMP, nothing was done.
+  bool reset(Stamp stamp) noexcept;
 
   /// Queues stamped inputs; not finite ones are refused and counted. An input acts from the first instant not before
   /// its stamp; one that comes too late is counted and acts at once, unless a newer one of its kind is in force.
@@ -124,7 +124,7 @@ public:
   void setTemperature(Stamp stamp, double degrees) noexcept { push({ stamp, InputKind::TEMPERATURE, degrees }); }
 
   /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one
-  /// that is not valid is refused and counted. While any is active all teeth are solved at every step.
+  /// that is not valid, or whose stamp is beyond +-MAX_STAMP, is refused and counted. While any is active all teeth are solved at every step.
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;
 
