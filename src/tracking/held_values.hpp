@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,7 +26,7 @@ public:
   /// The value given last of those not later than `time`; none, or older than `max_age`: nothing. Times in [s].
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
-    for (std::uint64_t i = end_; i > 0 && end_ - i < ROOM; --i)
+    for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)
     {
       const ValueAt& held = values_[(i - 1) % ROOM];
       if (held.time <= time)
@@ -36,7 +37,21 @@ public:
     return std::nullopt;
   }
 
-  void clear() noexcept { end_ = 0; }
+  void clear() noexcept { begin_ = end_; }
+
+  /// What was pushed so far belongs to rows that have come.
+  void mark() noexcept { marked_ = end_; }
+
+  /// The time of the rows jumps back: forgets all but what was pushed since the mark from a time before `earliest` on,
+  /// which belongs to rows to come.
+  void jumpBack(double earliest) noexcept
+  {
+    begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
+    while (begin_ < end_ && values_[begin_ % ROOM].time >= earliest)
+    {
+      ++begin_;
+    }
+  }
 
 private:
   struct ValueAt
@@ -46,6 +61,8 @@ private:
   };
 
   std::array<ValueAt, ROOM> values_{};
+  std::uint64_t begin_{};
+  std::uint64_t marked_{};
   std::uint64_t end_{};
 };
 
@@ -81,6 +98,8 @@ public:
   }
 
   void clear() noexcept { values_.clear(); }
+  void mark() noexcept { values_.mark(); }                                 ///< as HeldValues
+  void jumpBack(double earliest) noexcept { values_.jumpBack(earliest); }  ///< as HeldValues
 
   std::uint64_t refused() const noexcept { return refused_; }
 

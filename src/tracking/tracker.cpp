@@ -151,12 +151,18 @@ Tracker::~Tracker() = default;
 
 void Tracker::reset() noexcept
 {
+  loads_.clear();
+  temperatures_.clear();
+  restart();
+}
+
+/// Keeps loads and temperatures.
+void Tracker::restart() noexcept
+{
   earlier_.refused += smoother_.refused();
   earlier_.gaps += smoother_.gaps();
   smoother_ = MotionDifferentiator();
   restarted_ = true;
-  loads_.clear();
-  temperatures_.clear();
   friction_.reset();
   temperature_received_ = false;
   outside_share_ = 0.0;
@@ -198,9 +204,13 @@ void Tracker::push(const MotionRow& row) noexcept
   }
   if (row.time < last_time_ - RESTART)
   {
-    reset();
+    loads_.jumpBack(last_time_ - RESTART);
+    temperatures_.jumpBack(last_time_ - RESTART);
+    restart();
     ++counters_.restarts;
   }
+  loads_.mark();
+  temperatures_.mark();
   timing_.add(row.time, row.received);
   if (smoother_.push(row))
   {

@@ -146,6 +146,7 @@ public:
   };
 
 private:
+  void restart() noexcept;
   std::optional<double> loadAt(double time) const noexcept;
   void addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept;
   void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;

@@ -222,6 +222,48 @@ TEST(Tracker, TakesTheLoadFromWhereItIsTold)
 }
 
 TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
+TEST(Tracker, KeepsLoadAndTemperatureThatComeBeforeTheFirstRowAfterAJumpBack)
+{
+  Tracker tracker(parametersWith({ "telemetry.load=target_moment" }), InputMode::MOTION);
+  for (int i = 0; i < 100; ++i)
+  {
+    tracker.pushLoad(100.0 + PERIOD * i, 5.0);
+    tracker.push(rowAt(100.0 + PERIOD * i));
+    takeAll(tracker);
+  }
+  tracker.pushLoad(100.0 + PERIOD * 100, 7.0);  // for a row that never comes
+  tracker.pushLoad(30.0, 3.0);
+  tracker.pushTemperature(30.0, 40.0);
+  for (int i = 0; i < 100; ++i)
+  {
+    tracker.push(rowAt(30.0 + PERIOD * i));
+  }
+  for (const Comparison& now : takeAll(tracker))
+  {
+    ASSERT_TRUE(now.load_provided) << now.time;
+    ASSERT_EQ(now.load_torque, 3.0) << now.time;
+    ASSERT_TRUE(now.temperature_received) << now.time;
+  }
+  EXPECT_EQ(tracker.counters().restarts, 1u);
+  EXPECT_EQ(tracker.counters().without_load, 0u);
+}
+
+TEST(Tracker, ForgetsTheLoadsBeforeAJumpBack)
+{
+  Tracker tracker(parametersWith({ "telemetry.load=target_moment" }), InputMode::MOTION);
+  tracker.pushLoad(20.0, 5.0);
+  tracker.push(rowAt(100.0));
+  tracker.pushLoad(100.1, 7.0);
+  for (int i = 0; i < 100; ++i)
+  {
+    tracker.push(rowAt(30.0 + PERIOD * i));
+  }
+  for (const Comparison& now : takeAll(tracker))
+  {
+    ASSERT_FALSE(now.load_provided) << now.time;
+  }
+}
+
 {
   const Parameters parameters = parametersWith({ "telemetry.load=target_moment" });
   std::vector<double> loads[2];
