@@ -241,7 +241,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
     learnWindow(*bin, indicators, placeIn(bin->bin, indicators.point, load_step_));
     if (bin->windows == windows_)
     {
-      fitReference(*bin, bins_);
+      fitReference(*bin, bins_, fit_room_);
     }
     return BaselineState::LEARNING;
   }

@@ -158,11 +158,12 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
          "load_step: "
       << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
       << "  # whether a model's indicators were subtracted\nbaseline:\n";
+  FitRoom room;
   for (ReferenceBin bin : baseline.bins())
   {
     if (!baseline.given())
     {
-      fitReference(bin, baseline.bins());
+      fitReference(bin, baseline.bins(), room);
     }
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows

@@ -122,7 +122,7 @@ void fitSlopes(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, std::si
 }
 
 /// Of the indicators that every window determined.
-void fitCommonCauses(ReferenceBin& bin) noexcept
+void fitCommonCauses(ReferenceBin& bin, FitRoom& room) noexcept
 {
   using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
   using Square = Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT, Eigen::RowMajor>;
@@ -145,7 +145,7 @@ void fitCommonCauses(ReferenceBin& bin) noexcept
     }
   }
   mixed -= 0.5 * mapped(bin.sums.places) * slopes;
-  Square left;
+  Eigen::Map<Square> left(room.correlations.data());
   std::size_t pair = 0;
   for (Eigen::Index i = 0; i < left.rows(); ++i)
   {
@@ -175,7 +175,7 @@ void fitCommonCauses(ReferenceBin& bin) noexcept
       return;
     }
     direction.normalize();
-    left -= size * direction * direction.transpose();
+    left.noalias() -= size * direction * direction.transpose();
     for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
     {
       bin.references[i].common[cause] = std::sqrt(size) * direction[static_cast<Eigen::Index>(i)];
@@ -230,7 +230,7 @@ void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Pl
   steps.last_place = here;
 }
 
-void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexcept
+void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, FitRoom& room) noexcept
 {
   if (bin.windows < MIN_FITTED)
   {
@@ -241,6 +241,6 @@ void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noex
   {
     fitSlopes(bin, bins, i);
   }
-  fitCommonCauses(bin);
+  fitCommonCauses(bin, room);
 }
 }  // namespace hjt

@@ -40,5 +40,5 @@ void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Pl
 /// Slopes over load and payload are those of all of `bins` that differ from this one, one of them, in temperature at
 /// most: a class sees few payloads. Slopes of indicators that 16 windows determined, components of those that every
 /// window did. Does not allocate.
-void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexcept;
+void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, FitRoom& room) noexcept;
 }  // namespace hjt

@@ -102,6 +102,12 @@ struct ReferenceBin
   StepSums steps;
 };
 
+/// What fitReference works in.
+struct FitRoom
+{
+  std::vector<double> correlations = std::vector<double>(INDICATOR_COUNT * INDICATOR_COUNT);
+};
+
 /// One indicator against its reference.
 struct Deviation
 {
@@ -248,6 +254,7 @@ private:
   bool given_{};
   bool carried_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity
+  FitRoom fit_room_;
   std::vector<Recent> recent_;      // by bin
   std::vector<Compared> compared_;  // evidence_windows_ by bin
 };
