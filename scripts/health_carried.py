@@ -7,6 +7,7 @@ import math
 import numpy
 import yaml
 
+import health_source
 from health_runs import CARRIED, CARRIED_MOTIONS, CARRIED_RUNS, CARRIED_SEED, CHECK_UP, DRAWN, MODELS, at_work
 
 UNKNOWN = 1e30  # deviation of what no motion determined, as in the source
@@ -77,18 +78,24 @@ def errors(pairs):
 def write(bench, source):
     pairs = [pair_of(bench, gear, motion, model) for gear in CARRIED for motion in CARRIED_MOTIONS for model in MODELS]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
-             "#pragma once", "", "#include <iterator>", "",
+             "#pragma once", "", "#include <array>", "#include <cstddef>", "",
              '#include "harmonic_joint_twin/health/signal_indicators.hpp"', "", "namespace hjt", "{",
              "/// What the indicators of a sound drive, less a model's, differ by from one motion to another.",
              "struct CarriedError", "{",
-             "  double deviation;  ///< rms of a drive like the model, unit of the indicator; 1e30: not known",
-             "  double share;      ///< of what the drive differs from the model by, of a line all of its signal [-]",
-             "  double freedom;    ///< degrees of freedom both are known with [-]", "};", "",
+             "  double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known",
+             "  double share{};            ///< of what the drive differs from the model by, of a line all of its signal "
+             "[-]",
+             "  double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]", "};", "",
+             "struct CarriedRow", "{", "  std::size_t indicator;", "  CarriedError error;", "};", "",
              "// clang-format off",
-             "inline constexpr CarriedError CARRIED_ERRORS[] = {"]
+             "inline constexpr CarriedRow CARRIED_ROWS[] = {"]
     for name, (deviation, share, freedom) in errors(pairs).items():
-        lines.append(f"{{ {deviation:.3g}, {share:.3g}, {freedom:.1f} }},  // {name}")
-    lines += ["};", "// clang-format on",
-              "static_assert(std::size(CARRIED_ERRORS) == INDICATOR_COUNT, \"an indicator without an error\");",
-              "}  // namespace hjt"]
+        numbers = f"{deviation:.3g}, {share:.3g}, {freedom:.1f}"
+        lines.append(f"{{ {health_source.indicator(name)}, {{ {numbers} }} }},")
+    lines += ["};", "// clang-format on", "",
+              "/// By indicator; without a row it is not known.",
+              "inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS = []", "{",
+              "  std::array<CarriedError, INDICATOR_COUNT> errors{};",
+              "  for (const CarriedRow& row : CARRIED_ROWS)", "  {", "    errors[row.indicator] = row.error;", "  }",
+              "  return errors;", "}();", "}  // namespace hjt"]
     source.write_text("\n".join(lines) + "\n")

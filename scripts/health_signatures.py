@@ -8,6 +8,7 @@ import re
 
 import numpy
 
+import health_source
 import page_section
 from health_runs import CALIBRATED, DRAWN, FITTED, once, split_table
 
@@ -279,7 +280,8 @@ def write(bench, source, page):
     report(alarms, errors)
     scalars = [name for name in layout.names if name not in layout.lines]
     lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
-             "#pragma once", "", '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
+             "#pragma once", "", "#include <array>", "#include <cstddef>", "#include <iterator>", "",
+             '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
              "// clang-format off",
              "/// Of each number of a signature, and of its length, on another gear in another motion [-].",
              f"inline constexpr double SIGNATURE_ERROR = {errors.number};",
@@ -290,13 +292,22 @@ def write(bench, source, page):
              f"inline constexpr double EVIDENCE_WEIGHT = {errors.weight};",
              "/// Of the severity by them, as a share of it [-].",
              f"inline constexpr double SEVERITY_ERROR = {severity_error(alarms, errors):.2f};", "",
-             "/// Of the shipped gear in the check-up.",
-             "inline constexpr std::array<double, SCALAR_COUNT> SOUND_VALUES{ "
-             f"{numbers_text(sound[:len(scalars)])} }};", "",
+             "/// What the signatures were fitted for, by the numbers of a Signature, in the order of a row.",
+             "inline constexpr std::size_t FITTED_NUMBERS[] = {",
+             *(f"    {health_source.signature_number(name)}," for name in layout.names), "};", "",
+             "/// Of the first of these, the scalars, for the shipped gear in the check-up.",
+             f"inline constexpr double SOUND_VALUES[] = {{ {numbers_text(sound[:len(scalars)])} }};", "",
+             "/// One of these rows.", "template <std::size_t COUNT>",
+             "constexpr Signature fitted(Cause cause, double severity, const MotionKind& motion, "
+             "const double (&row)[COUNT])",
+             "{", "  static_assert(COUNT == std::size(FITTED_NUMBERS), \"a number for each of FITTED_NUMBERS\");",
+             "  Signature signature{ cause, severity, motion, {} };",
+             "  for (std::size_t i = 0; i < COUNT; ++i)", "  {",
+             "    signature.change[FITTED_NUMBERS[i]] = row[i];", "  }", "  return signature;", "}", "",
              "inline constexpr Signature FITTED_SIGNATURES[] = {"]
     for cause, motion, severity, (speed, direction), change in zip(*table):
         numbers = f"{severity}, {{ {speed:.4g}, {direction:.2g} }}, {{ {numbers_text(change)} }}"
-        lines.append(f"{{ {cause_name(cause)}, {numbers} }},  // {motion}")
+        lines.append(f"fitted({cause_name(cause)}, {numbers}),  // {motion}")
     source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
     write_table(layout, sound, table, page)
 
@@ -305,7 +316,7 @@ def read(source):
     """(table, errors) of what `write` wrote."""
     text = source.read_text(encoding="utf-8")
     values = dict(re.findall(r"double (\w+) = ([^;]+);", text))
-    row = r"\{ (?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (\S+, \S+) \}, \{ (.*) \} \},  // (\w+)"
+    row = r"fitted\((?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (\S+, \S+) \}, \{ (.*) \}\),  // (\w+)"
     rows = re.findall(row, text)
     causes, severities, kinds, changes, motions = zip(*rows)
     table = Table([cause.lower() for cause in causes], motions, numpy.array(severities, float),

@@ -22,6 +22,17 @@ constexpr double SPEED_RANGE = 0.2;                                // of the log
 constexpr double DIRECTION_RANGE = 0.3;                            // as well
 constexpr double OTHER_MOTION = 1e-3;                              // weight of a signature of no motion alike
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
+constexpr std::size_t FITTED_COUNT = std::size(FITTED_SIGNATURES);
+/// By the numbers of a signature.
+constexpr std::array<bool, SIGNATURE_SIZE> IS_FITTED = []
+{
+  std::array<bool, SIGNATURE_SIZE> fitted{};
+  for (const std::size_t number : FITTED_NUMBERS)
+  {
+    fitted[number] = true;
+  }
+  return fitted;
+}();
 
 /// One compared number of a window.
 struct Term
@@ -142,7 +153,7 @@ private:
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
            std::optional<double> line_square = {}) noexcept
   {
-    if (residual.own[indicator] > 0.0)
+    if (IS_FITTED[number] && residual.own[indicator] > 0.0)
     {
       terms_[count_++] = { residual.difference[indicator],
                            residual.own[indicator],

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "health/fitted_signatures.hpp"
 #include "health/indicator_table.hpp"
@@ -69,6 +70,14 @@ private:
   const Deviations& deviations_;
   FeatureScores& scores_;
 };
+/// NaN: the signatures were not fitted for it.
+double soundValue(ScalarIndicator indicator) noexcept
+{
+  const auto found = std::find(std::begin(FITTED_NUMBERS), std::end(FITTED_NUMBERS), indexOf(indicator));
+  return found == std::end(FITTED_NUMBERS) ? std::numeric_limits<double>::quiet_NaN() :
+                                             SOUND_VALUES[found - std::begin(FITTED_NUMBERS)];
+}
+
 }  // namespace
 
 const char* causeName(Cause cause) noexcept
@@ -91,8 +100,7 @@ std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double
   std::vector<Cause> causes;
   for (const Signature& signature : faultSignatures())
   {
-    const double least =
-        share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(SOUND_VALUES[indexOf(indicator)]));
+    const double least = share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(soundValue(indicator)));
     if (signature.severity == 1.0 && sign * signature.change[indexOf(indicator)] >= least &&
         std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {

@@ -111,18 +111,6 @@ constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
 /// What a fault of one severity changes in the indicators of one gear in one motion.
 struct Signature
 {
-  /// More or fewer numbers than there are do not compile.
-  template <std::size_t COUNT>
-  constexpr Signature(Cause whose, double size, const MotionKind& where, const double (&numbers)[COUNT])
-    : cause(whose), severity(size), motion(where)
-  {
-    static_assert(COUNT == SIGNATURE_SIZE, "a number for each indicator: run scripts/evaluate_health --fit");
-    for (std::size_t i = 0; i < COUNT; ++i)
-    {
-      change[i] = numbers[i];
-    }
-  }
-
   Cause cause;
   double severity;  ///< 0 ... 1 [-]
   MotionKind motion;
