@@ -30,12 +30,31 @@ void Assessor::reset() noexcept
 {
   baseline_.reset();
   deviations_ = {};
-  assessment_ = {};
+  assessment_ = settled_ = {};
+  is_searching_ = false;
   worse_ = 0;
   better_ = 0;
 }
 
 const Assessment& Assessor::update(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
+{
+  begin(indicators, model);
+  advance(CauseSearch::signatures());
+  return settled_;
+}
+
+void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
+{
+  advance(CauseSearch::signatures());  // of the window before, if it is not done
+  judge(indicators, model);
+  if (!is_searching_)
+  {
+    settled_ = assessment_;
+  }
+}
+
+/// All but the cause.
+void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;
   assessment_.windows = indicators.windows;
@@ -43,10 +62,10 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   {
     case BaselineState::LEARNING:
       assessment_.state = AssessmentState::LEARNING;
-      return assessment_;
+      return;
     case BaselineState::NO_REFERENCE:
       assessment_.state = AssessmentState::NO_REFERENCE;
-      return assessment_;
+      return;
     case BaselineState::COMPARED:
       break;
   }
@@ -65,10 +84,22 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
   }
   else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
-    explain(causePosterior(baseline_.residual(), indicators.point));
     listEvidence(indicators, scores);
+    point_ = indicators.point;
+    cause_search_.start();
+    is_searching_ = true;
   }
-  return assessment_;
+}
+
+void Assessor::search(std::size_t signatures) noexcept
+{
+  cause_search_.advance(baseline_.residual(), point_, signatures);
+  if (cause_search_.isDone())
+  {
+    is_searching_ = false;
+    explain(cause_search_.posterior());
+    settled_ = assessment_;
+  }
 }
 
 HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -21,7 +22,6 @@ constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what 
 constexpr double SPEED_RANGE = 0.2;                                // of the logarithm, in which motions are alike
 constexpr double DIRECTION_RANGE = 0.3;                            // as well
 constexpr double OTHER_MOTION = 1e-3;                              // weight of a signature of no motion alike
-constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 constexpr std::size_t FITTED_COUNT = std::size(FITTED_SIGNATURES);
 /// By the numbers of a signature.
 constexpr std::array<bool, SIGNATURE_SIZE> IS_FITTED = []
@@ -33,6 +33,7 @@ constexpr std::array<bool, SIGNATURE_SIZE> IS_FITTED = []
   }
   return fitted;
 }();
+constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
 struct Term
@@ -181,58 +182,73 @@ double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
   const double direction = (std::abs(point.direction) - motion.direction) / DIRECTION_RANGE;
   return OTHER_MOTION + std::exp(-0.5 * (speed * speed + direction * direction));
 }
-
-/// Likelihoods of one cause, over its rows.
-struct Sum
-{
-  void add(double logarithm, double prior, double severity) noexcept
-  {
-    const double weight = prior * std::exp(EVIDENCE_WEIGHT * logarithm);
-    priors += prior;
-    total += weight;
-    first += weight * severity;
-    second += weight * severity * severity;
-  }
-  double priors{};
-  double total{};   // by prior and weight of the evidence
-  double first{};   // of the severity
-  double second{};  // of its square
-};
 }  // namespace
 
-CausePosterior causePosterior(const WindowResidual& residual, const OperatingPoint& point) noexcept
+void CauseSearch::Sum::add(double logarithm, double prior, double severity) noexcept
 {
-  const Terms terms(residual);
-  std::array<double, std::size(FITTED_SIGNATURES)> likelihoods{};
-  std::array<double, UNKNOWN_STRENGTHS.size()> unknown{};
-  double largest = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < likelihoods.size(); ++i)
-  {
-    likelihoods[i] = terms.logLikelihood(&FITTED_SIGNATURES[i], 0.0);
-    largest = std::max(largest, likelihoods[i]);
-  }
-  for (std::size_t i = 0; i < unknown.size(); ++i)
-  {
-    unknown[i] = terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[i]);
-    largest = std::max(largest, unknown[i]);
-  }
+  const double weight = prior * std::exp(EVIDENCE_WEIGHT * logarithm);
+  priors += prior;
+  total += weight;
+  first += weight * severity;
+  second += weight * severity * severity;
+}
 
-  std::array<Sum, CAUSE_COUNT> sums;
-  for (std::size_t i = 0; i < likelihoods.size(); ++i)
+CauseSearch::CauseSearch() : likelihoods_(FITTED_COUNT + UNKNOWN_STRENGTHS.size())
+{
+  start();
+}
+
+std::size_t CauseSearch::signatures() noexcept
+{
+  return 2 * (FITTED_COUNT + UNKNOWN_STRENGTHS.size());
+}
+
+void CauseSearch::start() noexcept
+{
+  next_ = 0;
+  largest_ = -std::numeric_limits<double>::infinity();
+  sums_ = {};
+}
+
+void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept
+{
+  const std::size_t rows = likelihoods_.size();
+  const std::size_t end = std::min(next_ + count, signatures());
+  if (next_ < rows)
   {
-    const Signature& signature = FITTED_SIGNATURES[i];
-    sums[static_cast<std::size_t>(signature.cause)].add(likelihoods[i] - largest, likeness(signature.motion, point),
-                                                        signature.severity);
+    const Terms terms(residual);
+    for (; next_ < std::min(end, rows); ++next_)
+    {
+      likelihoods_[next_] = next_ < FITTED_COUNT ?
+                                terms.logLikelihood(&FITTED_SIGNATURES[next_], 0.0) :
+                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - FITTED_COUNT]);
+      largest_ = std::max(largest_, likelihoods_[next_]);
+    }
   }
-  for (const double likelihood : unknown)
+  for (; next_ < end; ++next_)
   {
-    sums[static_cast<std::size_t>(Cause::NONE)].add(likelihood - largest, 1.0, 0.0);
+    const std::size_t row = next_ - rows;
+    const double logarithm = likelihoods_[row] - largest_;
+    if (row < FITTED_COUNT)
+    {
+      const Signature& signature = FITTED_SIGNATURES[row];
+      sums_[static_cast<std::size_t>(signature.cause)].add(logarithm, likeness(signature.motion, point),
+                                                           signature.severity);
+    }
+    else
+    {
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(logarithm, 1.0, 0.0);
+    }
   }
+}
+
+CausePosterior CauseSearch::posterior() const noexcept
+{
   CausePosterior posterior;
   double all = 0.0;
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
-    const Sum& sum = sums[cause];
+    const Sum& sum = sums_[cause];
     if (sum.total > 0.0)
     {
       posterior.probability[cause] = sum.total / sum.priors;

@@ -36,6 +36,8 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , signals(given)
   , assessor(given)
   , steps_per_sample(std::llround(given.solver.rate / given.indicators.sample_rate))
+  , searched_per_step(static_cast<std::size_t>(
+        std::ceil(static_cast<double>(CauseSearch::signatures()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
@@ -366,9 +368,9 @@ JointOutputs Twin::Impl::outputs() const noexcept
 {
   const RingResponse& ring = stepper.dynamics().response();
   const Eigen::Vector2d& friction = stepper.frictionTorque();
+  JointOutputs outputs;
   outputs.stamp = now;
   outputs.motor_angle = stepper.motorAngle();
-  JointOutputs outputs;
   outputs.motor_velocity = stepper.speeds()[0];
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
@@ -389,9 +391,9 @@ JointOutputs Twin::Impl::outputs() const noexcept
   outputs.substeps = static_cast<std::uint32_t>(stepper.substeps());
   outputs.residual = stepper.status().residual;
   outputs.phase_advance = stepper.phaseAdvance();
+  return outputs;
 }
 
-  return outputs;
 /// What watches the joint step by step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
@@ -403,6 +405,7 @@ void Twin::Impl::observe() noexcept
   {
     takeReadings();
   }
+  assessor.advance(searched_per_step);
 }
 
 /// Signals known to a drive: readings, received load, temperature beside the motor.
@@ -419,7 +422,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.temperature = housingTemperature();
   if (signals.update(sample))
   {
-    assessor.update(signals.indicators());
+    assessor.begin(signals.indicators());
   }
 }
 

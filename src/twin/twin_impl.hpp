@@ -77,6 +77,8 @@ struct Twin::Impl
   SignalMonitor signals;
   Assessor assessor;
   Stamp steps_per_sample;
+  static constexpr double CAUSE_SEARCH_TIME = 0.05;  // half the shortest window [s]
+  std::size_t searched_per_step;                     // signatures
   Stamp steps_per_heat;
   bool watching{};               // indicators are made of the readings
   Eigen::VectorXd tooth_angles;  // at rest [rad]

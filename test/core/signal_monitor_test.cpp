@@ -617,6 +617,40 @@ TEST_F(Assessed, DragIsPutDownToTheLubricant)
   EXPECT_EQ(assessment.cause, causeOf(FaultKind::LUBRICANT_DEGRADATION));
 }
 
+TEST_F(Assessed, TheVerdictIsTheSameWhenTheCauseIsSearchedForInParts)
+{
+  Assessor in_parts(shippedParameters());
+  int searches = 0;
+  for (int i = 0; i < LEARNING + 8; ++i)
+  {
+    drag_ = i < LEARNING ? 1.0 : 1.6;
+    const SignalIndicators window = joint_.nextWindow();
+    const Assessment whole = assessor_.update(window);
+    const Assessment before = in_parts.assessment();
+    const std::uint64_t allocations = allocationCount();
+    in_parts.begin(window);
+    std::size_t parts = 0;
+    for (; in_parts.assessment().windows != whole.windows; ++parts)
+    {
+      ASSERT_EQ(in_parts.assessment().level, before.level);
+      ASSERT_EQ(in_parts.assessment().cause, before.cause);
+      in_parts.advance(100);
+    }
+    EXPECT_EQ(allocationCount(), allocations);
+    const bool is_searching = whole.level != HealthLevel::OK && whole.largest_score > 1.0;
+    EXPECT_EQ(parts, is_searching ? (CauseSearch::signatures() + 99) / 100 : 0);
+    searches += is_searching ? 1 : 0;
+    const Assessment& found = in_parts.assessment();
+    EXPECT_EQ(found.level, whole.level);
+    EXPECT_EQ(found.cause, whole.cause);
+    EXPECT_EQ(found.confidence, whole.confidence);
+    EXPECT_EQ(found.severity, whole.severity);
+    EXPECT_EQ(found.severity_deviation, whole.severity_deviation);
+    EXPECT_EQ(found.evidence[0].score, whole.evidence[0].score);
+  }
+  EXPECT_GT(searches, 2);
+}
+
 TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
 {
   windows(LEARNING);
@@ -991,7 +1025,9 @@ protected:
       }
     }
     const std::uint64_t before = allocationCount();
-    const CausePosterior found = causePosterior(window, point);
+    search_.start();
+    search_.advance(window, point, CauseSearch::signatures());
+    const CausePosterior found = search_.posterior();
     EXPECT_EQ(allocationCount(), before);
     return found;
   }
@@ -1012,6 +1048,7 @@ protected:
     return sum;
   }
 
+  CauseSearch search_;
   std::array<double, SIGNATURE_SIZE> spread_{};
   std::mt19937 random_{ 5 };
   std::normal_distribution<double> normal_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -100,6 +101,33 @@ TEST_P(ObservedTwin, AllocatesNothingInTheLoop)
     twin.reset(0);
   }
   EXPECT_EQ(allocationCount(), before);
+}
+
+/// A drive at 150 rad/s whose grease spoils: every step bears its share of the search for the cause.
+TEST(ObservedAssessment, OfAWindowInAlarmComesWithinFiftyMilliseconds)
+{
+  Twin twin(
+      shippedParameters({ "indicators.window_turns=4.0", "indicators.window_time=0.1", "indicators.baseline_windows=8",
+                          "indicators.evidence_windows=1", "output.load_inertia=0.5" }));
+  twin.watchSignals(true);
+  const double allowed = 0.05 * twin.parameters().solver.rate;  // [steps]
+  int late = 0;
+  int latest = 0;
+  while (twin.assessment().level == HealthLevel::OK && twin.stamp() < 8 * SECOND)
+  {
+    const Stamp next = twin.stamp() + twin.stepLength();
+    twin.commandMotorTorque(next, 0.14 + 0.05 * (150.0 - twin.outputs().motor_velocity));
+    twin.step(next);
+    if (twin.assessment().state == AssessmentState::ASSESSED && twin.activeFaults().empty())
+    {
+      twin.injectFault(next, parseFault("lubricant_degradation:1.0", twin.parameters()));
+    }
+    late = twin.assessment().windows < twin.signalIndicators().windows ? late + 1 : 0;
+    latest = std::max(latest, late);
+    ASSERT_LE(late, allowed);
+  }
+  EXPECT_GT(twin.assessment().level, HealthLevel::OK);
+  EXPECT_GT(latest, 0.8 * allowed);
 }
 
 /// What one reader of the health learns of the solver, another learns as well.

@@ -89,11 +89,24 @@ public:
   /// A window was completed. `model`: indicators of a model that were subtracted from it.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
-  const Assessment& assessment() const noexcept { return assessment_; }
+  /// The same in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures more in search
+  /// of the cause. Once all are done the assessment is that of the new window.
+  void begin(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
+  void advance(std::size_t signatures) noexcept
+  {
+    if (is_searching_)
+    {
+      search(signatures);
+    }
+  }
+
+  const Assessment& assessment() const noexcept { return settled_; }
   const Baseline& baseline() const noexcept { return baseline_; }
   const Deviations& deviations() const noexcept { return deviations_; }  ///< of the last window
 
 private:
+  void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
+  void search(std::size_t signatures) noexcept;
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
   void updateLevel(HealthLevel level) noexcept;
   void explain(const CausePosterior& posterior) noexcept;
@@ -103,7 +116,11 @@ private:
   const double error_factor_;
   Baseline baseline_;
   Deviations deviations_;
-  Assessment assessment_;
+  Assessment assessment_;  // of the last window, without its cause while that is searched for
+  Assessment settled_;     // with it
+  CauseSearch cause_search_;
+  OperatingPoint point_;  // of the search
+  bool is_searching_{};
   OperatingBin shown_in_;  // class that the level was last seen in
   int worse_{};            // windows in a row that say worse than the level
   int better_{};           // and better

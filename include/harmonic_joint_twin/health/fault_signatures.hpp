@@ -153,7 +153,41 @@ struct CausePosterior
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
-/// Something of no signature: mu = 0, e S = 3, 10, 30, 100.
-/// Does not allocate.
-CausePosterior causePosterior(const WindowResidual& residual, const OperatingPoint& point) noexcept;
+/// Something of no signature: mu = 0, e S = 3, 10, 30, 100. Indicators that the signatures were not fitted for count for
+/// nothing.
+///
+/// A search takes a pass over all signatures for their likelihoods and one for the sums over them, in as many parts as
+/// the caller likes. Only the constructor allocates.
+class CauseSearch
+{
+public:
+  CauseSearch();
+
+  static std::size_t signatures() noexcept;  ///< that a search goes through, both passes
+
+  void start() noexcept;  ///< with the next window
+  bool isDone() const noexcept { return next_ == signatures(); }
+
+  /// Goes through up to `count` signatures more. Residual and point are the same from `start` until it is done.
+  void advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept;
+
+  CausePosterior posterior() const noexcept;  ///< once it is done
+
+private:
+  /// Over the signatures of one cause.
+  struct Sum
+  {
+    void add(double logarithm, double prior, double severity) noexcept;
+
+    double priors{};
+    double total{};   // by prior and weight of the evidence
+    double first{};   // of the severity
+    double second{};  // of its square
+  };
+
+  std::vector<double> likelihoods_;  // logarithms; of the table, then of what is in none
+  double largest_{};
+  std::array<Sum, CAUSE_COUNT> sums_{};
+  std::size_t next_{};
+};
 }  // namespace hjt

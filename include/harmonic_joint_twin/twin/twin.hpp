@@ -157,6 +157,7 @@ public:
   void watchSignals(bool on) noexcept;
   bool watchesSignals() const noexcept;
   const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
+  /// Of the last window; of one in alarm 50 ms after its end, for so long its cause is searched for.
   const Assessment& assessment() const noexcept;
 
 private:
