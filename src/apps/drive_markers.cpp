@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws a twin's drive for rviz: contact forces in, markers out. What the picture exaggerates may change meanwhile.
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -38,6 +39,16 @@ std::string readText(const ros::NodeHandle& node, const std::string& name, const
   return value;
 }
 
+/// What is no finite number is refused: `value` becomes the present one. Ranges are those of dynamic_reconfigure.
+void refuseUnlessFinite(double& value, double present, const char* name)
+{
+  if (!std::isfinite(value))
+  {
+    ROS_ERROR_STREAM(name << " = " << value << " is not a finite number; it stays at " << present);
+    value = present;
+  }
+}
+
 hjt::DriveMarkers readMarkers(const ros::NodeHandle& node)
 {
   const std::string twin = ros::names::resolve(readText(node, "twin", "the name of the twin's node"));
@@ -59,8 +70,13 @@ int main(int argc, char** argv)
     using Config = harmonic_joint_twin::DriveMarkersConfig;
     dynamic_reconfigure::Server<Config> server(node);
     server.setCallback(
-        [&markers](const Config& config, std::uint32_t) {
-          markers.setStyle({ markers.style().frame, config.exaggeration, config.arrow_length, config.full_force });
+        [&markers](Config& config, std::uint32_t)
+        {
+          const hjt::MarkerStyle present = markers.style();
+          refuseUnlessFinite(config.exaggeration, present.exaggeration, "exaggeration");
+          refuseUnlessFinite(config.arrow_length, present.arrow_length, "arrow_length");
+          refuseUnlessFinite(config.full_force, present.full_force, "full_force");
+          markers.setStyle({ present.frame, config.exaggeration, config.arrow_length, config.full_force });
         });
     ros::Publisher publisher = node.advertise<visualization_msgs::MarkerArray>("markers", 1);
     const ros::Subscriber subscriber = ros::NodeHandle().subscribe<harmonic_joint_twin::ContactForces>(

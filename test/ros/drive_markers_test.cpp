@@ -66,6 +66,23 @@ TEST(DriveMarkers, StretchRadiiFromTheEngagedTeeth)
   }
 }
 
+TEST(DriveMarkers, DrawTheEllipseWithItsMajorAxisWhereTheWaveGeneratorPoints)
+{
+  const GearParameters gear = parameters().gear;
+  harmonic_joint_twin::ContactForces forces = unloaded(gear);
+  forces.wave_generator_angle = 0.4;
+  const visualization_msgs::MarkerArray array =
+      DriveMarkers(parameters(), { "drive", 1.0, 1.0e-4, 100.0 }).draw(forces);
+  const double major = gear.flexspline_inner_radius + gear.wave_amplitude;
+  const double minor = gear.flexspline_inner_radius - gear.wave_amplitude;
+  for (const geometry_msgs::Point& point : find(array, "wave_generator").points)
+  {
+    const double along = point.x * std::cos(0.4) + point.y * std::sin(0.4);
+    const double across = point.y * std::cos(0.4) - point.x * std::sin(0.4);
+    EXPECT_NEAR(std::hypot(along / major, across / minor), 1.0, 1e-9);
+  }
+}
+
 TEST(DriveMarkers, DrawNoArrowWithoutForce)
 {
   const GearParameters gear = parameters().gear;

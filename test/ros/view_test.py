@@ -51,6 +51,18 @@ class View(unittest.TestCase):
         client.update_configuration({"exaggeration": 4.0})
         wait_until(lambda: abs(depth() - before) < 0.05 * before, "teeth drawn as before")
 
+    def test_what_is_no_number_is_refused(self):
+        client = dynamic_reconfigure.client.Client("/base/drive_markers", timeout=10.0)
+        before = client.get_configuration(timeout=10.0)
+        for name in ("exaggeration", "arrow_length", "full_force"):
+            found = client.update_configuration({name: float("nan")})
+            self.assertEqual(found[name], before[name], name)
+        seen = len(self.markers.messages())
+        wait_until(lambda: len(self.markers.messages()) > seen + 1, "another drawing")
+        for marker in self.drawing().values():
+            self.assertTrue(all(math.isfinite(value) for point in marker.points for value in (point.x, point.y)),
+                            marker.ns)
+
     def test_arrows_and_colours_tell_the_load(self):
         command = rospy.Publisher("/base/joint_twin/motor_torque_command", Float64, queue_size=10)
         wait_until(lambda: command.get_num_connections() > 0, "the twin to listen")
