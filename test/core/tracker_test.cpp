@@ -13,6 +13,7 @@
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/joint_evidence.hpp"
 #include "tracking/tracker.hpp"
 
 namespace hjt
@@ -100,13 +101,13 @@ TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
         ++damaged;
       }
     }
-    if (i % 50 == 20)
     if (i % 500 == 8)
     {
       tracker.push(rowAt(1e300));
       tracker.push(rowAt(-5e9));
       damaged += 2;
     }
+    if (i % 50 == 20)
     {
       tracker.push(rowAt(PERIOD * (i - 3)));  // an earlier one
       i += 4;                                 // and some that never come
@@ -221,7 +222,6 @@ TEST(Tracker, TakesTheLoadFromWhereItIsTold)
   EXPECT_NEAR(standing(with("target_moment"), false).load_torque, weight, 1e-6);
 }
 
-TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
 TEST(Tracker, KeepsLoadAndTemperatureThatComeBeforeTheFirstRowAfterAJumpBack)
 {
   Tracker tracker(parametersWith({ "telemetry.load=target_moment" }), InputMode::MOTION);
@@ -264,6 +264,7 @@ TEST(Tracker, ForgetsTheLoadsBeforeAJumpBack)
   }
 }
 
+TEST(Tracker, TakesTheLoadByItsStampHoweverLateItComes)
 {
   const Parameters parameters = parametersWith({ "telemetry.load=target_moment" });
   std::vector<double> loads[2];
@@ -461,6 +462,22 @@ TEST(Tracker, WhatStaysIsNoContact)
   }
   EXPECT_FALSE(tracker.evidence().isTouched());
   EXPECT_GT(tracker.outsideShare(), 0.5);
+}
+
+TEST(JointEvidence, TellsTheLoadsOfTheMotion)
+{
+  JointEvidence evidence(parametersWith({}), LoadOrigin::RECORDED);
+  for (int i = 0; i < 1000; ++i)
+  {
+    MotionSample sample;
+    sample.time = PERIOD * i;
+    sample.load = i % 20 == 0 ? 60.0 : i % 2 == 0 ? 12.0 : -8.0;
+    evidence.update(sample);
+  }
+  EXPECT_EQ(evidence.reach().least_load, -8.0);
+  EXPECT_EQ(evidence.reach().most_load, 60.0);
+  EXPECT_NEAR(evidence.largestLoad(), 60.0, 1.0) << "one row of twenty";
+  EXPECT_NEAR(evidence.typicalLoad(), 8.0, 1.0);
 }
 
 TEST(ArmFrictionWatch, PredictsAtTheTemperatureThatAllJointsShow)
