@@ -153,8 +153,10 @@ class Parameters(unittest.TestCase):
         like = "like: " + package_path("config", "arms", "ur5.yaml") + "\n"
         joint = like + "joints:\n- {name: shoulder_pan_joint, short_name: "
         for text, parts in ((joint + "'a b'}", ["arm.yaml:3: joints.0.short_name = 'a b' must be a name"]),
-                            (joint + "base, parameters: [1, 2]}", ["arm.yaml:3: joints.0.parameters = [1.0, 2.0]"]),
-                            (like + "payload: {mass: .nan, centre: [0, 0, 0]}", ["arm.yaml:2: payload.mass = .nan [kg]"]),
+                            (joint + "base, parameters: [1, 2]}",
+                             ["arm.yaml:3: joints.0.parameters = [1.0, 2.0]"]),
+                            (like + "payload: {mass: .nan, centre: [0, 0, 0]}",
+                             ["arm.yaml:2: payload.mass = .nan [kg]"]),
                             (like + "description: pipe.urdf", ["pipe.urdf cannot be read", "a pipe"])):
             with self.subTest(text=text):
                 self.check_arm_refusal(text, *parts)

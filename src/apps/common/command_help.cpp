@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <iomanip>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/common/command_node.hpp"
+
+#include "base/text_stream.hpp"
 
 namespace hjt
 {
@@ -106,7 +107,7 @@ void printSubcommands(std::ostream& text, const CommandNode& command)
 
 std::string helpText(const CommandNode& command)
 {
-  std::ostringstream text;
+  TextStream text;
   text << command.help << (command.help.empty() ? "" : "\n");
   printUsage(text, command);
   printOptions(text, command);
