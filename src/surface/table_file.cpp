@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/table_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/text_hash.hpp"
+#include "base/whole_file.hpp"
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "surface/mapped_file.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// No table is larger; the shipped gear's has 8 MB [bytes].
+constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count)
+{
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+/// The table's numbers as they lie in memory: the cache is for this machine.
+std::string body(const SurfaceTable& table)
+{
+  std::string bytes;
+  const std::array<double, 4> sizes{ table.pitch, table.ratio, static_cast<double>(table.columns),
+                                     static_cast<double>(table.lines.size()) };
+  append(bytes, sizes.data(), sizes.size());
+  append(bytes, table.lines.data(), table.lines.size());
+  append(bytes, table.nodes.data(), table.nodes.size());
+  return bytes;
+}
+
+std::string body(const DeviationTable& table)
+{
+  std::string bytes;
+  const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
+  append(bytes, sizes.data(), sizes.size());
+  for (const DeviationTable::Pitch& pitch : table.pitches)
+  {
+    const std::array<double, 2> counts{ static_cast<double>(pitch.columns), static_cast<double>(pitch.lines.size()) };
+    append(bytes, counts.data(), counts.size());
+    append(bytes, pitch.lines.data(), pitch.lines.size());
+    append(bytes, pitch.nodes.data(), pitch.nodes.size());
+  }
+  return bytes;
+}
+
+std::string body(const BallTable& table)
+{
+  std::string bytes;
+  const std::array<double, 10> numbers{ table.pitch,
+                                        table.ratio,
+                                        table.deepest,
+                                        table.turn,
+                                        table.scale,
+                                        table.lowest,
+                                        table.step,
+                                        static_cast<double>(table.lines),
+                                        static_cast<double>(table.columns),
+                                        static_cast<double>(table.places) };
+  append(bytes, numbers.data(), numbers.size());
+  append(bytes, table.coefficients.data(), table.coefficients.size());
+  return bytes;
+}
+
+/// Takes a body to pieces; whether there were enough bytes and numbers is known in the end.
+class BodyReader
+{
+public:
+  /// `bytes` of the file, behind a multiple of the size of a number.
+  BodyReader(std::shared_ptr<const MappedFile> file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
+
+  /// A whole number not below `least`.
+  std::size_t size(double least)
+  {
+    constexpr double MAX_VALUE = 1e6;
+    double value = 0.0;
+    number(value);
+    good_ = good_ && value >= least && value < MAX_VALUE;
+    return good_ ? static_cast<std::size_t>(value) : 0;
+  }
+
+  void number(double& value)
+  {
+    if (const char* start = take(sizeof(value)))
+    {
+      std::memcpy(&value, start, sizeof(value));
+    }
+  }
+
+  void numbers(std::vector<double>& values, std::size_t count)
+  {
+    const char* start = take(count * sizeof(double));
+    values.resize(start != nullptr ? count : 0);
+    if (!values.empty())
+    {
+      std::memcpy(values.data(), start, count * sizeof(double));
+    }
+  }
+
+  /// Where they lie. `count` below 1e12.
+  SurfaceNodes nodes(std::size_t count)
+  {
+    static_assert(alignof(SurfaceNode) == sizeof(double) && std::is_trivially_copyable_v<SurfaceNode>);
+    const char* start = take(count * sizeof(SurfaceNode));
+    return start != nullptr ? SurfaceNodes(file_, reinterpret_cast<const SurfaceNode*>(start), count) : SurfaceNodes();
+  }
+
+  bool complete() const { return good_ && bytes_.empty(); }
+
+private:
+  /// The next bytes; null if there are not enough.
+  const char* take(std::size_t size)
+  {
+    good_ = good_ && bytes_.size() >= size;
+    const char* start = good_ ? bytes_.data() : nullptr;
+    bytes_.remove_prefix(good_ ? size : 0);
+    return start;
+  }
+
+  std::shared_ptr<const MappedFile> file_;
+  std::string_view bytes_;
+  bool good_{ true };
+};
+
+bool finite(const SurfaceNodes& nodes)
+{
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [](const SurfaceNode& node)
+                     {
+                       const auto is_finite = [](auto x) { return std::isfinite(x); };
+                       return std::all_of(node.energies().begin(), node.energies().end(), is_finite) &&
+                              std::all_of(node.bilinear().begin(), node.bilinear().end(), is_finite);
+                     });
+}
+
+/// Each above the one before, all finite.
+bool ascending(const std::vector<double>& lines)
+{
+  return std::all_of(lines.begin(), lines.end(), [](double line) { return std::isfinite(line); }) &&
+         std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) == lines.end();
+}
+
+bool parseBody(BodyReader& reader, SurfaceTable& table)
+{
+  reader.number(table.pitch);
+  reader.number(table.ratio);
+  const std::size_t columns = reader.size(1.0);
+  const std::size_t lines = reader.size(2.0);
+  table.columns = static_cast<int>(columns);
+  reader.numbers(table.lines, lines);
+  table.nodes = reader.nodes(lines * (columns + 1));
+  // Written so that NaN fails.
+  return reader.complete() && table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 &&
+         std::isfinite(table.ratio) && ascending(table.lines) && finite(table.nodes);
+}
+
+bool parseBody(BodyReader& reader, DeviationTable& table)
+{
+  table.pitches.resize(reader.size(2.0));
+  table.swaps_lobes = reader.size(0.0) != 0;
+  bool good = true;
+  for (DeviationTable::Pitch& pitch : table.pitches)
+  {
+    const std::size_t columns = reader.size(0.0);
+    const std::size_t lines = reader.size(0.0);
+    pitch.columns = static_cast<int>(columns);
+    reader.numbers(pitch.lines, lines);
+    pitch.nodes = reader.nodes(lines > 0 ? lines * (columns + 1) : 0);
+    good = good && lines != 1 && ascending(pitch.lines) && finite(pitch.nodes);
+  }
+  return good && reader.complete();
+}
+
+bool parseBody(BodyReader& reader, BallTable& table)
+{
+  for (double* number :
+       { &table.pitch, &table.ratio, &table.deepest, &table.turn, &table.scale, &table.lowest, &table.step })
+  {
+    reader.number(*number);
+  }
+  const std::size_t lines = reader.size(1.0);
+  const std::size_t columns = reader.size(1.0);
+  const std::size_t places = reader.size(1.0);
+  std::vector<double> numbers;
+  reader.numbers(numbers, (lines + 3) * columns * places * BallTable::VALUES);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const auto is_positive = [](double x) { return std::isfinite(x) && x > 0.0; };
+  if (!reader.complete() || !std::all_of(numbers.begin(), numbers.end(), is_finite) || !is_finite(table.lowest) ||
+      !is_positive(table.pitch) || !is_finite(table.ratio) || !is_positive(table.turn) || !is_positive(table.scale) ||
+      !is_positive(table.step))
+  {
+    return false;
+  }
+  table.lines = static_cast<int>(lines);
+  table.columns = static_cast<int>(columns);
+  table.places = static_cast<int>(places);
+  for (std::size_t i = 0; i < numbers.size(); i += BallTable::VALUES)
+  {
+    table.coefficients.emplace_back(Eigen::Map<const BallTable::Coefficients>(&numbers[i]));
+  }
+  return true;
+}
+
+/// The table's nodes stay in the file.
+template <class Table>
+bool read(const std::string& path, const std::string& header, Table& table)
+{
+  const std::shared_ptr<const MappedFile> file = MappedFile::ofOwn(path, MAX_FILE);
+  std::uint64_t sum = 0;
+  if (!file || file->bytes().size() < header.size() + sizeof(sum) ||
+      file->bytes().compare(0, header.size(), header) != 0)
+  {
+    return false;
+  }
+  const std::string_view summed = file->bytes().substr(0, file->bytes().size() - sizeof(sum));
+  std::memcpy(&sum, summed.data() + summed.size(), sizeof(sum));
+  BodyReader reader(file, summed.substr(header.size()));
+  return sum == textHash(summed) && parseBody(reader, table);
+}
+
+template <class Table>
+std::string write(const std::string& path, const std::string& header, const Table& table)
+{
+  std::string bytes = header + body(table);
+  const std::uint64_t sum = textHash(bytes);
+  append(bytes, &sum, 1);
+  try
+  {
+    writePrivateFile(path, bytes);
+  }
+  catch (const InputError& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+}  // namespace
+
+bool readTable(const std::string& path, const std::string& header, SurfaceTable& table)
+{
+  return read(path, header, table);
+}
+
+bool readTable(const std::string& path, const std::string& header, DeviationTable& table)
+{
+  return read(path, header, table);
+}
+
+bool readTable(const std::string& path, const std::string& header, BallTable& table)
+{
+  return read(path, header, table);
+}
+
+std::string writeTable(const std::string& path, const std::string& header, const SurfaceTable& table)
+{
+  return write(path, header, table);
+}
+
+std::string writeTable(const std::string& path, const std::string& header, const DeviationTable& table)
+{
+  return write(path, header, table);
+}
+
+std::string writeTable(const std::string& path, const std::string& header, const BallTable& table)
+{
+  return write(path, header, table);
+}
+}  // namespace hjt

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "solver/ball_drops.hpp"
+#include "solver/response_surface.hpp"
+
+namespace hjt
+{
+/// A table from its file: the header, the numbers as they lie in memory, and the hash of both. The nodes stay in the file.
+/// `header`: whose length is a multiple of the size of a number. False if the file is not that of ofOwn in mapped_file.hpp,
+/// begins otherwise, or is damaged.
+bool readTable(const std::string& path, const std::string& header, SurfaceTable& table);
+bool readTable(const std::string& path, const std::string& header, DeviationTable& table);
+bool readTable(const std::string& path, const std::string& header, BallTable& table);
+
+/// @returns what went wrong; empty: nothing.
+std::string writeTable(const std::string& path, const std::string& header, const SurfaceTable& table);
+std::string writeTable(const std::string& path, const std::string& header, const DeviationTable& table);
+std::string writeTable(const std::string& path, const std::string& header, const BallTable& table);
+}  // namespace hjt
