@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <clocale>
+#include <cstdlib>
+#include <filesystem>
+#include <locale>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/number_table.hpp"
+#include "base/number_text.hpp"
+#include "base/text_stream.hpp"
+#include "base/yaml_number.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "test/support/temporary_folder.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+const fs::path CONFIG(HJT_TEST_CONFIG_DIR);
+
+/// Numbers with a decimal comma, in the C library and in C++ streams, as long as it lives.
+class CommaLocale
+{
+public:
+  CommaLocale()
+  {
+    const fs::path script = CONFIG.parent_path() / "test/support/comma_locale.py";
+    EXPECT_EQ(std::system((script.string() + ' ' + folder_.path().string()).c_str()), 0);
+    setenv("LOCPATH", folder_.path().c_str(), 1);
+    EXPECT_NE(std::setlocale(LC_NUMERIC, "comma"), nullptr);
+    before_ = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  }
+  CommaLocale(const CommaLocale&) = delete;
+  CommaLocale& operator=(const CommaLocale&) = delete;
+  ~CommaLocale()
+  {
+    std::locale::global(before_);
+    std::setlocale(LC_NUMERIC, "C");
+    unsetenv("LOCPATH");
+  }
+
+private:
+  struct Comma : std::numpunct<char>
+  {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+
+  TemporaryFolder folder_;
+  std::locale before_;
+};
+
+/// All that is read from the shipped files, and how the parameters are written.
+std::map<std::string, std::string> configurationTexts()
+{
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : fs::recursive_directory_iterator(CONFIG))
+  {
+    if (entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "arms")
+    {
+      ParameterMap map;
+      readDefaultConfiguration(CONFIG, map);
+      readYamlFile(entry.path(), map);
+      texts[entry.path()] = describeParameters(parseParameters(map));
+    }
+  }
+  return texts;
+}
+
+TEST(LocaleOfTheProgram, ChangesNoNumber)
+{
+  const auto plain = configurationTexts();
+  const CommaLocale comma;
+  EXPECT_EQ(std::strtod("0,5", nullptr), 0.5) << "the locale is in force";
+  EXPECT_EQ(configurationTexts(), plain);
+  EXPECT_EQ(decimalNumber("-1.25e-3"), -1.25e-3);
+  EXPECT_EQ(numberText(31000.5), "31000.5");
+  EXPECT_EQ(roundedText(0.125, 2), "0.12");
+  EXPECT_EQ(fixedText(1234.5, 1), "1234.5");
+  EXPECT_EQ(yamlNumber(YAML::Load("0.35")), 0.35);
+  TextStream stream;
+  stream << 1234 << ' ' << 0.5;
+  EXPECT_EQ(stream.str(), "1234 0.5");
+  TemporaryFolder folder;
+  NumberTable<1> table(folder.write("table.csv", "time\n0.35\n"), { "time" });
+  std::array<double, 1> row{};
+  ASSERT_TRUE(table.read(row));
+  EXPECT_EQ(row[0], 0.35);
+}
+}  // namespace
+}  // namespace hjt
