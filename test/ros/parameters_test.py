@@ -138,7 +138,7 @@ class Parameters(unittest.TestCase):
     def test_a_publish_rate_that_does_not_divide_the_solver_rate_is_named(self):
         self.check_refusal({"publish/encoders_rate": 3000}, "publish.encoders_rate", "3000", "[Hz]", "10000")
 
-    def check_arm_refusal(self, text, *expected):
+    def check_arm_refusal(self, text, expected):
         with tempfile.TemporaryDirectory() as folder:
             os.mkfifo(os.path.join(folder, "pipe.urdf"))
             path = os.path.join(folder, "arm.yaml")
@@ -147,19 +147,17 @@ class Parameters(unittest.TestCase):
             load_parameters(NODE, [], {"arm": path})
             self.node = Node(NODE.lstrip("/"))
             self.assertEqual(self.node.wait_for_exit(), 1)
-        self.check_output("FATAL", *expected)
+        self.check_output("FATAL", expected)
 
     def test_what_is_wrong_in_an_arms_file_is_named(self):
         like = "like: " + package_path("config", "arms", "ur5.yaml") + "\n"
         joint = like + "joints:\n- {name: shoulder_pan_joint, short_name: "
-        for text, parts in ((joint + "'a b'}", ["arm.yaml:3: joints.0.short_name = 'a b' must be a name"]),
-                            (joint + "base, parameters: [1, 2]}",
-                             ["arm.yaml:3: joints.0.parameters = [1.0, 2.0]"]),
-                            (like + "payload: {mass: .nan, centre: [0, 0, 0]}",
-                             ["arm.yaml:2: payload.mass = .nan [kg]"]),
-                            (like + "description: pipe.urdf", ["pipe.urdf cannot be read", "a pipe"])):
+        for text, expected in ((joint + "'a b'}", "arm.yaml:3: joints.0.short_name = 'a b' must be a name"),
+                               (joint + "base, parameters: [1, 2]}", "arm.yaml:3: joints.0.parameters = [1.0, 2.0]"),
+                               (like + "payload: {mass: .nan, centre: [0, 0, 0]}", "arm.yaml:2: payload.mass = .nan"),
+                               (like + "description: pipe.urdf", "pipe.urdf cannot be read: it is a folder, a device")):
             with self.subTest(text=text):
-                self.check_arm_refusal(text, *parts)
+                self.check_arm_refusal(text, expected)
 
 
 if __name__ == "__main__":
