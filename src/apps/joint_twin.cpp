@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <optional>
@@ -13,7 +14,6 @@
 
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt
@@ -41,6 +41,26 @@ int runComplete(char** argv)
 }  // namespace
 #endif
 
+namespace
+{
+int run(hjt::CommandLine& line, int argc, char** argv)
+{
+#ifdef HJT_COMPLETE_TOOL
+  if (asksForHelp(argc, argv))
+  {
+    std::cout << hjt::toolHelp();
+    return hjt::EXIT_DONE;
+  }
+  if (!hjt::CommandLine::knows(argc, argv))
+  {
+    return runComplete(argv);
+  }
+#endif
+  const std::optional<int> ended = line.parse(argc, argv);
+  return ended ? *ended : line.run();
+}
+}  // namespace
+
 int main(int argc, char** argv)
 {
   hjt::CommandLine line(
@@ -48,22 +68,10 @@ int main(int argc, char** argv)
       "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
       "in rad.");
   line.addSubcommands();
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
   try
   {
-#ifdef HJT_COMPLETE_TOOL
-    if (asksForHelp(argc, argv))
-    {
-      std::cout << hjt::toolHelp();
-      return hjt::EXIT_DONE;
-    }
-    if (!line.knows(argc, argv))
-    {
-      return runComplete(argv);
-    }
-#endif
-    hjt::catchInterrupts();
-    const std::optional<int> ended = line.parse(argc, argv);
-    return ended ? *ended : line.run();
+    return run(line, argc, argv);
   }
   catch (const std::exception& error)
   {

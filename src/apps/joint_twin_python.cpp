@@ -63,8 +63,7 @@ Ended runAlone(std::vector<std::string> arguments)
   Ended ended;
   const Captured document(std::cout);
   const Captured messages(std::cerr);
-  const InterruptScope scope;
-  const DecimalPoint decimal_point;  // for CLI11
+  const InterruptScope scope{ InterruptScope::Guest() };
   try
   {
     CommandLine line("joint_twin", "");

@@ -2,6 +2,7 @@
 // `joint_twin sweep` under mpirun: rank I of N does the shard I/N.
 #include <mpi.h>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <optional>
@@ -48,7 +49,8 @@ int main(int argc, char** argv)
   int ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  hjt::catchInterrupts();
+  const hjt::InterruptScope interrupts;  // a rank that is done waits for the others
+  std::signal(SIGXFSZ, SIG_IGN);         // beyond a limit of size, writing fails as on a full disk
   const int mine = sweepAs(rank, ranks, argc, argv);
   int worst = mine;
   MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);

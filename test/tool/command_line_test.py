@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: kinds of options, what of it is refused, help."""
+"""The command line: kinds of options, what of it is refused, help; interrupts."""
+import signal
+import subprocess
+
 import tool
 
 PAIR = ["identify", "none.bag", "--joint", "1", "--train"]
@@ -18,8 +21,8 @@ class Options(tool.ToolTest):
         self.assertEqual(found["wave_generator_angle"], -0.5)
 
     def test_a_repeated_option_takes_one_value_each_time(self):
-        found = self.succeed_json("insert", "--set", "solver.rate=1000", "--set", "gear.backlash=0.0")
-        self.assertIn("residual", str(found))
+        found = self.succeed_json("parameters", "--set", "solver.rate=5000.0", "--set", "gear.wave_amplitude=0.31e-3")
+        self.assertEqual((found["solver"]["rate"], found["gear"]["wave_amplitude"]), (5000.0, 0.31e-3))
         self.fail_with(2, ["not expected: solver.rate=2000"], "insert", "--set", "solver.rate=1000", "solver.rate=2000")
 
     def test_arguments_may_stand_anywhere(self):
@@ -115,6 +118,19 @@ class Options(tool.ToolTest):
             for part in parts:
                 self.assertIn(part, text)
         self.assertEqual(self.succeed("insert", "--wings", "-h").stdout, self.succeed("insert", "--help").stdout)
+
+
+class Process(tool.ToolTest):
+    def test_a_signal_ends_a_long_computation_at_once(self):
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            process = subprocess.Popen([self.executable, "turn", "--load", "20", "--angle-range", "100", "--steps",
+                                        "1000000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+            self.addCleanup(process.kill)
+            self.assertIn(b"turning", process.stderr.readline())  # it is at work
+            process.send_signal(number)
+            process.communicate(timeout=20.0 * tool.SLOWER)
+            self.assertEqual(process.returncode, -number)
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ void addArmOptions(Command& command, ArmOptions& options)
       .type("DIR")
       .existingDirectory()
       .needs("--arm");
-  command.oneOf({ "--joint", "--arm" });  // last: it takes them out of the reach of `needs`
+  command.oneOf({ "--joint", "--arm" });
 }
 
 ArmRecording::ArmRecording(const ArmOptions& options)
@@ -132,6 +132,7 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
   std::vector<MotionRow> in_current;
   MotionFindings findings;
   findings.has_load = has_load_;
+  const InterruptScope interrupts;
   Progress progress("reading");
   const auto forward = [&](bool at_end)
   {

@@ -1,28 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace hjt
 {
-/// From here on SIGINT and SIGTERM end loops instead of the process, so that files are closed.
-void catchInterrupts();
-
-/// The signal that came, or 0.
+/// The signal that came within an InterruptScope of this process, as a guest of this one, or 0.
 int interruptSignal();
 
-/// SIGINT ends loops as long as it lives, in a process with handlers of its own. One at a time.
+/// As long as it lives, SIGINT, SIGTERM and SIGHUP end loops that ask for `interruptSignal` instead of the process, so
+/// that files are closed; a second one ends the process. A scope within another changes nothing.
 class InterruptScope
 {
 public:
+  /// Of a process with handlers of its own: SIGINT alone, and it never ends the process.
+  struct Guest
+  {
+  };
+
   InterruptScope();
+  explicit InterruptScope(Guest guest);
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
   ~InterruptScope();
 
 private:
-  struct sigaction before_
+  struct Caught
   {
+    int signal{};
+    struct sigaction before
+    {
+    };
   };
+
+  void catchSignal(Caught& caught, int signal, int flags) const;
+
+  const bool is_outer_;
+  std::array<Caught, 3> caught_{};  // without a signal: not caught
 };
 }  // namespace hjt

@@ -118,6 +118,7 @@ MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& tw
   MotionFindings findings;
   findings.has_load = recordsLoad(source);
   MotionDifferentiator smoother;
+  const InterruptScope interrupts;
   Progress progress("reading");
   const auto forward = [&](bool at_end)
   {

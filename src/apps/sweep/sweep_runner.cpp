@@ -134,6 +134,7 @@ int sweep(const SweepArguments& arguments)
   }
   SweepDirectory directory(plan, arguments.out);
   directory.open();
+  const InterruptScope interrupts;
   const SweepResult result =
       runSweep(plan, directory, { arguments.out, arguments.jobs, arguments.shard, arguments.shards, arguments.quiet },
                sharedSurfaces(plan, arguments.jobs));

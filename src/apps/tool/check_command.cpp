@@ -240,6 +240,7 @@ MotionFindings readWithoutLoad(const MotionSource& source, const std::vector<std
       fit.update(samples, unknown);
     }
   };
+  const InterruptScope interrupts;
   Progress progress("reading");
   static_cast<MotionCount&>(found) = readArmMotion(
       source, names,

@@ -177,6 +177,7 @@ int followJoint(const FollowOptions& options)
     bag.emplace(options.bag, source,
                 std::vector<TrackedBag::Joint>{ { source.joint, options.joint_namespace, parameters } });
   }
+  const InterruptScope interrupts;
   const FollowSummary summary = compare(source, tracker,
                                         [&](const Comparison& now)
                                         {
@@ -359,6 +360,7 @@ int followArm(const FollowOptions& options)
     trackers.push_back(&follower->tracker());
   }
   ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
+  const InterruptScope interrupts;
   const MotionFindings found = recording.read(
       [&](const std::vector<ArmJointRow>& rows)
       {

@@ -219,6 +219,7 @@ int import(const ImportOptions& options)
   const double ratio = options.ratio.value_or(nominalRatio(parameters.gear));
   requireWritable(options.out, options.force, options.csv);
   NumberTable<COLUMNS> table(options.csv, columnNames(), JOINTS, JOINTS);
+  const InterruptScope interrupts;
   BagWriter bag(options.out);
   const std::uint64_t rows = importRows(options, joint, ratio, table, bag);
   if (rows == 0)

@@ -63,6 +63,7 @@ std::vector<SignalIndicators> readWindows(const std::string& path, const SignalS
 {
   SignalMonitor monitor(parameters);
   std::vector<SignalIndicators> windows;
+  const InterruptScope interrupts;
   readSignals(path, source,
               [&](const SignalSample& sample)
               {

@@ -181,6 +181,7 @@ int replay(const ReplayOptions& options)
   twin.watchSignals(true);
   twin.reset(found.inputs.front().stamp);
   const RunSummary summary{ options.out, twin.stamp() };
+  const InterruptScope interrupts;
   Replay run(bag, twin, found.inputs, options);
   try
   {

@@ -128,6 +128,7 @@ int simulate(const SimulateOptions& options)
   const RunSummary summary{ options.out, twin.stamp() };
   const Stamp end = twin.stamp() + (options.duration ? toStampLength(*options.duration) : profile.duration());
   std::uint64_t recorded = 0;
+  const InterruptScope interrupts;
   if (extension == ".csv")
   {
     CsvRecorder recorder(twin, options.out, twin.stamp());

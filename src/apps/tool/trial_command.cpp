@@ -48,6 +48,7 @@ int trial(const TrialOptions& options)
   const Stamp profile_begin = begin - toStampLength(options.advance);
   TrialResult result;
   {
+    const InterruptScope interrupts;
     Progress progress("running");
     result =
         runTrial(twin, end, toStampLength(options.sample_period),
