@@ -14,6 +14,7 @@
 
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
+#include "apps/common/output_file.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt
@@ -71,7 +72,9 @@ int main(int argc, char** argv)
   std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
   try
   {
-    return run(line, argc, argv);
+    const int code = run(line, argc, argv);
+    hjt::finishStandardOutput();
+    return code;
   }
   catch (const std::exception& error)
   {

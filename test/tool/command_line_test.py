@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: kinds of options, what of it is refused, help; interrupts."""
+"""The command line: kinds of options, what of it is refused, help, interrupts, what cannot be printed."""
+import os
 import signal
 import subprocess
+import time
 
 import tool
 
@@ -131,6 +133,61 @@ class Process(tool.ToolTest):
             process.send_signal(number)
             process.communicate(timeout=20.0 * tool.SLOWER)
             self.assertEqual(process.returncode, -number)
+
+    def test_output_that_cannot_be_written_is_a_failure(self):
+        for arguments in [["stiffness", "--torques", "5", "--json"], ["faults"], ["--help"], ["check", "--help"],
+                          ["export", "--format", "urdf"], ["parameters"]]:
+            with self.subTest(arguments), open("/dev/full", "w", encoding="ascii") as full:
+                done = subprocess.run([self.executable, *arguments], stdout=full, stderr=subprocess.PIPE,
+                                      universal_newlines=True, check=False)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("joint_twin: standard output cannot be written", done.stderr)
+
+
+class OutputFiles(tool.ToolTest):
+    SIMULATE = ["simulate", "--torque", "0.2", "--out", "out.csv", "--force", "--duration"]
+
+    def test_a_failure_keeps_the_earlier_file(self):
+        self.write("out.csv", "precious")
+        self.fail_with(1, ["out.csv holds nothing"], *self.SIMULATE, "0.02", "--set", "publish.joint_states_rate=10")
+        self.assertEqual(os.listdir(self.directory), ["out.csv"])
+        self.assertEqual(tool.read_bytes(self.path("out.csv")), b"precious")
+
+    def test_what_was_recorded_before_a_kill_stands_beside_the_earlier_file(self):
+        self.write("out.csv", "precious")
+        process = subprocess.Popen([self.executable, *self.SIMULATE, "1000"], cwd=self.directory,
+                                   stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        part = self.path("out.csv.part")
+        deadline = time.monotonic() + 30.0 * tool.SLOWER
+        while not os.path.exists(part) or os.path.getsize(part) < 20000:
+            self.assertLess(time.monotonic(), deadline, "nothing written")
+            time.sleep(0.01)
+        process.kill()
+        process.communicate()
+        self.assertEqual(tool.read_bytes(self.path("out.csv")), b"precious")
+        self.assertTrue(tool.read_bytes(part).startswith(b"time,"))
+
+    def test_links_and_pipes_are_written_through(self):
+        self.write("there.csv", "old")
+        os.symlink("there.csv", self.path("link.csv"))
+        insert = ["insert", "--force", "--csv"]
+        self.succeed(*insert, "link.csv")
+        self.assertTrue(os.path.islink(self.path("link.csv")))
+        self.assertTrue(tool.read_bytes(self.path("there.csv")).startswith(b"tooth,"))
+        self.assertIn(tool.read_bytes(self.path("there.csv")).decode(), self.succeed(*insert, "/dev/stdout").stdout)
+        self.assertEqual(sorted(os.listdir(self.directory)), ["link.csv", "there.csv"])
+
+    def test_a_full_disk_is_named_and_leaves_no_empty_file(self):
+        self.fail_with(1, ["/dev/full cannot be written: No space left on device\n"], "insert", "--csv", "/dev/full",
+                       "--force")
+        done = self.run_with_file_limit(0, "gear", "--size", "14", "--ratio", "80", "--out", "gear.yaml")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("gear.yaml cannot be written", done.stderr)
+        done = self.run_with_file_limit(1000, "insert", "--csv", "ring.csv")
+        self.assertIn("ring.csv cannot be written: File too large", done.stderr)
+        self.assertNotIn("gear.yaml", os.listdir(self.directory))
+        self.assertNotIn("ring.csv", os.listdir(self.directory))
 
 
 if __name__ == "__main__":

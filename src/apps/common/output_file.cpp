@@ -4,13 +4,21 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 
 #include <fmt/format.h>
 
+#include "base/joined.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
+namespace
+{
+constexpr const char* STDOUT = "/dev/stdout";
+}  // namespace
+
 void requireWritable(const std::string& path, bool force, const std::string& input)
 {
   namespace fs = std::filesystem;
@@ -33,20 +41,40 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
   }
 }
 
-CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& columns)
-  : path_(path), file_(std::fopen(path.c_str(), "w"), &std::fclose)
+void finishStandardOutput()
 {
-  if (!file_)
+  errno = 0;
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
   {
-    fail();
+    const int reason = errno;
+    throw InputError(std::string("standard output cannot be written") +
+                     (reason != 0 ? std::string(": ") + std::strerror(reason) : ""));
   }
-  const char* separator = "";
-  for (const std::string& column : columns)
+}
+
+CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& columns)
+  : path_(path), file_(nullptr, &std::fclose)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);  // of what links lead to
+  const bool is_stream = fs::exists(status) && (!fs::is_regular_file(status) || fs::equivalent(path, STDOUT, error));
+  const fs::path there = fs::canonical(path, error);  // none: it is new
+  target_ = is_stream || error ? path : there.string();
+  written_ = is_stream ? target_ : target_ + ".part";
+  file_.reset(std::fopen(written_.c_str(), "w"));
+  require(file_ != nullptr);
+  require(std::fputs((joined(columns, ",") + "\n").c_str(), file_.get()) >= 0);
+}
+
+CsvWriter::~CsvWriter()
+{
+  if (!has_rows_ && written_ != target_)
   {
-    std::fprintf(file_.get(), "%s%s", separator, column.c_str());
-    separator = ",";
+    std::error_code error;
+    std::filesystem::remove(written_, error);
   }
-  std::fprintf(file_.get(), "\n");
 }
 
 void CsvWriter::writeRow(const std::vector<double>& values)
@@ -65,19 +93,27 @@ void CsvWriter::writeRow(const std::vector<double>& values)
     line_.insert(line_.end(), text.digits.data(), text.digits.data() + text.size);
   }
   line_.back() = '\n';
-  std::fwrite(line_.data(), 1, line_.size(), file_.get());
+  require(std::fwrite(line_.data(), 1, line_.size(), file_.get()) == line_.size());
+  has_rows_ = true;
 }
 
 void CsvWriter::close()
 {
-  if (std::ferror(file_.get()) != 0 || std::fclose(file_.release()) != 0)
+  require(std::fclose(file_.release()) == 0);
+  if (written_ != target_)
   {
-    fail();
+    bringToDisk(written_, target_);
   }
 }
 
-void CsvWriter::fail() const
+void CsvWriter::require(bool written) const
 {
-  throw InputError(path_ + " cannot be written: " + std::strerror(errno));
+  if (!written)
+  {
+    const int reason = errno;
+    const bool is_part = has_rows_ && written_ != target_;
+    throw InputError(path_ + " cannot be written: " + std::strerror(reason) +
+                     (is_part ? "; " + written_ + " has what came before" : ""));
+  }
 }
 }  // namespace hjt

@@ -14,12 +14,19 @@ namespace hjt
 /// option that was left out, is none.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
-/// A CSV file of numbers; every number can be read back exactly.
+/// Brings what was printed to where it goes. @throws InputError if not all could be written.
+void finishStandardOutput();
+
+/// A CSV file of numbers; every number can be read back exactly. Written as `PATH.part`, it has its name from `close` on;
+/// a device, a pipe and standard output are written to. Without `close` the rows stay in the `.part`.
 class CsvWriter
 {
 public:
   /// @throws InputError if the file cannot be written.
   CsvWriter(const std::string& path, const std::vector<std::string>& columns);
+  CsvWriter(const CsvWriter&) = delete;
+  CsvWriter& operator=(const CsvWriter&) = delete;
+  ~CsvWriter();
 
   void writeRow(const std::vector<double>& values);
 
@@ -27,7 +34,8 @@ public:
   void close();
 
 private:
-  [[noreturn]] void fail() const;
+  /// @throws InputError if something was not written, for the reason in errno.
+  void require(bool written) const;
 
   /// A number as it was last written in a column, with the separator behind it.
   struct Text
@@ -37,7 +45,10 @@ private:
     std::size_t size{};           // zero: none yet
   };
 
-  std::string path_;
+  const std::string path_;
+  std::string target_;   // behind links
+  std::string written_;  // where it is written
+  bool has_rows_{};
   std::vector<Text> texts_;
   std::vector<char> line_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fstream>
 #include <iostream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +11,7 @@
 #include "apps/common/text_table.hpp"
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
@@ -93,7 +94,7 @@ void write(const GearOptions& options, const GearDesign& design, const Parameter
     sections[parameter.key.substr(0, parameter.key.find('.'))].push_back(parameter);
   }
   const auto texts = meanings(parameters);
-  std::ofstream file(options.out);
+  std::ostringstream file;
   file << "# Overlay: " << title
        << ".\n# Made by joint_twin gear. Motor, brake, load, heat and sensors are those of the joint: "
           "motor, brake,\n# output.*_inertia, output.torque_limit, thermal and sensors are left as configured.\n";
@@ -106,11 +107,7 @@ void write(const GearOptions& options, const GearDesign& design, const Parameter
            << parameter.key.substr(section.size() + 1) << ": " << yamlValue(design.map.at(parameter.key)) << '\n';
     }
   }
-  file.close();
-  if (!file)
-  {
-    throw InputError(options.out + ": cannot be written");
-  }
+  writeTextFile(options.out, file.str());
 }
 
 std::vector<Figure> figuresOf(const Parameters& designed, const GearFigures& catalogue)

@@ -133,8 +133,11 @@ int simulate(const SimulateOptions& options)
   {
     CsvRecorder recorder(twin, options.out, twin.stamp());
     run(twin, profile, end, recorder);
-    recorder.close();
     recorded = recorder.rows();
+    if (recorded > 0)
+    {
+      recorder.close();
+    }
   }
   else
   {
