@@ -15,7 +15,6 @@
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
-#include "base/decimal_point.hpp"
 
 namespace hjt
 {

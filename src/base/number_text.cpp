@@ -2,16 +2,38 @@
 #include "base/number_text.hpp"
 
 #include <array>
+#include <clocale>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 
-#include "base/decimal_point.hpp"
-
 namespace hjt
 {
+namespace
+{
+/// While it lives, the C library reads and writes this thread's numbers with a decimal point, whatever locale the program
+/// has set. Does not allocate.
+class DecimalPoint
+{
+public:
+  DecimalPoint() noexcept : before_(uselocale(plain())) {}
+  DecimalPoint(const DecimalPoint&) = delete;
+  DecimalPoint& operator=(const DecimalPoint&) = delete;
+  ~DecimalPoint() { uselocale(before_); }
+
+private:
+  static locale_t plain() noexcept
+  {
+    static const locale_t PLAIN = newlocale(LC_ALL_MASK, "C", nullptr);  // one that always exists
+    return PLAIN;
+  }
+
+  locale_t before_;
+};
+}  // namespace
+
 std::string numberText(double value)
 {
   if (std::isnan(value))
