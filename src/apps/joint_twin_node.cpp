@@ -16,17 +16,40 @@
 
 namespace
 {
+/// Wait for the first time on /clock before it is missed [s].
+constexpr double CLOCK_PATIENCE = 5.0;
+
+void warnOfParameters(const hjt::FoundParameters& found, const std::string& name,
+                      const std::vector<hjt::ParameterMap>& shipped)
+{
+  const std::string departures = found.departures(name, shipped);
+  if (!departures.empty())
+  {
+    ROS_WARN_STREAM("Found on the parameter server, set before this start, other than as shipped: "
+                    << departures << ". If an earlier launch has left them: rosparam delete " << name);
+  }
+}
+
 template <class Node, class... Arguments>
 void run(ros::NodeHandle& handle, const Arguments&... arguments)
 {
   const Node node(handle, arguments...);
   ros::AsyncSpinner spinner(2);
   spinner.start();
+  if (ros::Time::isSimTime() && !ros::Time::waitForValid(ros::WallDuration(CLOCK_PATIENCE)) && ros::ok())
+  {
+    ROS_WARN_STREAM(
+        "/use_sim_time is true and no time comes on /clock. Beside a robot: rosparam delete /use_sim_time, "
+        "then start this node again");
+  }
   ros::waitForShutdown();
 }
 
-void runJoint(ros::NodeHandle& node)
+void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
 {
+  hjt::ParameterMap shipped;
+  hjt::readDefaultConfiguration(hjt::configurationDirectory("").string(), shipped);
+  warnOfParameters(found, node.getNamespace(), { shipped });
   const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
   ROS_DEBUG_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
   for (const std::string& warning : hjt::gearWarnings(parameters))
@@ -45,7 +68,7 @@ void runJoint(ros::NodeHandle& node)
 
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
-void runArm(ros::NodeHandle& node, const std::string& name)
+void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
 {
   const auto directory = hjt::configurationDirectory("");
   hjt::ArmDescription arm = hjt::readArmDescription(hjt::findArm(name, directory));
@@ -57,10 +80,17 @@ void runArm(ros::NodeHandle& node, const std::string& name)
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
   const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());
   ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified));
-  std::vector<hjt::Parameters> parameters;
+  std::vector<hjt::ParameterMap> maps;
   for (const hjt::ArmJoint& joint : arm.joints)
   {
-    hjt::ParameterMap map = hjt::armJointParameters(joint, directory, identified);
+    maps.push_back(hjt::armJointParameters(joint, directory, identified));
+  }
+  warnOfParameters(found, node.getNamespace(), maps);
+  std::vector<hjt::Parameters> parameters;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    const hjt::ArmJoint& joint = arm.joints[i];
+    hjt::ParameterMap& map = maps[i];
     for (const auto& [key, value] : overrides)
     {
       map[key] = value;
@@ -86,6 +116,7 @@ void runArm(ros::NodeHandle& node, const std::string& name)
 
 int main(int argc, char** argv)
 {
+  const hjt::FoundParameters found(argc, argv);
   ros::init(argc, argv, "joint_twin");
   hjt::shutDownOnSignals();
   // Outlives the try block: with the last handle ROS shuts down, and its console with it.
@@ -93,7 +124,7 @@ int main(int argc, char** argv)
   try
   {
     const std::string arm = node.param<std::string>(hjt::ARM, "");
-    arm.empty() ? runJoint(node) : runArm(node, arm);
+    arm.empty() ? runJoint(node, found) : runArm(node, arm, found);
   }
   catch (const std::exception& error)  // hjt::ParameterError, and what ROS refuses
   {

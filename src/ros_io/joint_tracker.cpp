@@ -331,7 +331,8 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
   const StreamTimingReport timing = stream_.timing.report();
   const bool refused = recent_refusals_.areRecent();
   return firstOf(
-      { { timing.rows == 0,
+      { { ros::Time::isSimTime() && ros::Time::now().isZero(), { D::WARN, "No time on /clock yet" } },
+        { timing.rows == 0,
           { D::WARN, refused ? "No usable row of " + names_.joint + " yet" : "No telemetry yet on " + stream_.topic } },
         { hasStopped(), { D::WARN, "The telemetry has stopped" } },
         { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },

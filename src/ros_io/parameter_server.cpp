@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/parameter_server.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -107,12 +109,33 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
     {
       addFaults(value, origin + '/' + name, map);
     }
-    else if (key != DIAGNOSTIC_PERIOD && key != ARM && key != IDENTIFIED && key != DESCRIPTION)
+    else
     {
       addLeaf(key, value, origin + '/' + name, map);
     }
   }
 }
+
+/// Nothing is left out.
+ParameterMap readAll(const std::string& parameter_namespace)
+{
+  ParameterMap map;
+  XmlRpcValue tree;
+  if (ros::param::get(parameter_namespace, tree) && tree.getType() == XmlRpcValue::TypeStruct)
+  {
+    addTree("", tree, parameter_namespace, map);
+  }
+  return map;
+}
+
+/// Of one meaning to `parseParameters`.
+bool areAlike(const Value& a, const Value& b)
+{
+  const std::optional<double> number_a = numberOf(a);
+  const std::optional<double> number_b = numberOf(b);
+  return number_a && number_b ? *number_a == *number_b : a == b;
+}
+
 XmlRpcValue xmlValue(const ParameterValue& parameter)
 {
   return std::visit(
@@ -175,12 +198,53 @@ void writeParameterServer(const std::string& parameter_namespace, const Paramete
 
 ParameterMap readParameterServer(const std::string& parameter_namespace)
 {
-  ParameterMap map;
-  XmlRpcValue tree;
-  if (ros::param::get(parameter_namespace, tree) && tree.getType() == XmlRpcValue::TypeStruct)
+  ParameterMap map = readAll(parameter_namespace);
+  for (const char* key : { DIAGNOSTIC_PERIOD, ARM, IDENTIFIED, DESCRIPTION })
   {
-    addTree("", tree, parameter_namespace, map);
+    map.erase(key);
   }
   return map;
+}
+
+FoundParameters::FoundParameters(int argc, const char* const* argv)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string argument = argv[i];
+    is_cleared_ = is_cleared_ || argument == CLEARED;
+    if (argument.rfind('_', 0) == 0)
+    {
+      std::string key = argument.substr(1, argument.find(":=") - 1);
+      std::replace(key.begin(), key.end(), '/', '.');
+      given_.insert(key);
+    }
+  }
+}
+
+std::string FoundParameters::departures(const std::string& parameter_namespace,
+                                        const std::vector<ParameterMap>& shipped) const
+{
+  std::vector<std::string> found;
+  for (const auto& [key, parameter] : is_cleared_ ? ParameterMap{} : readAll(parameter_namespace))
+  {
+    const auto departs = [&key = key, &value = parameter.value](const ParameterMap& map)
+    {
+      const auto expected = map.find(key);
+      return expected == map.end() || !areAlike(value, expected->second.value);
+    };
+    if (given_.count(key) == 0 && std::any_of(shipped.begin(), shipped.end(), departs))
+    {
+      std::string name = key;
+      std::replace(name.begin(), name.end(), '.', '/');
+      found.push_back(name + " = " + valueText(parameter));
+    }
+  }
+  const std::size_t count = found.size();
+  if (count > MAX_NAMED)
+  {
+    found.resize(MAX_NAMED);
+    found.push_back(std::to_string(count - MAX_NAMED) + " more");
+  }
+  return joined(found, ", ");
 }
 }  // namespace hjt

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <set>
 #include <string>
+#include <vector>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
@@ -20,4 +22,24 @@ ParameterMap readParameterServer(const std::string& parameter_namespace);
 
 /// Puts all parameters below `parameter_namespace`, in place of what is there.
 void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
+
+/// Parameters that a node finds on the server and that its start did not set: a server outlives its nodes, so they may be
+/// those of an earlier launch.
+class FoundParameters
+{
+public:
+  /// Argument of a node whose launch file says clear_params="true": what it finds is of its own launch.
+  static constexpr const char* CLEARED = "--params-cleared";
+  static constexpr std::size_t MAX_NAMED = 12;
+
+  /// The command line, before ros::init takes `_section/key:=value` out of it.
+  FoundParameters(int argc, const char* const* argv);
+
+  /// `section/key = value` of those that depart from one of `shipped`, the first MAX_NAMED by name; empty: none.
+  std::string departures(const std::string& parameter_namespace, const std::vector<ParameterMap>& shipped) const;
+
+private:
+  bool is_cleared_ = false;
+  std::set<std::string> given_;  // keys on the command line
+};
 }  // namespace hjt

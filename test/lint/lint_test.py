@@ -203,6 +203,13 @@ class LaunchDocs(Tree):
         self.write("launch/a.launch", '<launch><arg name="bag" default=""/></launch>')
         self.assert_fault(launch_docs.check, "'bag'")
 
+    def test_parameters_of_an_earlier_launch(self):
+        node = '<launch><node name="twin"{}><param name="arm" value="ur5"/></node></launch>'
+        self.write("launch/a.launch", node.format(' clear_params="true"'))
+        self.assert_clean(launch_docs.check)
+        self.write("launch/a.launch", node.format(""))
+        self.assert_fault(launch_docs.check, "'twin'", "clear_params")
+
 
 class DocTables(Tree):
     TABLE = ["| parameter | unit |", "|---|---|", "| `gear.teeth` | - |", "| `motor.torque_limit` | N.m |"]

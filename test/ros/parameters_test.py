@@ -26,9 +26,9 @@ class Parameters(unittest.TestCase):
         if self.node is not None:
             self.node.kill()
 
-    def start(self, files, changes=None):
+    def start(self, files, changes=None, arguments=()):
         load_parameters(NODE, files, changes)
-        self.node = Node(NODE.lstrip("/"))
+        self.node = Node(NODE.lstrip("/"), *arguments)
 
     def check_refusal(self, changes, *expected, files=None):
         self.start(files or configuration_files(), changes)
@@ -134,6 +134,29 @@ class Parameters(unittest.TestCase):
 
     def test_a_list_of_the_wrong_length_is_named(self):
         self.check_refusal({"cup/torsion_stiffness": [31.0e3, 50.0e3]}, "cup.torsion_stiffness", "[N.m/rad]")
+
+    def warning(self, files, changes, *arguments):
+        """The line about what the server had before, of a node that ends at once."""
+        self.start(files, changes, arguments)
+        self.assertEqual(self.node.wait_for_exit(), 1)
+        lines = [line for line in self.node.output().splitlines() if "Found on the parameter server" in line]
+        return "\n".join(lines)
+
+    def test_what_the_server_had_before_is_named_where_it_departs_from_the_shipped_files(self):
+        changes = {"telemetry/effort": "joint_torque", "motor/torqe_limit": 1.0}
+        files = configuration_files()[:-1]  # without the joint's own
+        named = "motor/torqe_limit = 1, telemetry/effort = 'joint_torque'. "
+        self.assertIn(f"other than as shipped: {named}", self.warning(files, changes))
+        self.assertIn("other than as shipped: motor/torqe_limit = 1. ",
+                      self.warning(files, changes, "_telemetry/effort:=joint_torque"))
+        self.assertEqual(self.warning(files, changes, "--params-cleared"), "")
+
+    def test_what_the_server_had_before_is_named_for_an_arm(self):
+        left = {"arm": "ur5", "input/mode": "commands", "telemetry/torque_per_current": 10.7}
+        self.assertIn("other than as shipped: arm = 'ur5', telemetry/torque_per_current = 10.7. ",
+                      self.warning([], left))
+        many = configuration_files("elbow", ["size_11.yaml"])
+        self.assertRegex(self.warning(many, left), "shipped: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")
 
     def test_a_publish_rate_that_does_not_divide_the_solver_rate_is_named(self):
         self.check_refusal({"publish/encoders_rate": 3000}, "publish.encoders_rate", "3000", "[Hz]", "10000")

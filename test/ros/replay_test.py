@@ -5,8 +5,6 @@ import glob
 import math
 import os
 import resource
-import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -18,7 +16,7 @@ import rospy
 import rostest
 from sensor_msgs.msg import JointState
 
-from ros_support import PACKAGE, PATIENCE, executable, package_path, wait_until
+from ros_support import LAUNCH_TIMEOUT, PACKAGE, PATIENCE, Launch, executable, package_path, wait_until
 
 JOINT = "elbow_joint"
 START = 1000.0      # first stamp [s]
@@ -27,7 +25,6 @@ INPUT_RATE = 125.0  # [Hz]
 INPUT_DELAY = 0.5     # [s]; long, so that no message is late on a busy machine: equality rests on that
 RATE = 1.0 / float(os.environ.get("HJT_PATIENCE", "1"))  # of the replay: the twin must keep up
 OUTPUTS = {"joint_states": 1000, "encoders": 1000, "contact_forces": 100, "health": 10}  # [Hz]
-LAUNCH_TIMEOUT = 4.0 * PATIENCE  # [s]
 
 
 def write_bag(path):
@@ -52,29 +49,6 @@ def messages_by_stamp(path, topic):
     return messages
 
 
-class Launch:
-    """roslaunch with a master of its own."""
-
-    def __init__(self, log_path, *arguments):
-        with socket.socket() as probe:
-            probe.bind(("localhost", 0))
-            port = probe.getsockname()[1]
-        environment = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}")
-        self.log_path = log_path
-        with open(log_path, "w") as log:
-            self.process = subprocess.Popen(["roslaunch", "-p", str(port), PACKAGE, *arguments], stdout=log,
-                                            stderr=subprocess.STDOUT, env=environment)
-
-    def log(self):
-        with open(self.log_path) as log:
-            return log.read()
-
-    def kill(self):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
-            self.process.wait(timeout=LAUNCH_TIMEOUT)
-
-
 class Replay(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -89,7 +63,7 @@ class Replay(unittest.TestCase):
     def launch(self):
         launch = Launch(self.path("launch.log"), "replay.launch", f"bag:={self.recording}", f"out:={self.live}",
                         f"input_delay:={INPUT_DELAY}", f"rate:={RATE}")
-        self.addCleanup(launch.kill)
+        self.addCleanup(launch.interrupt)
         return launch
 
     def replay_offline(self):
@@ -139,8 +113,7 @@ class Replay(unittest.TestCase):
         wait_until(lambda: os.path.getsize(active) > 100000 or launch.process.poll() is not None, "messages",
                    LAUNCH_TIMEOUT)
         self.assertIsNone(launch.process.poll(), launch.log())
-        launch.process.send_signal(signal.SIGINT)
-        launch.process.wait(timeout=LAUNCH_TIMEOUT)
+        launch.interrupt()
         self.assertEqual(glob.glob(self.path("*.active")), [])
         self.assertGreater(len(messages_by_stamp(self.live, "/joint_twin/joint_states")), 0)
 

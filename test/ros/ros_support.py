@@ -4,6 +4,8 @@ clock and generous, conditions are polled: a busy machine makes these tests slow
 import glob
 import os
 import re
+import signal
+import socket
 import subprocess
 import threading
 import time
@@ -22,6 +24,7 @@ PACKAGE = "harmonic_joint_twin"
 PATIENCE = 30.0 * float(os.environ.get("HJT_PATIENCE", "1"))  # [s]
 # Skipped tests with their reasons: rosunit's results have no word of them. They go where the tests' own output goes.
 unittest.TestResult.addSkip = lambda result, test, reason: print(f"skipped: {reason}")
+LAUNCH_TIMEOUT = 4.0 * PATIENCE  # [s]
 OK, WARN, ERROR, STALE = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
 
@@ -200,3 +203,32 @@ class Node:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+class Launch:
+    """roslaunch with the master on `port`; with none there it starts one of its own."""
+
+    def __init__(self, log_path, *arguments, port=None, **environment):
+        port = port or free_port()
+        environment = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", **environment)
+        self.log_path = log_path
+        self.master = rosgraph.Master("/test", environment["ROS_MASTER_URI"])
+        with open(log_path, "w", encoding="utf-8") as log:
+            self.process = subprocess.Popen(["roslaunch", "-p", str(port), PACKAGE, *arguments], stdout=log,
+                                            stderr=subprocess.STDOUT, env=environment)
+
+    def log(self):
+        with open(self.log_path, encoding="utf-8") as log:
+            return log.read()
+
+    def interrupt(self):
+        """As Ctrl-C does."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            self.process.wait(timeout=LAUNCH_TIMEOUT)

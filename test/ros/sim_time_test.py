@@ -14,6 +14,7 @@ from ros_support import PACKAGE, WARN, Diagnostics, Listener, wait_until
 
 NODE = "/joint_twin"
 WAITING_NODE = "/waiting_twin"
+MEASURED_NODE = "/measured_twin"
 JOINT = "elbow_joint"
 MILLISECOND = 1_000_000    # [ns]
 SECOND = 1000 * MILLISECOND
@@ -34,6 +35,7 @@ class SimTime(unittest.TestCase):
         cls.log = Listener("/rosout", Log)
         cls.diagnostics = Diagnostics(NODE)
         cls.waiting_diagnostics = Diagnostics(WAITING_NODE)
+        cls.measured_diagnostics = Diagnostics(MEASURED_NODE)
         wait_until(lambda: {NODE, WAITING_NODE} <= {c.endpoint_id for c in cls.clock.impl.connections},
                    "the twins to hear the clock")
         wait_until(lambda: cls.command.get_num_connections() > 0, "the twin")
@@ -72,6 +74,10 @@ class SimTime(unittest.TestCase):
         self.assertEqual(self.states.messages(), [])
         self.assertEqual(self.diagnostics.level("Timing"), WARN)
         self.assertIn("No time on /clock", self.diagnostics.statuses("Timing")[-1].message)
+        wait_until(lambda: self.measured_diagnostics.level("Input") is not None, "the twin beside a robot")
+        self.assertIn("No time on /clock", self.measured_diagnostics.statuses("Input")[-1].message)
+        wait_until(lambda: sorted(log.name for log in self.log.messages() if "/use_sim_time is true" in log.msg)
+                   == sorted([NODE, WAITING_NODE, MEASURED_NODE]), "a line of each node")
 
     def test_2_the_twin_visits_every_instant_of_the_clock_and_stands_with_it(self):
         self.run_clock(100 * SECOND, 100 * SECOND + 500 * MILLISECOND)

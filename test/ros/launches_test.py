@@ -1,0 +1,132 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A master stays up while launches come and go: each starts there as on a new master, whatever ran before."""
+import glob
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosgraph
+import rostest
+
+from ros_support import LAUNCH_TIMEOUT, PACKAGE, Launch, free_port, package_path, wait_until
+
+RECORDED = 10000  # of a bag that is being written: more than its head, so the clock runs [bytes]
+# What a launch file needs; the topics that its nodes publish or hear once they are up; the bag that it writes.
+ARGUMENTS = {"view": ["rviz:=false"],
+             "replay": ["bag:={folder}/played.bag", "out:={folder}/replay.bag", "force:=true", "joint:=base",
+                        "connect_time:=0.5"],
+             "demo": ["profile:={folder}/profile.bag", "out:={folder}/demo.bag"]}
+REPLAY = {("/joint_twin", "/joint_twin/health"), ("/replay_player", "/clock"), ("/replay_recorder", "/diagnostics")}
+UP = {"twin": {("/joint_twin", "/joint_twin/health")},
+      "arm": {("/joint_twin", "/wrist_3/joint_twin/comparison"), ("/joint_twin", "/joint_states")},
+      "view": {("/joint_twin", "/joint_twin/health"), ("/drive_markers", "/drive_markers/markers")},
+      "aggregator": {("/diagnostic_aggregator", "/diagnostics_agg")}, "replay": REPLAY, "demo": REPLAY}
+WRITTEN = {"replay": "replay.bag.active", "demo": "demo.bag.active"}
+# As other arguments, or other programs of the same names, may have left it.
+LEFT = {"/joint_twin/telemetry/effort": "joint_torque", "/joint_twin/diagnostic_period": 60.0,
+        "/wrist_1/joint_twin/telemetry/torque_per_current": 10.7, "/drive_markers/twin_of": "old",
+        "/diagnostic_aggregator/analyzers/motors": {"type": "diagnostic_aggregator/GenericAnalyzer", "path": "Motors"}}
+OF_ROS = {"rosdistro", "roslaunch", "rosversion", "run_id"}
+
+
+def each_pair_in_a_row(names):
+    """The shortest row of names in which every name follows every name, itself too, once."""
+    row = []
+    for i, name in enumerate(names):
+        row += [name] + [each for other in names[i + 1:] for each in (name, other)]
+    return row + names[:1]
+
+
+def connections(master):
+    """Pairs of node and topic."""
+    published, subscribed, _ = master.getSystemState()
+    return {(node, topic) for topic, nodes in published + subscribed for node in nodes}
+
+
+class Launches(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        subprocess.run([package_path("scripts", "demo_profile.py"), cls.path("played.bag")], check=True)
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    def size(self, name):
+        return os.path.getsize(self.path(name)) if os.path.exists(self.path(name)) else 0
+
+    def visit(self, name, port=None):
+        """Starts a launch file and ends it. What was in force: parameters on the server, gears and gains that the node
+        of an arm tells, and the nodes on /clock."""
+        launch = Launch(self.path("launch.log"), f"{name}.launch",
+                        *(argument.format(folder=self.folder) for argument in ARGUMENTS.get(name, [])), port=port,
+                        ROS_LOG_DIR=self.path("log"))
+        state = set()
+
+        def is_up():
+            self.assertIsNone(launch.process.poll(), launch.log())
+            try:
+                state.update(connections(launch.master))
+            except OSError:  # a new master
+                pass
+            return UP[name] <= state and (name not in WRITTEN or self.size(WRITTEN[name]) > RECORDED)
+
+        try:
+            wait_until(is_up, f"{name}.launch", LAUNCH_TIMEOUT)
+            parameters = launch.master.getParam("/")
+        finally:
+            launch.interrupt()
+        if port:
+            wait_until(lambda: not UP[name] & connections(launch.master), f"the nodes of {name}.launch to leave")
+        log = launch.log()
+        self.assertNotIn("Found on the parameter server", log)
+        self.assertNotIn("FATAL", log)
+        return ({key: value for key, value in parameters.items() if key not in OF_ROS},
+                re.findall(r"\w+ is \w+: .* degC", log), {node for node, topic in state if topic == "/clock"})
+
+    def start_master(self):
+        port = free_port()
+        core = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
+        self.addCleanup(core.wait)
+        self.addCleanup(core.terminate)
+        master = rosgraph.Master("/test", f"http://localhost:{port}")
+        wait_until(master.is_online, "the master", LAUNCH_TIMEOUT)
+        return port, master
+
+    def test_each_starts_after_each_as_on_a_new_master(self):
+        files = glob.glob(package_path("launch", "*.launch"))
+        names = sorted(os.path.splitext(os.path.basename(file))[0] for file in files)
+        clean = {name: self.visit(name) for name in names}
+        port, master = self.start_master()
+        before = "nothing"
+        for name in each_pair_in_a_row(names):
+            for key, value in LEFT.items():
+                master.setParam(key, value)
+            expected, expected_told, expected_clock = clean[name]
+            parameters, told, clock = self.visit(name, port)
+            place = f"{name}.launch after {before}.launch"
+            self.assertNotIn("use_sim_time", parameters, place)
+            self.assertEqual({key: parameters.get(key) for key in expected}, expected, place)
+            self.assertEqual(told, expected_told, place)
+            self.assertEqual(clock, expected_clock, place)
+            before = name
+
+    def test_a_simulation_keeps_its_clock(self):
+        port, master = self.start_master()
+        master.setParam("/use_sim_time", True)
+        parameters, _, clock = self.visit("twin", port)
+        self.assertTrue(parameters["use_sim_time"])
+        self.assertEqual(clock, {"/joint_twin"})
+        self.visit("replay", port)
+        self.assertTrue(master.getParam("/use_sim_time"))
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "launches", Launches, sys.argv)
