@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "apps/common/text_table.hpp"
 
 #include "base/number_text.hpp"
+#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -94,7 +94,7 @@ void write(const GearOptions& options, const GearDesign& design, const Parameter
     sections[parameter.key.substr(0, parameter.key.find('.'))].push_back(parameter);
   }
   const auto texts = meanings(parameters);
-  std::ostringstream file;
+  TextStream file;
   file << "# Overlay: " << title
        << ".\n# Made by joint_twin gear. Motor, brake, load, heat and sensors are those of the joint: "
           "motor, brake,\n# output.*_inertia, output.torque_limit, thermal and sensors are left as configured.\n";
