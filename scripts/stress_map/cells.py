@@ -49,7 +49,7 @@ def scaled(factor, by):
         return tuple(by * v for v in value) if isinstance(value, tuple) else by * value
 
     changes = {key: times(SHIPPED[key]) for key in FACTORS[factor]}
-    return changes | {"contact.support": "springs"} if "contact.stiffness" in changes else changes
+    return {**changes, "contact.support": "springs"} if "contact.stiffness" in changes else changes
 
 
 def load_steps(load):
@@ -163,7 +163,7 @@ def odd():
     yield Cell("edge", ("at rest",), drive=REST)
     yield Cell("edge", ("circular spline free: w0 = 0, no load",), free, REST)
     yield Cell("edge", ("circular spline free: no teeth, no load",), {"mesh.stiffness": 0.0}, REST)
-    yield Cell("edge", ("circular spline free: no teeth, motor turns",), at_speed(3030) | {"mesh.stiffness": 0.0},
+    yield Cell("edge", ("circular spline free: no teeth, motor turns",), {**at_speed(3030), "mesh.stiffness": 0.0},
                reversal(12.0))
     yield Cell("edge", ("output locked",), {"output.load_inertia": 1e4}, reversal(2.87))
     yield Cell("edge", ("output of 3e-4 kg.m^2",), {"output.load_inertia": 0.0})
@@ -174,13 +174,11 @@ def odd():
     yield Cell("edge", ("denormal load",), drive=load_steps(tiny))
     yield Cell("edge", ("denormal stiffness of the mesh",), {"mesh.stiffness": tiny})
     yield Cell("edge", ("denormal damping and friction",),
-               {key: tiny for key in FACTORS["damping"]} | {"motor.coulomb_torque": tiny, "cup.friction_torque": tiny,
-                                                            "mesh.friction_static": tiny,
-                                                            "mesh.friction_kinetic": tiny})
+               {**{key: tiny for key in FACTORS["damping"]}, "motor.coulomb_torque": tiny, "cup.friction_torque": tiny,
+                "mesh.friction_static": tiny, "mesh.friction_kinetic": tiny})
     yield Cell("edge", ("no friction at all",),
-               {key: 0.0 for key in FACTORS["damping"]} | {"motor.coulomb_torque": 0.0, "cup.friction_torque": 0.0,
-                                                           "mesh.friction_static": 0.0, "mesh.friction_kinetic": 0.0,
-                                                           "contact.friction_coefficient": 0.0})
+               {**{key: 0.0 for key in FACTORS["damping"]}, "motor.coulomb_torque": 0.0, "cup.friction_torque": 0.0,
+                "mesh.friction_static": 0.0, "mesh.friction_kinetic": 0.0, "contact.friction_coefficient": 0.0})
     yield Cell("edge", ("no bending stiffness",), {"ring.bending_stiffness": 0.0})
     yield Cell("edge", ("bending 300 N.m/rad, w0 0.089 mm: near lift-off",),
                {"ring.bending_stiffness": 300.0, "gear.wave_amplitude": 0.089e-3})

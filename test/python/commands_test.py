@@ -139,8 +139,8 @@ class Commands(Recordings):
 
     def test_checkup_writes_its_motion(self):
         found = hjt.checkup("ur10e", "motion.csv", joint="wrist_1")
-        self.assertEqual(found, self.tool("checkup", "--arm", "ur10e", "--out", "other.csv", "--joint", "wrist_1")
-                         | {"output": "motion.csv"})
+        expected = self.tool("checkup", "--arm", "ur10e", "--out", "other.csv", "--joint", "wrist_1")
+        self.assertEqual(found, {**expected, "output": "motion.csv"})
         with open("motion.csv", "rb") as mine, open("other.csv", "rb") as other:
             self.assertEqual(mine.read(), other.read())
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/common/ordered_json.hpp"
 #include "apps/common/text_table.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -16,7 +15,7 @@ namespace hjt
 /// Into the library's own value.
 struct JsonWriter
 {
-  using Library = nlohmann::ordered_json;
+  using Library = OrderedJson;
 
   static Library convert(const Json& json)
   {

@@ -63,7 +63,7 @@ void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
   last_ = twin.stamp();
 }
 
-void BagRunFile::finish(const nlohmann::ordered_json& record)
+void BagRunFile::finish(const OrderedJson& record)
 {
   std_msgs::String message;
   message.data = record.dump();

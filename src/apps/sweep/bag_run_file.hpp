@@ -20,7 +20,7 @@ public:
   ~BagRunFile() override;
 
   void record(Twin& twin, const DutyFeeder& feeder) override;
-  void finish(const nlohmann::ordered_json& record) override;
+  void finish(const OrderedJson& record) override;
 
   static std::string readRecord(const std::string& path);  ///< empty if there is none
 

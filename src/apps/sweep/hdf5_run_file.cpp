@@ -346,7 +346,7 @@ void Hdf5RunFile::writeIndicators()
   }
 }
 
-void Hdf5RunFile::finish(const nlohmann::ordered_json& record)
+void Hdf5RunFile::finish(const OrderedJson& record)
 {
   for (Group& group : groups_)
   {

@@ -41,7 +41,7 @@ public:
   ~Hdf5RunFile() override;
 
   void record(Twin& twin, const DutyFeeder& feeder) override;
-  void finish(const nlohmann::ordered_json& record) override;
+  void finish(const OrderedJson& record) override;
 
   static std::string readRecord(const std::string& path);  ///< empty if there is none
   static Columns readColumns(const std::string& path, const std::vector<std::string>& holding);

@@ -173,9 +173,9 @@ Lives::Labels Lives::labelsAt(std::uint64_t check_up) const
   return labels;
 }
 
-nlohmann::ordered_json Lives::duties() const
+OrderedJson Lives::duties() const
 {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  OrderedJson json = OrderedJson::object();
   for (const auto& [name, duty] : duties_)
   {
     for (const DutyPhase& phase : duty.phases)

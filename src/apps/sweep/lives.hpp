@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/common/ordered_json.hpp"
 #include "apps/sweep/plan_node.hpp"
 
 #include "life/drive_ageing.hpp"
@@ -39,7 +38,7 @@ public:
   static std::vector<std::string> labelNames();
 
   /// The duty cycles, for the plan's document.
-  nlohmann::ordered_json duties() const;
+  OrderedJson duties() const;
 
 private:
   struct Drive

@@ -88,14 +88,13 @@ void visitTables(const PlanNode& node, const Visitor& visit)
   }
 }
 
-nlohmann::ordered_json jsonOf(const PlanNode& node)
+OrderedJson jsonOf(const PlanNode& node)
 {
   if (node.kind == Kind::SCALAR)
   {
     return jsonOf(node.scalar);
   }
-  nlohmann::ordered_json json =
-      node.kind == Kind::MAP ? nlohmann::ordered_json::object() : nlohmann::ordered_json::array();
+  OrderedJson json = node.kind == Kind::MAP ? OrderedJson::object() : OrderedJson::array();
   for (const auto& [key, below] : node.entries)
   {
     if (node.kind == Kind::MAP)
@@ -111,9 +110,9 @@ nlohmann::ordered_json jsonOf(const PlanNode& node)
 }
 }  // namespace
 
-nlohmann::ordered_json jsonOf(const ParameterValue& value)
+OrderedJson jsonOf(const ParameterValue& value)
 {
-  return std::visit([](const auto& content) { return nlohmann::ordered_json(content); }, value.value);
+  return std::visit([](const auto& content) { return OrderedJson(content); }, value.value);
 }
 
 std::vector<std::string> Plan::overlays(const std::string& path)
@@ -454,9 +453,9 @@ std::vector<std::string> Plan::variableNames() const
   return names;
 }
 
-nlohmann::ordered_json Plan::snapshot() const
+OrderedJson Plan::snapshot() const
 {
-  nlohmann::ordered_json tables = nlohmann::ordered_json::object();
+  OrderedJson tables = OrderedJson::object();
   for (const auto& [path, rows] : tables_)
   {
     tables[path] = *rows;
@@ -465,7 +464,7 @@ nlohmann::ordered_json Plan::snapshot() const
   {
     tables["lives"] = lives_->duties();
   }
-  nlohmann::ordered_json base = nlohmann::ordered_json::object();
+  OrderedJson base = OrderedJson::object();
   for (const auto& [key, value] : base_)
   {
     base[key] = jsonOf(value);

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/common/ordered_json.hpp"
 #include "apps/sweep/lives.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
@@ -22,7 +21,7 @@
 
 namespace hjt
 {
-nlohmann::ordered_json jsonOf(const ParameterValue& value);
+OrderedJson jsonOf(const ParameterValue& value);
 
 /// One run of a plan, with nothing left open.
 struct RunSpec
@@ -81,7 +80,7 @@ public:
   std::vector<std::string> variableNames() const;
 
   /// Everything the runs depend on, as one document.
-  nlohmann::ordered_json snapshot() const;
+  OrderedJson snapshot() const;
 
 private:
   void collect(const PlanNode& node, std::vector<const Variable*>& into);

@@ -23,14 +23,14 @@ const char* runFileExtension(RunFormat format)
   return format == RunFormat::BAG ? ".bag" : ".h5";
 }
 
-nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path)
+OrderedJson readRunRecord(RunFormat format, const std::string& path)
 {
   if (!std::filesystem::exists(path))
   {
     return nullptr;
   }
   const std::string text = format == RunFormat::BAG ? BagRunFile::readRecord(path) : Hdf5RunFile::readRecord(path);
-  return nlohmann::ordered_json::parse(text, nullptr, false);
+  return OrderedJson::parse(text, nullptr, false);
 }
 
 Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding)

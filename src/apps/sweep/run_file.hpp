@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/common/ordered_json.hpp"
 #include "apps/sweep/plan.hpp"
 #include "apps/sweep/run_duty.hpp"
 
@@ -24,7 +23,7 @@ public:
 
   /// Writes what is known only now, brings all to the disk and gives the file its name. `record`: the run's row of the
   /// index. @throws InputError.
-  virtual void finish(const nlohmann::ordered_json& record) = 0;
+  virtual void finish(const OrderedJson& record) = 0;
 };
 
 /// `twin`: none if the run has none; then only the record is written. @throws InputError.
@@ -35,7 +34,7 @@ std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& 
 const char* runFileExtension(RunFormat format);
 
 /// The record of a finished run; none if there is no readable file.
-nlohmann::ordered_json readRunRecord(RunFormat format, const std::string& path);
+OrderedJson readRunRecord(RunFormat format, const std::string& path);
 
 /// Numbers by the name of their column, one a row each.
 using Columns = std::map<std::string, std::vector<double>>;

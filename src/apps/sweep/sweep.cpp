@@ -23,7 +23,7 @@ namespace hjt
 {
 namespace
 {
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// The run through to its end, into its file.
 class RunSimulation

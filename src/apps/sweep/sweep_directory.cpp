@@ -29,7 +29,7 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// Version and hash of the code: runs made by another code are not added to.
 std::string softwareVersion()

@@ -5,8 +5,7 @@
 #include <map>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/common/ordered_json.hpp"
 #include "apps/sweep/plan.hpp"
 
 namespace hjt
@@ -29,16 +28,16 @@ public:
   /// Whether the run's file is there, readable and, if the index was written since, has the index's hash.
   bool isFinished(std::uint64_t run);
 
-  std::string runFile(std::uint64_t run) const;            ///< whole path
-  std::string runFileName(std::uint64_t run) const;        ///< from the directory on
-  nlohmann::ordered_json record(std::uint64_t run) const;  ///< none if the run is not finished
+  std::string runFile(std::uint64_t run) const;      ///< whole path
+  std::string runFileName(std::uint64_t run) const;  ///< from the directory on
+  OrderedJson record(std::uint64_t run) const;       ///< none if the run is not finished
 
   /// Writes index.csv from the runs' files.
   void writeIndex();
 
   /// One line of the index: of a finished run from its record, else with the status given. Without line end.
   std::string indexHeader() const;
-  std::string indexRow(const nlohmann::ordered_json& record) const;
+  std::string indexRow(const OrderedJson& record) const;
 
 private:
   std::uint64_t finishedRuns() const;
@@ -50,5 +49,5 @@ private:
 };
 
 /// What the index says of a run before it has run: labels, variables, seeds.
-nlohmann::ordered_json recordOf(const RunSpec& spec, const std::string& file);
+OrderedJson recordOf(const RunSpec& spec, const std::string& file);
 }  // namespace hjt

@@ -55,7 +55,7 @@ void printList(const Plan& plan, const SweepArguments& arguments)
   std::cout << directory.indexHeader() << '\n';
   for (std::uint64_t run = arguments.shard; run < plan.runs(); run += arguments.shards)
   {
-    nlohmann::ordered_json record = directory.record(run);
+    OrderedJson record = directory.record(run);
     if (!record.is_object())
     {
       record = recordOf(plan.run(run), directory.runFileName(run));
