@@ -471,7 +471,7 @@ TEST(JointEvidence, TellsTheLoadsOfTheMotion)
   {
     MotionSample sample;
     sample.time = PERIOD * i;
-    sample.load = i % 20 == 0 ? 60.0 : i % 2 == 0 ? 12.0 : -8.0;
+    sample.load = i % 20 == 0 ? 60.0 : i % 3 == 0 ? 12.0 : -8.0;
     evidence.update(sample);
   }
   EXPECT_EQ(evidence.reach().least_load, -8.0);
