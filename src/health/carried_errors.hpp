@@ -13,7 +13,7 @@ namespace hjt
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
-  double share{};            ///< of what the drive differs from the model by, of a line all of its signal [-]
+  double share{};            ///< of what drive and model differ by, of a line all of its signal [-]
   double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]
 };
 
