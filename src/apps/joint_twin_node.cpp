@@ -17,7 +17,7 @@
 namespace
 {
 /// Wait for the first time on /clock before it is missed [s].
-constexpr double CLOCK_PATIENCE = 5.0;
+constexpr double CLOCK_PATIENCE = 10.0;
 
 void warnOfParameters(const hjt::FoundParameters& found, const std::string& name,
                       const std::vector<hjt::ParameterMap>& shipped)

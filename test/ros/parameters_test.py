@@ -145,9 +145,9 @@ class Parameters(unittest.TestCase):
     def test_what_the_server_had_before_is_named_where_it_departs_from_the_shipped_files(self):
         changes = {"telemetry/effort": "joint_torque", "motor/torqe_limit": 1.0}
         files = configuration_files()[:-1]  # without the joint's own
-        named = "motor/torqe_limit = 1, telemetry/effort = 'joint_torque'. "
+        named = "motor/torqe_limit = 1.0, telemetry/effort = 'joint_torque'. "
         self.assertIn(f"other than as shipped: {named}", self.warning(files, changes))
-        self.assertIn("other than as shipped: motor/torqe_limit = 1. ",
+        self.assertIn("other than as shipped: motor/torqe_limit = 1.0. ",
                       self.warning(files, changes, "_telemetry/effort:=joint_torque"))
         self.assertEqual(self.warning(files, changes, "--params-cleared"), "")
 
