@@ -8,7 +8,7 @@ import numpy
 import yaml
 
 import health_source
-from health_runs import CARRIED, CARRIED_MOTIONS, CARRIED_RUNS, CARRIED_SEED, CHECK_UP, DRAWN, MODELS, at_work
+from health_runs import CARRIED, CARRIED_MOTIONS, CARRIED_RUNS, CARRIED_SEED, CHECK_UP, COMPARED, DRAWN, MODELS, at_work
 
 UNKNOWN = 1e30  # deviation of what no motion determined, as in the source
 SHARES = numpy.concatenate([[0.0], numpy.geomspace(1e-3, 1e3, 121)])  # tried, of the deviation at the median size
@@ -40,7 +40,7 @@ def pair_of(bench, gear, motion, model):
     models = bench.beside(model, bags, motion, DRAWN, CARRIED_SEED, paths=CARRIED_RUNS)
     report = bench.indicators(bags, ["--baseline", reference, "--carry"], models)
     last = {window["recording"]: window["residual"] for window in report["windows"]
-            if window["assessment"]["state"] == "assessed"}
+            if window["assessment"]["state"] in COMPARED}
     squares = {name: [residual[name][1] ** 2 for residual in last.values() if residual[name]]
                for name in report["windows"][0]["residual"]}
     return Pair({name: numpy.mean(own) if own else None for name, own in squares.items()}, sizes_of(reference))

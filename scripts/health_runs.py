@@ -22,6 +22,7 @@ ACCELERATION = 300.0      # of a motion at work [deg/s^2]
 # `steady`: speed of a turn under a constant load, without weight [deg/s].
 # `windows`: of a run. A run of one window begins with the motion, a longer one is of work that goes on: pauses,
 # angles and first move are drawn at random.
+COMPARED = ("assessed", "too few windows")  # states of a window that was compared with the reference
 Motion = collections.namedtuple("Motion", "name tag window payload moves steady windows", defaults=[None, None, 1])
 CHECK_UP = Motion("check-up", "check_up", 29.0, False)
 
@@ -310,7 +311,7 @@ class Bench:
         windows = collections.defaultdict(list)
         for window in report["windows"]:
             verdict = window["assessment"]
-            if verdict["state"] == "assessed":
+            if verdict["state"] in COMPARED:
                 windows[window["recording"]].append(Window(window["averaged"], *(verdict[key] for key in (
                     "largest_score", "level", "cause", "confidence", "alternatives", "severity",
                     "severity_deviation"))))

@@ -10,7 +10,7 @@ import numpy
 
 import health_source
 import page_section
-from health_runs import CALIBRATED, DRAWN, FITTED, once, split_table
+from health_runs import CALIBRATED, COMPARED, DRAWN, FITTED, once, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
 # Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
@@ -199,7 +199,7 @@ class Hypotheses:
 
 
 def calibration_windows(bench):
-    """(kind, severity, last assessed window as the tool reports it) of faulty runs of other gears."""
+    """(kind, severity, last compared window as the tool reports it) of faulty runs of other gears."""
     found = []
     for trial in CALIBRATED:
         for motion in trial.motions:
@@ -207,7 +207,7 @@ def calibration_windows(bench):
             report = bench.indicators(bags,
                                       ["--baseline", bench.reference(trial.gear, motion), *once(motion)])
             last = {window["recording"]: window for window in report["windows"]
-                    if window["assessment"]["state"] == "assessed"}
+                    if window["assessment"]["state"] in COMPARED}
             found += [(row["class"], float(row["fault_severity"]), last[str(bag)]) for bag, row in bags
                       if str(bag) in last]
     return found

@@ -26,4 +26,20 @@ inline std::size_t editDistance(const std::string& from, const std::string& to)
   }
   return row.back();
 }
+
+/// " (did you mean speed?)" with the name that is nearest to an unknown one; nothing if none is near.
+inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
+{
+  std::string nearest;
+  std::size_t distance = std::max<std::size_t>(2, unknown.size() / 3) + 1;
+  for (const std::string& name : known)
+  {
+    if (const std::size_t edits = editDistance(unknown, name); edits < distance)
+    {
+      distance = edits;
+      nearest = name;
+    }
+  }
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
 }  // namespace hjt

@@ -19,6 +19,29 @@ const char* levelName(HealthLevel level) noexcept
   return NAMES[static_cast<std::size_t>(level)];
 }
 
+std::string whyNotJudged(const Assessment& assessment)
+{
+  const std::string here = std::to_string(assessment.windows_here);
+  const std::string needed = std::to_string(assessment.windows_needed);
+  switch (assessment.state)
+  {
+    case AssessmentState::WAITING:
+      return "no window of the indicators is complete yet";
+    case AssessmentState::LEARNING:
+      return "the healthy reference is being learned: it has " + here + " of " + needed +
+             " windows at this operating point";
+    case AssessmentState::NO_REFERENCE:
+      return assessment.windows_here == 0 ?
+                 "no healthy reference for this operating point" :
+                 "the healthy reference needs " + needed + " windows at this operating point, has " + here;
+    case AssessmentState::TOO_FEW_WINDOWS:
+      return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
+    case AssessmentState::ASSESSED:
+      break;
+  }
+  return {};
+}
+
 Assessor::Assessor(const Parameters& parameters)
   : least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
   , error_factor_(parameters.indicators.error_factor)
@@ -58,21 +81,16 @@ void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators*
 {
   assessment_.stamp = indicators.stamp;
   assessment_.windows = indicators.windows;
-  switch (baseline_.update(indicators, model, deviations_))
+  const BaselineState compared = baseline_.update(indicators, model, deviations_);
+  if (compared != BaselineState::COMPARED)
   {
-    case BaselineState::LEARNING:
-      assessment_.state = AssessmentState::LEARNING;
-      return;
-    case BaselineState::NO_REFERENCE:
-      assessment_.state = AssessmentState::NO_REFERENCE;
-      return;
-    case BaselineState::COMPARED:
-      break;
+    setState(compared);
+    return;
   }
-  assessment_.state = AssessmentState::ASSESSED;
   const FeatureScores scores = featureScores(deviations_);
   assessment_.shows_play = scores[static_cast<std::size_t>(Feature::LOST_MOTION)].compared;
   updateLevel(levelOf(scores));
+  setState(compared);
   if (assessment_.level == HealthLevel::OK)
   {
     assessment_.cause = Cause::NONE;
@@ -100,6 +118,21 @@ void Assessor::search(std::size_t signatures) noexcept
     explain(cause_search_.posterior());
     settled_ = assessment_;
   }
+}
+
+void Assessor::setState(BaselineState compared) noexcept
+{
+  assessment_.windows_here = baseline_.windowsHere();
+  assessment_.windows_needed = baseline_.windowsNeeded();
+  if (compared == BaselineState::COMPARED)
+  {
+    assessment_.windows_needed = 2 * least_windows_ - 1;  // so many means of so many windows
+    const bool is_verdict =
+        assessment_.level != HealthLevel::OK || assessment_.windows_here >= assessment_.windows_needed;
+    assessment_.state = is_verdict ? AssessmentState::ASSESSED : AssessmentState::TOO_FEW_WINDOWS;
+    return;
+  }
+  assessment_.state = compared == BaselineState::LEARNING ? AssessmentState::LEARNING : AssessmentState::NO_REFERENCE;
 }
 
 HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept

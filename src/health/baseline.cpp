@@ -22,11 +22,10 @@ constexpr double LOAD_STEP = 0.375;           // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;     // [K]
 constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
 constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
-constexpr int MIN_COUNT = 8;        // windows before a spread means anything; as least of indicators.baseline_windows
-constexpr std::size_t TRIMMED = 5;  // one of so many is left out at either end
-constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
-constexpr double CARRIED_WINDOWS = 10.0;  // of the means that CarriedError is fitted to
-constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
+constexpr std::size_t TRIMMED = 5;            // one of so many is left out at either end
+constexpr std::size_t LEAST_WINDOWS = 3;      // of which one can be left out at either end
+constexpr double CARRIED_WINDOWS = 10.0;      // of the means that CarriedError is fitted to
+constexpr std::size_t JUMPS = 2;  // no scatter: the onset of a fault, and the newest window beside the oldest
 
 int stepOf(double value, double step) noexcept
 {
@@ -206,8 +205,7 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   {
     return nullptr;
   }
-  bins_.emplace_back();
-  bins_.back().bin = bin;
+  bins_.emplace_back().bin = bin;
   return &bins_.back();
 }
 
@@ -232,14 +230,15 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   residual_ = {};
   const OperatingBin own = binOf(indicators.point, load_step_);
   ReferenceBin* bin = carried_ ? findCarried(own) : find(own);
-  if (bin == nullptr || (given_ && bin->windows < MIN_COUNT))
+  windows_here_ = bin != nullptr ? bin->windows : 0;
+  if (bin == nullptr || (given_ && windows_here_ < MIN_WINDOWS))
   {
     return BaselineState::NO_REFERENCE;
   }
   if (!given_ && bin->windows < windows_)
   {
     learnWindow(*bin, indicators, placeIn(bin->bin, indicators.point, load_step_));
-    if (bin->windows == windows_)
+    if (++windows_here_ == windows_)
     {
       fitReference(*bin, bins_, fit_room_);
     }
@@ -250,9 +249,9 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   const std::size_t first = index * evidence_windows_;
   take(*bin, indicators, model, compared_[first + recent.next]);
   recent.next = (recent.next + 1) % evidence_windows_;
-  recent.count = std::min(recent.count + 1, evidence_windows_);
+  windows_here_ = static_cast<int>(++recent.count);
   bin_ = bin->bin;
-  compare(*bin, first, recent.count, deviations);
+  compare(*bin, first, std::min(recent.count, evidence_windows_), deviations);
   return BaselineState::COMPARED;
 }
 
@@ -295,8 +294,9 @@ void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators,
     const Reference& reference = bin.references[i];
     window.difference[i] = std::numeric_limits<double>::quiet_NaN();
     expected_[i] = reference.mean + place.dot(mapped(reference.slopes));
-    residual_.sound[i] = reference.count < MIN_COUNT ? 0.0 : expected_[i] + (model != nullptr ? model->values[i] : 0.0);
-    if (reference.count < MIN_COUNT || !std::isfinite(indicators.values[i]))
+    residual_.sound[i] =
+        reference.count < MIN_WINDOWS ? 0.0 : expected_[i] + (model != nullptr ? model->values[i] : 0.0);
+    if (reference.count < MIN_WINDOWS || !std::isfinite(indicators.values[i]))
     {
       continue;
     }

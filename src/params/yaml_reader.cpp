@@ -266,6 +266,29 @@ ParameterValue parseScalar(const std::string& text, bool quoted, const std::stri
   return { quoted ? Value(text) : plainValue(text, origin, key), origin };
 }
 
+void readDescription(const std::string& text, const std::string& source, ParameterMap& map)
+{
+  eraseFaults(map);
+  try
+  {
+    const YAML::Node root = YAML::Load(text);
+    if (!root.IsMap())
+    {
+      fail(source, "expected a line `section.key: value` for each parameter");
+    }
+    for (const auto& entry : root)
+    {
+      const std::string origin = originOf(source, entry.first);
+      const std::string key = keyText(entry.first, origin);
+      map[key] = readValue(entry.second, origin, key);
+    }
+  }
+  catch (const YAML::Exception& error)
+  {
+    fail(source, error.what());
+  }
+}
+
 void readAssignment(const std::string& assignment, ParameterMap& map)
 {
   const std::string origin = "--set " + assignment;

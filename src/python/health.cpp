@@ -41,6 +41,8 @@ const char* assessmentStateName(AssessmentState state)
       return "ASSESSED";
     case AssessmentState::NO_REFERENCE:
       return "NO_REFERENCE";
+    case AssessmentState::TOO_FEW_WINDOWS:
+      return "TOO_FEW_WINDOWS";
   }
   return "WAITING";
 }
@@ -179,7 +181,11 @@ void bindIndicators(py::module& module)
       .def_readonly("windows", &Assessment::windows, "windows seen [-]")
       .def_property_readonly(
           "state", [](const Assessment& self) { return assessmentStateName(self.state); },
-          "'WAITING', 'LEARNING', 'ASSESSED' or 'NO_REFERENCE'")
+          "'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE' or 'TOO_FEW_WINDOWS': level 'OK' is a verdict in "
+          "'ASSESSED' only")
+      .def_readonly("windows_here", &Assessment::windows_here,
+                    "at the last operating point: in the reference if there is no more, else compared [-]")
+      .def_readonly("windows_needed", &Assessment::windows_needed, "of those, for a reference or a verdict [-]")
       .def_property_readonly(
           "level", [](const Assessment& self) { return levelName(self.level); }, "'OK', 'WARN' or 'ERROR'")
       .def_property_readonly(

@@ -314,6 +314,8 @@ void fillAssessment(Stamp stamp, const Assessment& assessment, harmonic_joint_tw
   message.window_end = toRosTime(assessment.stamp);
   message.windows = assessment.windows;
   message.state = static_cast<std::uint8_t>(assessment.state);
+  message.windows_here = static_cast<std::uint32_t>(assessment.windows_here);
+  message.windows_needed = static_cast<std::uint32_t>(assessment.windows_needed);
   message.level = static_cast<std::uint8_t>(assessment.level);
   message.cause.assign(causeName(assessment.cause));
   message.confidence = assessment.confidence;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/diagnostics.hpp"
 
+#include <cctype>
 #include <cmath>
 
 #include <ros/console.h>
@@ -43,9 +44,13 @@ std::string verdictText(const Assessment& assessment)
          << " %)";
     return text.str();
   }
-  constexpr std::array TEXTS{ "No window of the indicators is complete yet", "The healthy reference is being learned",
-                              "Nothing out of the ordinary", "No healthy reference for this operating point" };
-  return TEXTS[static_cast<std::size_t>(assessment.state)];
+  std::string text = whyNotJudged(assessment);
+  if (text.empty())
+  {
+    return "Nothing out of the ordinary";
+  }
+  text[0] = static_cast<char>(std::toupper(text[0]));
+  return text;
 }
 
 void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status)
@@ -62,6 +67,8 @@ void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status
   status.add("Evidence", evidence.data());
   status.add("Largest score over threshold [-]", assessment.largest_score);
   status.add("Windows", assessment.windows);
+  status.add("Windows at this operating point", assessment.windows_here);
+  status.add("Windows needed there", assessment.windows_needed);
   status.add("End of the last window [s]", toSeconds(assessment.stamp));
 }
 

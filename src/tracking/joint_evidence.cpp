@@ -27,6 +27,7 @@ void JointEvidence::Sums::reset() noexcept
   products.setZero();
   assessed = 0;
   worst.reset();
+  too_few.reset();
   votes.fill(0);
 }
 
@@ -161,6 +162,7 @@ bool JointEvidence::watchSignals(const MotionSample& sample) noexcept
                                     [](const Deviation& deviation) { return std::isfinite(deviation.score); });
   if (assessment.state != AssessmentState::ASSESSED || !compared)
   {
+    now_.too_few = assessment.state == AssessmentState::TOO_FEW_WINDOWS ? assessment : now_.too_few;
     return true;
   }
   ++now_.assessed;

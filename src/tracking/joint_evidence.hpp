@@ -115,10 +115,11 @@ public:
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return now_.assessed; }
-  /// The last window of those at the worst level; none: no window was compared with a reference.
+  /// The last window of those at the worst level; none: no window was judged.
   const std::optional<JudgedWindow>& worst() const { return now_.worst; }
-  double alarmTime() const { return now_.alarm_time; }  ///< when the level first left OK [s]
-  Cause cause() const;                                  ///< that most windows in alarm name
+  const std::optional<Assessment>& tooFew() const { return now_.too_few; }  ///< the last one of too few windows
+  double alarmTime() const { return now_.alarm_time; }                      ///< when the level first left OK [s]
+  Cause cause() const;                                                      ///< that most windows in alarm name
 
 private:
   /// What adds up over the rows.
@@ -137,6 +138,7 @@ private:
     Eigen::Matrix3d products{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
     std::uint64_t assessed{};
     std::optional<JudgedWindow> worst;
+    std::optional<Assessment> too_few;
     double alarm_time{};
     std::array<std::uint64_t, CAUSE_COUNT> votes{};
   };

@@ -264,11 +264,12 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context)
                                                            "recording";
   if (!evidence.worst())
   {
-    finding.text = evidence.baselineGiven() ?
-                       "No window of the recording is at an operating point that the reference knows." :
-                       "No reference was given, and the recording is too short to learn one (" +
-                           std::to_string(evidence.assessor().baseline().windowsNeeded()) +
-                           " windows at one operating point).";
+    finding.text = evidence.tooFew() ? sentence(whyNotJudged(*evidence.tooFew())) :
+                   evidence.baselineGiven() ?
+                                       "No window of the recording is at an operating point that the reference knows." :
+                                       "No reference was given, and the recording is too short to learn one (" +
+                                           std::to_string(evidence.assessor().baseline().windowsNeeded()) +
+                                           " windows at one operating point).";
     return finding;
   }
   const Assessment& assessment = evidence.worst()->assessment;

@@ -511,6 +511,9 @@ TEST(RemainingLife, TakesSilenceForLittleWear)
   const Assessment found = foundWear(0.3, 0.1);
   EXPECT_FALSE(supersedes(blind, silent));
   EXPECT_FALSE(supersedes({}, silent));
+  Assessment too_few;
+  too_few.state = AssessmentState::TOO_FEW_WINDOWS;
+  EXPECT_FALSE(supersedes(too_few, {}));
   EXPECT_TRUE(supersedes(silent, blind));
   EXPECT_TRUE(supersedes(blind, found));
   EXPECT_TRUE(supersedes(found, silent));

@@ -488,14 +488,40 @@ TEST(ParameterText, DescriptionReadsBackAsTheSameParameters)
   const Parameters parameters = parseParameters(defaultMap());
   const std::string described = describeParameters(parameters);
   ParameterMap map;
-  std::istringstream lines(described);
-  for (std::string line; std::getline(lines, line);)
-  {
-    const std::size_t colon = line.find(": ");
-    readAssignment(line.substr(0, colon) + "=" + line.substr(colon + 2), map);
-  }
+  readDescription(described, "a.h5", map);
   EXPECT_EQ(map.size(), allKeys().size());
   EXPECT_EQ(describeParameters(parseParameters(map)), described);
+}
+
+TEST(ParameterText, FaultsOfADescriptionReplaceThoseBefore)
+{
+  Parameters parameters = parseParameters(defaultMap());
+  parameters.faults = { { FaultKind::TOOTH_WEAR, 0.1, WHOLE_MEMBER, 0.0 }, { FaultKind::BEARING_BALL, 0.2, 3, 1.5 } };
+  ParameterMap map;
+  readDescription(describeParameters(parameters), "a.h5", map);
+  parameters.faults = { { FaultKind::PITTING, 0.5, 7, 0.0 } };
+  readDescription(describeParameters(parameters), "b.h5", map);
+  EXPECT_EQ(describeParameters(parseParameters(map)), describeParameters(parameters));
+}
+
+TEST(ParameterText, WrongLineOfADescriptionIsNamed)
+{
+  const auto said = [](const std::string& text)
+  {
+    try
+    {
+      ParameterMap map = defaultMap();
+      readDescription(text, "a.h5", map);
+      parseParameters(map);
+    }
+    catch (const ParameterError& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said("gear.teeth_flexspline: 200\nsolver.rate: fast  # [Hz]\n"), HasSubstr("a.h5:2"));
+  EXPECT_THAT(said("[1, 2]"), HasSubstr("a.h5: expected a line"));
 }
 
 TEST(ParameterText, DescriptionNumbersTheFaults)

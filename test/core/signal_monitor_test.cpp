@@ -555,6 +555,8 @@ protected:
 TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
 {
   EXPECT_EQ(windows(LEARNING).state, AssessmentState::LEARNING);
+  EXPECT_EQ(assessor_.assessment().windows_here, LEARNING);
+  windows(4);
   for (int i = 0; i < 30; ++i)
   {
     const Assessment& assessment = windows(1);
@@ -562,6 +564,43 @@ TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
     EXPECT_EQ(assessment.level, HealthLevel::OK);
     EXPECT_EQ(assessment.cause, Cause::NONE);
   }
+}
+
+TEST_F(Assessed, FewerWindowsThanAnotherLevelTakesAreNoVerdict)
+{
+  windows(LEARNING);
+  drag_ = 3.0;
+  for (int here = 1; here < 5; ++here)
+  {
+    const Assessment& assessment = windows(1);
+    EXPECT_EQ(assessment.state, AssessmentState::TOO_FEW_WINDOWS);
+    EXPECT_EQ(assessment.level, HealthLevel::OK);
+    EXPECT_EQ(assessment.windows_here, here);
+    EXPECT_EQ(assessment.windows_needed, 5);
+    EXPECT_EQ(whyNotJudged(assessment),
+              "too few windows: a verdict needs 5 at one operating point, has " + std::to_string(here));
+  }
+  EXPECT_EQ(windows(1).state, AssessmentState::ASSESSED);
+  EXPECT_GE(assessor_.assessment().level, HealthLevel::WARN);
+  EXPECT_EQ(whyNotJudged(assessor_.assessment()), "");
+}
+
+TEST_F(Assessed, CheckUpThatIsMadeOnceIsJudgedByItsOneWindow)
+{
+  Assessor once(shippedParameters({ "indicators.evidence_windows=1" }));
+  windows(LEARNING);
+  once.setReference(assessor_.baseline().bins());
+  EXPECT_EQ(once.update(joint_.nextWindow()).state, AssessmentState::ASSESSED);
+}
+
+TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHas)
+{
+  windows(6);
+  Assessor given(shippedParameters());
+  given.setReference(assessor_.baseline().bins());
+  const Assessment& assessment = given.update(joint_.nextWindow());
+  EXPECT_EQ(assessment.state, AssessmentState::NO_REFERENCE);
+  EXPECT_EQ(whyNotJudged(assessment), "the healthy reference needs 8 windows at this operating point, has 6");
 }
 
 TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)

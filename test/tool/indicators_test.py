@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin indicators`."""
+import json
 import math
 import pathlib
 import sys
+
+import h5py
 
 import robot
 import tool
@@ -68,12 +71,93 @@ class Indicators(tool.ToolTest):
 
     def test_a_reference_is_saved_and_given(self):
         self.write("healthy.csv", recording())
-        self.write("faulty.csv", recording(line_after=0.0, seconds=12.0))
+        self.write("faulty.csv", recording(line_after=0.0, seconds=13.0))
         healthy = self.succeed_json("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
         self.assertEqual(healthy["assessment"]["level"], "OK")
         faulty = self.succeed_json("indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml")
-        self.assertEqual(faulty["windows"][0]["assessment"]["state"], "assessed")
+        self.assertEqual([window["assessment"]["state"] for window in faulty["windows"][3:5]],
+                         ["too few windows", "assessed"])
         self.assertEqual(faulty["assessment"]["cause"], "bearing_outer_race")
+
+    def test_too_few_windows_are_no_verdict(self):
+        self.write("healthy.csv", recording())
+        self.write("faulty.csv", recording(line_after=0.0, seconds=7.0))
+        self.succeed("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
+        judged = ["indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml"]
+        done = self.run_tool(*judged)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("faulty.csv: too few windows: a verdict needs 5 at one operating point, has 3", done.stderr)
+        self.assertRegex(done.stdout, r"state +too few windows\nlevel +not judged\n")
+        self.assertRegex(done.stdout, r"that of +error_outer\nits deviation +[1-9][0-9.]+ spreads\n")
+        report = json.loads(self.run_tool(*judged, "--json").stdout)
+        self.assertEqual([(window["assessment"]["windows_here"], window["assessment"]["windows_needed"])
+                          for window in report["windows"]], [(1, 5), (2, 5), (3, 5)])
+        strongest = report["windows"][-1]["strongest"]
+        self.assertEqual(strongest["indicator"], "error_outer")
+        self.assertGreater(strongest["percent"], 100.0)
+        # A check-up that is made once is judged by its window.
+        once = self.succeed_json(*judged, "--set", "indicators.evidence_windows=1")
+        self.assertEqual(once["windows"][0]["assessment"]["state"], "assessed")
+        self.assertNotEqual(once["assessment"]["level"], "OK")
+
+    def test_a_column_that_is_not_there_is_refused(self):
+        self.write("a.csv", recording(seconds=3.0))
+        for option in ("--time", "--motor-torque", "--motor-angle", "--output-angle", "--motor-velocity",
+                       "--load-torque", "--temperature"):
+            self.fail_with(1, [f"a.csv:1: {option} thetta: no such column (did you mean theta?); it holds t, theta, "
+                               "phi, amps"], "indicators", "a.csv", option, "thetta")
+        robot.write_bag(self.path("a.bag"), 20.0)
+        self.fail_with(1, ["a.bag is a bag: --temperature t names a column"], "indicators", "a.bag", "--joint", "elbow",
+                       "--temperature", "t")
+        self.fail_with(1, ["a.bag has no topic /load; it holds:", "/joint_states"], "indicators", "a.bag", "--joint",
+                       "elbow", "--load-topic", "/load")
+
+    def test_a_run_of_a_data_set_brings_its_parameters_and_windows(self):
+        self.write("plan.yaml", """
+duration: 2.5
+overlays: [real_sensors.yaml]
+set: {output.gravity_torque: 30.0, indicators.window_turns: 5.0}
+duty: [{speed: {constant: 1.0}}]
+record:
+  indicators: true
+  groups: {signals: {rate: 2000.0, columns: [motor_angle_encoder, output_angle_encoder, motor_torque_reading,
+                                             load_torque]}}
+""")
+        self.succeed("sweep", "plan.yaml", "--out", "a")
+        run = "a/runs/run_000000000.h5"
+        with h5py.File(self.path(run), "r") as file:
+            windows = {name: column[:] for name, column in file["indicators"].items()}
+        self.assertGreaterEqual(len(windows["window_end"]), 3)
+
+        def read(*options):
+            """The windows, and what they were made of and with."""
+            found = self.succeed_json("indicators", run, *options)["windows"]
+            self.assertEqual(len(found), len(windows["window_end"]))
+            return found, found[0]["made_of"], found[0]["parameters"]
+
+        found, *origin = read()
+        self.assertEqual(origin, ["windows of the run", "run"])
+        for name in ("kinematic_error", "running_torque", "ripple_outer", "error_wave_generator_2"):
+            self.assertEqual([window["indicators"][name] for window in found],
+                             [None if math.isnan(value) else value for value in windows[name]])
+        self.assertEqual([window["load"] for window in found], list(windows["window_load"]))
+        _, *origin = read("--set", "indicators.evidence_windows=1")
+        self.assertEqual(origin, ["windows of the run", "run, under those of the command line"])
+        # The motor's speed was not recorded: it is that of the drive's sensors all the same.
+        found, *origin = read("--time", "time")
+        self.assertEqual(origin, ["signals", "run"])
+        for name in ("running_torque", "load", "window_turns", "ripple_wave_generator_2"):
+            for window, value in list(zip(found, windows[name] if name in windows else windows["window_" + name]))[1:]:
+                self.assertAlmostEqual({**window["indicators"], **window, "window_turns": window["turns"]}[name], value,
+                                       delta=1e-7)
+        found, *origin = read("--set", "output.gravity_torque=0.0")
+        self.assertEqual(origin, ["signals", "run, under those of the command line"])
+        self.assertEqual(found[0]["load"], 0.0)
+        self.fail_with(1, [f"{run}: --motor-angle motor_angle: no such column (did you mean motor_angle_encoder?); it "
+                           "holds load_torque, motor_angle_encoder, motor_torque_reading"],
+                       "indicators", run, "--motor-angle", "motor_angle")
+        self.fail_with(1, [f"{run}: --motor-torque torque: no such column; it holds load_torque"], "indicators", run,
+                       "--motor-torque", "torque")
 
     def test_the_assessment_has_the_law_that_its_errors_are_fitted_with(self):
         table, errors = health_signatures.read(
@@ -111,8 +195,10 @@ class Indicators(tool.ToolTest):
         self.succeed("indicators", "slow.csv", *COLUMNS, *SMALL_WINDOWS, "--model", "slow_model.csv",
                      "--save-baseline", "b.yaml")
         judged = [*COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml"]
-        unknown = self.succeed_json("indicators", "fast.csv", *judged, "--model", "fast_model.csv")
-        self.assertEqual(unknown["assessment"]["state"], "no reference")
+        unknown = self.run_tool("indicators", "fast.csv", *judged, "--model", "fast_model.csv")
+        self.assertEqual(unknown.returncode, 1, unknown.stderr)
+        self.assertIn("fast.csv: no healthy reference for this operating point", unknown.stderr)
+        self.assertRegex(unknown.stdout, r"state +no reference")
         report = self.succeed_json("indicators", "fast.csv", "worn.csv", *judged, "--carry", "--model",
                                    "fast_model.csv", "--model", "worn_model.csv")
         last = {window["recording"]: window["assessment"] for window in report["windows"]}
@@ -161,6 +247,7 @@ class Indicators(tool.ToolTest):
         text = self.succeed("indicators", "a.csv", *COLUMNS, *SMALL_WINDOWS).stdout
         self.assertRegex(text, r"state +learning")
         self.assertRegex(text, r"level +not judged")
+        self.assertRegex(text, r"it has 1 of 8 windows at this operating point")
 
     def test_a_robots_joint_is_named_as_elsewhere(self):
         robot.write_bag(self.path("a.bag"), 120.0)

@@ -115,8 +115,28 @@ class Life(tool.ToolTest):
         self.assertLess(worn["remaining_q50"], 0.5 * unread["remaining_q50"])
         # The load went one way only: that nothing was found says nothing.
         self.assertEqual(sound["density"], sound_unread["density"])
-        self.fail_with(1, ["no window lies at an operating point that b.yaml knows"], "remaining", self.write(
-            "slow.csv", "t,theta,phi,amps\n0,0,0,1\n0.5,1,0.01,1\n"), *options, "--baseline", "b.yaml")
+        self.fail_with(1, ["nothing can be judged by b.yaml: ", "slow.csv: no whole window of steady motion"],
+                       "remaining", self.write("slow.csv", "t,theta,phi,amps\n0,0,0,1\n0.5,1,0.01,1\n"), *options,
+                       "--baseline", "b.yaml")
+        # Too few windows to be called sound; and two of one operating point are no reference.
+        short = self.write("short.csv", indicators_test.recording(line_after=0.0, seconds=7.0))
+        self.fail_with(1, ["short.csv: too few windows: a verdict needs 5 at one operating point, has 3"], "remaining",
+                       short, *options, "--hours", 1e6, "--baseline", "b.yaml")
+        self.succeed("indicators", short, *options, "--save-baseline", "few.yaml")
+        self.fail_with(1, ["new.csv: the healthy reference needs 8 windows at this operating point, has 3\n",
+                           "spalled.csv: the healthy reference needs 8"], "remaining", new, spalled, *options,
+                       "--baseline", "few.yaml")
+
+    def test_the_use_may_be_a_duty_cycle(self):
+        new = self.write("new.csv", indicators_test.recording())
+        options = [*indicators_test.COLUMNS, *indicators_test.SMALL_WINDOWS]
+        self.succeed("indicators", new, *options, "--save-baseline", "b.yaml")
+        report = self.succeed_json("remaining", new, *options, "--baseline", "b.yaml", "--duty", self.duty(), "--hours",
+                                   1000.0)
+        age = self.succeed_json("life", "age", self.duty(), "--grease-changes", "--hours", 1000.0)
+        self.assertAlmostEqual(report["turns"], age["turns"], delta=1e-3 * age["turns"])
+        self.assertEqual(report["level"], "OK")
+        self.fail_with(2, ["--baseline"], "remaining", new, *options, "--duty", self.duty())
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "harmonic_joint_twin/health/baseline.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
@@ -21,10 +22,11 @@ const char* levelName(HealthLevel level) noexcept;  ///< "WARN"
 
 enum class AssessmentState : std::uint8_t
 {
-  WAITING = 0,      ///< no window has been completed
-  LEARNING = 1,     ///< the reference of this operating point is being learned
-  ASSESSED = 2,     ///< the last window was compared with the reference
-  NO_REFERENCE = 3  ///< the given reference does not know this operating point
+  WAITING = 0,         ///< no window has been completed
+  LEARNING = 1,        ///< the reference of this operating point is being learned
+  ASSESSED = 2,        ///< the last window was compared with the reference, and the level is a verdict
+  NO_REFERENCE = 3,    ///< the given reference does not know this operating point
+  TOO_FEW_WINDOWS = 4  ///< compared; nothing found, in fewer windows of this operating point than another level takes
 };
 
 /// One indicator that speaks for the level.
@@ -55,6 +57,8 @@ struct Assessment
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< windows seen
   AssessmentState state{};
+  int windows_here{};    ///< at the last operating point: in the reference if there is no more, else compared
+  int windows_needed{};  ///< of those, for a reference or a verdict
   HealthLevel level{};
   Cause cause{};                ///< the most likely; NONE at level OK, and at others if it is nothing of the table
   bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
@@ -68,13 +72,17 @@ struct Assessment
   std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first
 };
 
+/// Why the last window has no verdict, as a clause; empty: it has one.
+std::string whyNotJudged(const Assessment& assessment);
+
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
 /// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator beyond the baseline's
 /// threshold. ERROR: beyond indicators.error_factor times the threshold. The level rises
 /// after three such means in a row, each of three windows at least, that show the higher level. It falls after three
 /// that show a lower one at the operating point that last showed the level. With indicators.evidence_windows below
-/// three, that many do. While the operating point has no reference, the last verdict stands.
+/// three, that many do. Until so many means could have shown another level, OK is no verdict. While the operating point
+/// has no reference, the last verdict stands.
 class Assessor
 {
 public:
@@ -107,6 +115,7 @@ public:
 private:
   void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
   void search(std::size_t signatures) noexcept;
+  void setState(BaselineState compared) noexcept;
   HealthLevel levelOf(const FeatureScores& scores) noexcept;
   void updateLevel(HealthLevel level) noexcept;
   void explain(const CausePosterior& posterior) noexcept;

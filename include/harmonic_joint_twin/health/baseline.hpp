@@ -177,6 +177,8 @@ class Baseline
 public:
   static constexpr std::size_t MAX_BINS = 64;
   static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
+  /// Before a spread means anything; as least of indicators.baseline_windows.
+  static constexpr int MIN_WINDOWS = 8;
 
   explicit Baseline(const Parameters& parameters);
 
@@ -193,7 +195,9 @@ public:
   const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
   const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
-  int windowsNeeded() const noexcept { return windows_; }
+  int windowsHere() const noexcept { return windows_here_; }  ///< of it: in the reference, or compared since reset
+  /// Of a class, for its reference.
+  int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
 
@@ -251,6 +255,7 @@ private:
   WindowResidual residual_;
   std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted
   OperatingBin bin_;
+  int windows_here_{};
   bool given_{};
   bool carried_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity

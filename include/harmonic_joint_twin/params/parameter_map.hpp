@@ -58,6 +58,10 @@ Parameters parseParameters(const ParameterMap& map);
 /// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
+/// Reads such a text over `map`; its faults replace those of `map`. `source`: whose, for the error text.
+/// @throws ParameterError naming source and line.
+void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
+
 /// The parameter table of the README, in Markdown: key, unit, range, meaning.
 std::string parameterTableMarkdown();
 }  // namespace hjt

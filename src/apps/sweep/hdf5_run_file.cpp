@@ -390,7 +390,7 @@ void Hdf5RunFile::finish(const OrderedJson& record)
   bringToDisk(temporary_, path_);
 }
 
-std::string Hdf5RunFile::readRecord(const std::string& path)
+std::string Hdf5RunFile::readText(const std::string& path, const char* name)
 {
   const auto lock = lockLibrary();
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -398,7 +398,7 @@ std::string Hdf5RunFile::readRecord(const std::string& path)
   {
     return {};
   }
-  const Hdf5Handle dataset(H5Dopen2(file.get(), "record", H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle dataset(H5Dopen2(file.get(), name, H5P_DEFAULT), H5Dclose);
   if (!dataset.valid())
   {
     return {};

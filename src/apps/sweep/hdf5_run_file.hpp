@@ -43,7 +43,8 @@ public:
   void record(Twin& twin, const DutyFeeder& feeder) override;
   void finish(const OrderedJson& record) override;
 
-  static std::string readRecord(const std::string& path);  ///< empty if there is none
+  /// Of the data set of this name; empty if there is none.
+  static std::string readText(const std::string& path, const char* name);
   static Columns readColumns(const std::string& path, const std::vector<std::string>& holding);
 
 private:

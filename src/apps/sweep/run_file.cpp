@@ -29,8 +29,14 @@ OrderedJson readRunRecord(RunFormat format, const std::string& path)
   {
     return nullptr;
   }
-  const std::string text = format == RunFormat::BAG ? BagRunFile::readRecord(path) : Hdf5RunFile::readRecord(path);
+  const std::string text =
+      format == RunFormat::BAG ? BagRunFile::readRecord(path) : Hdf5RunFile::readText(path, "record");
   return OrderedJson::parse(text, nullptr, false);
+}
+
+std::string readRunParameters(const std::string& path)
+{
+  return Hdf5RunFile::readText(path, "parameters");
 }
 
 Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding)

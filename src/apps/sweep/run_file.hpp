@@ -36,6 +36,9 @@ const char* runFileExtension(RunFormat format);
 /// The record of a finished run; none if there is no readable file.
 OrderedJson readRunRecord(RunFormat format, const std::string& path);
 
+/// The parameters of a run's HDF5 file, as describeParameters has them; empty if it holds none.
+std::string readRunParameters(const std::string& path);
+
 /// Numbers by the name of their column, one a row each.
 using Columns = std::map<std::string, std::vector<double>>;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <rosbag/bag.h>
@@ -12,10 +12,10 @@
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
 #include "apps/common/output_file.hpp"
-#include "apps/common/report.hpp"
 #include "apps/common/run_summary.hpp"
 #include "apps/common/text_table.hpp"
-#include "apps/tool/recorded_signals.hpp"
+#include "apps/tool/indicators_report.hpp"
+#include "apps/tool/recorded_windows.hpp"
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -24,7 +24,6 @@
 #include "health/signal_monitor.hpp"
 #include "ros_io/bag_file.hpp"
 #include "ros_io/conversions.hpp"
-#include "ros_io/time.hpp"
 #include "ros_io/topics.hpp"
 
 namespace hjt
@@ -41,21 +40,13 @@ struct IndicatorsOptions : SignalOptions
   bool windows{};  ///< the recordings hold the windows' indicators, not the signals
 };
 
-/// One window and what was made of it.
-struct WindowResult
+/// Windows of a recording, and what they were made of and with.
+struct WindowSeries
 {
-  std::string recording;
-  SignalIndicators indicators;
-  Deviations deviations;
-  WindowResidual residual;
-  Assessment assessment;
+  std::vector<SignalIndicators> windows;
+  const char* origin{};  // as in WindowResult
+  const char* parameters{};
 };
-
-const char* stateName(AssessmentState state)
-{
-  constexpr std::array NAMES{ "waiting", "learning", "assessed", "no reference" };
-  return NAMES[static_cast<std::size_t>(state)];
-}
 
 /// All windows of a recording of signals.
 std::vector<SignalIndicators> readWindows(const std::string& path, const SignalSource& source,
@@ -94,195 +85,49 @@ std::vector<SignalIndicators> readPublishedWindows(const std::string& path, cons
   return windows;
 }
 
-Json toJson(const Assessment& assessment)
+/// All windows of one recording, or of a model's.
+WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
 {
-  const std::vector<Column<Evidence>> columns{ { "indicator",
-                                                 [](const Evidence& item) { return indicatorName(item.indicator); } },
-                                               { "value", &Evidence::value },
-                                               { "expected", &Evidence::expected },
-                                               { "score", &Evidence::score } };
-  const std::vector<Evidence> evidence(
-      assessment.evidence.begin(),
-      assessment.evidence.begin() + static_cast<std::ptrdiff_t>(assessment.evidence_count));
-  Json alternatives{ std::initializer_list<Json::Member>{} };
-  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  if (options.windows)
   {
-    alternatives[causeName(assessment.alternatives[i].cause)] = assessment.alternatives[i].confidence;
+    return { readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS), "published windows",
+             "configuration" };
   }
-  return { { "state", stateName(assessment.state) },
-           { "level", levelName(assessment.level) },
-           { "cause", causeName(assessment.cause) },
-           { "confidence", assessment.confidence },
-           { "severity", assessment.severity },
-           { "severity_deviation", assessment.severity_deviation },
-           { "alternatives", alternatives },
-           { "largest_score", assessment.largest_score },
-           { "evidence", Table(columns, evidence).rows() } };
-}
-
-/// Of a window, for documents and files alike.
-const std::vector<Column<WindowResult>> POINT_COLUMNS{
-  { "time", [](const WindowResult& window) { return toSeconds(window.indicators.stamp); } },
-  { "turns", [](const WindowResult& window) { return window.indicators.turns; } },
-  { "speed", [](const WindowResult& window) { return window.indicators.point.speed; } },
-  { "direction", [](const WindowResult& window) { return window.indicators.point.direction; } },
-  { "load", [](const WindowResult& window) { return window.indicators.point.load; } },
-  { "load_constant", [](const WindowResult& window) { return window.indicators.point.load_constant; } },
-  { "load_sine", [](const WindowResult& window) { return window.indicators.point.load_sine; } },
-  { "load_cosine", [](const WindowResult& window) { return window.indicators.point.load_cosine; } },
-  { "inertia", [](const WindowResult& window) { return window.indicators.point.inertia; } },
-  { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
-};
-
-/// What `value` gives for each indicator, by its name.
-template <class Value>
-Json byIndicator(const Value& value)
-{
-  Json json;
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  const RecordingParameters parameters = recordingParameters(signals, path);
+  if (std::optional<std::vector<SignalIndicators>> windows = windowsOfRun(path, signals, parameters))
   {
-    json[indicatorName(i)] = value(i);
+    return { std::move(*windows), "windows of the run", parameters.origin };
   }
-  return json;
-}
-
-/// Sound value, difference from it, own variance, what goes with each common cause; null: not compared.
-Json residualJson(const WindowResult& window)
-{
-  return byIndicator(
-      [&](std::size_t i)
-      {
-        const WindowResidual& residual = window.residual;
-        std::vector<double> numbers{ residual.sound[i], residual.difference[i], residual.own[i] };
-        numbers.insert(numbers.end(), residual.common[i].begin(), residual.common[i].end());
-        return residual.own[i] > 0.0 ? Json(numbers) : Json();
-      });
-}
-
-std::vector<Column<WindowResult>> documentColumns()
-{
-  using W = const WindowResult&;
-  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
-  columns.insert(columns.begin(), { "recording", &WindowResult::recording });
-  columns.push_back({ "indicators", [](W window)
-                      { return byIndicator([&](std::size_t i) { return window.indicators.values[i]; }); } });
-  columns.push_back(
-      { "scores", [](W window) { return byIndicator([&](std::size_t i) { return window.deviations[i].score; }); } });
-  columns.push_back({ "residual", residualJson });
-  columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
-  columns.push_back({ "averaged", [](const WindowResult& window) { return window.residual.windows; } });
-  columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
-  return columns;
-}
-
-std::vector<Column<WindowResult>> fileColumns()
-{
-  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    columns.push_back({ indicatorName(i), [i](const WindowResult& window) { return window.indicators.values[i]; } });
-  }
-  columns.push_back({ "level", [](const WindowResult& window) { return static_cast<int>(window.assessment.level); } });
-  columns.push_back({ "cause", [](const WindowResult& window) { return static_cast<int>(window.assessment.cause); } });
-  columns.push_back({ "confidence", [](const WindowResult& window) { return window.assessment.confidence; } });
-  columns.push_back({ "severity", [](const WindowResult& window) { return window.assessment.severity; } });
-  columns.push_back(
-      { "severity_deviation", [](const WindowResult& window) { return window.assessment.severity_deviation; } });
-  columns.push_back({ "largest_score", [](const WindowResult& window) { return window.assessment.largest_score; } });
-  return columns;
-}
-
-void printTable(const WindowResult& window)
-{
-  std::printf("%-32s %14s %-10s %14s %8s\n", "indicator", "value", "unit", "healthy", "score");
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
-  {
-    const double value = window.indicators.values[i];
-    const Deviation& deviation = window.deviations[i];
-    if (!std::isfinite(value))
-    {
-      continue;
-    }
-    std::printf("%-32s %14s %-10s", indicatorName(i), shortNumber(value).c_str(), indicatorUnit(i));
-    if (std::isfinite(deviation.score))
-    {
-      std::printf(" %14s %8s", shortNumber(deviation.expected).c_str(), fixedText(deviation.score, 2).c_str());
-    }
-    std::printf("\n");
-  }
-}
-
-void printSummary(const std::vector<WindowResult>& windows)
-{
-  const WindowResult& last = windows.back();
-  printTable(last);
-  const Assessment& assessment = last.assessment;
-  const bool judged = assessment.state == AssessmentState::ASSESSED;
-  std::vector<ReportLine> lines{ { "", "windows", windows.size() },
-                                 { "", "turns in the last", last.indicators.turns },
-                                 { "", "motor speed in it", last.indicators.point.speed, "rad/s" },
-                                 { "", "state", stateName(assessment.state) },
-                                 { "", "level", judged ? levelName(assessment.level) : "not judged" } };
-  if (assessment.level != HealthLevel::OK)
-  {
-    lines.push_back({ "", "most likely cause", causeName(assessment.cause) });
-    lines.push_back({ "", "confidence", assessment.confidence });
-    lines.push_back({ "", "severity", assessment.severity });
-    lines.push_back({ "", "its standard deviation", assessment.severity_deviation });
-  }
-  printReport(false, lines);
+  std::uint64_t refused = 0;
+  WindowSeries series{ readWindows(path, signalSource(signals, parameters.values), parameters.values, refused),
+                       "signals", parameters.origin };
+  warn(refused, path + ": samples without an angle, a torque or progress in time passed over");
+  return series;
 }
 
 /// All windows of recording `index`, less those of its model if there is one, which come into `model`.
-std::vector<SignalIndicators> readRecording(std::size_t index, const IndicatorsOptions& options,
-                                            const Parameters& parameters, std::vector<SignalIndicators>& model)
+WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, std::vector<SignalIndicators>& model)
 {
-  const std::string published = options.joint_namespace + "/" + topics::INDICATORS;
-  std::uint64_t refused = 0;
-  const auto read = [&](const std::string& path, const SignalSource& source, std::uint64_t& passed_over)
-  {
-    return options.windows ? readPublishedWindows(path, published) : readWindows(path, source, parameters, passed_over);
-  };
-  std::vector<SignalIndicators> measured = read(options.recordings[index], options.source, refused);
+  WindowSeries measured = readOne(options.recordings[index], options, options);
   if (!options.models.empty())
   {
-    SignalSource model_source;
-    model_source.joint = options.source.joint;
-    model_source.states_topic = options.joint_namespace + "/" + topics::JOINT_STATES;
-    model_source.load_topic = options.joint_namespace + "/" + topics::LOAD;
-    std::uint64_t model_refused = 0;
-    model = read(options.models[index], model_source, model_refused);
-    measured.resize(std::min(measured.size(), model.size()));
-    for (std::size_t i = 0; i < measured.size(); ++i)
+    SignalOptions twin;
+    static_cast<CommonOptions&>(twin) = options;
+    twin.joint_namespace = options.joint_namespace;
+    model = readOne(options.models[index], twin, options).windows;
+    measured.windows.resize(std::min(measured.windows.size(), model.size()));
+    for (std::size_t i = 0; i < measured.windows.size(); ++i)
     {
-      measured[i] = difference(measured[i], model[i]);
+      measured.windows[i] = difference(measured.windows[i], model[i]);
     }
   }
-  warn(refused, "samples without an angle, a torque or progress in time passed over");
   return measured;
 }
 
-int run(const IndicatorsOptions& given)
+/// Every window of every recording. `judged`: of each recording, how near it came to a verdict.
+std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& assessor,
+                                 std::vector<ClosestAssessment>& judged)
 {
-  IndicatorsOptions options = given;
-  const Parameters parameters = loadParameters(options);
-  options.source = signalSource(options, parameters);
-  for (const std::string& file : { options.out, options.save_baseline })
-  {
-    requireWritable(file, options.force, options.recordings.front());
-  }
-  const bool less_model = !options.models.empty();
-  if (less_model && options.models.size() != options.recordings.size())
-  {
-    throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
-                     std::to_string(options.recordings.size()) +
-                     " recordings; it takes the twin's own recording of each, in their order");
-  }
-  Assessor assessor(parameters);
-  if (!options.baseline.empty())
-  {
-    assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
-  }
   std::vector<WindowResult> windows;
   for (std::size_t index = 0; index < options.recordings.size(); ++index)
   {
@@ -292,39 +137,68 @@ int run(const IndicatorsOptions& given)
       assessor.reset();  // each is judged for itself
     }
     std::vector<SignalIndicators> model;
-    const std::vector<SignalIndicators> measured = readRecording(index, options, parameters, model);
-    if (measured.empty())
+    const WindowSeries measured = readRecording(index, options, model);
+    judged.emplace_back();
+    for (std::size_t i = 0; i < measured.windows.size(); ++i)
     {
-      std::cerr << "joint_twin: " << recording << " holds no whole window of steady motion\n";
+      const Assessment assessment = assessor.update(measured.windows[i], model.empty() ? nullptr : &model[i]);
+      judged.back().take(assessment);
+      windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i], assessor.deviations(),
+                          assessor.baseline().residual(), assessment });
     }
-    for (std::size_t i = 0; i < measured.size(); ++i)
+    if (!options.baseline.empty() ? !judged.back().isJudged() : measured.windows.empty())
     {
-      const Assessment assessment = assessor.update(measured[i], model.empty() ? nullptr : &model[i]);
-      windows.push_back({ recording, measured[i], assessor.deviations(), assessor.baseline().residual(), assessment });
+      std::cerr << "joint_twin: not judged: " << judged.back().whyNotJudged(recording) << '\n';
     }
   }
+  return windows;
+}
+
+void refuseWrongModels(const IndicatorsOptions& options)
+{
+  if (!options.models.empty() && options.models.size() != options.recordings.size())
+  {
+    throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
+                     std::to_string(options.recordings.size()) +
+                     " recordings; it takes the twin's own recording of each, in their order");
+  }
+}
+
+int run(const IndicatorsOptions& options)
+{
+  const Parameters parameters = recordingParameters(options, options.recordings.front()).values;
+  for (const std::string& file : { options.out, options.save_baseline })
+  {
+    requireWritable(file, options.force, options.recordings.front());
+  }
+  refuseWrongModels(options);
+  const bool less_model = !options.models.empty();
+  Assessor assessor(parameters);
+  if (!options.baseline.empty())
+  {
+    assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
+  }
+  std::vector<ClosestAssessment> judged;
+  const std::vector<WindowResult> windows = assess(options, assessor, judged);
   if (windows.empty())
   {
     throw InputError(options.recordings.front() + " is too short for one window (indicators.window_turns = " +
                      shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
                      shortNumber(parameters.indicators.window_time) + " s)");
   }
-  writeTable(options.out, fileColumns(), windows);
+  writeWindows(options.out, windows);
   if (!options.save_baseline.empty())
   {
     writeBaseline(options.save_baseline, assessor.baseline(), less_model);
   }
-  if (options.json)
+  options.json ? printDocument(windows, assessor.baseline().threshold()) : printSummary(windows);
+  if (interruptSignal() != 0)
   {
-    printReport(true, { { "threshold", "", assessor.baseline().threshold() },
-                        { "windows", "", Table(documentColumns(), windows).rows() },
-                        { "assessment", "", toJson(windows.back().assessment) } });
+    return EXIT_BY_SIGNAL + interruptSignal();
   }
-  else
-  {
-    printSummary(windows);
-  }
-  return interruptSignal() != 0 ? EXIT_BY_SIGNAL + interruptSignal() : static_cast<int>(EXIT_DONE);
+  const bool any =
+      std::any_of(judged.begin(), judged.end(), [](const ClosestAssessment& one) { return one.isJudged(); });
+  return options.baseline.empty() || any ? EXIT_DONE : EXIT_FAILED;
 }
 
 void declare(Command& command, IndicatorsOptions& options)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <vector>
 
 #include <rosbag/bag.h>
@@ -13,6 +15,8 @@
 #include "apps/common/motion_options.hpp"
 #include "apps/sweep/run_file.hpp"
 
+#include "base/edit_distance.hpp"
+#include "base/joined.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -41,29 +45,60 @@ enum Column : std::size_t
 
 using Names = std::array<std::string, COLUMNS>;
 
-/// The columns of a file in the order of the signals. `has(name)`: whether it has one of this name.
-template <class Has>
-Names columnsOf(const SignalSource& source, const Has& has)
+/// How a column is named on the command line and, unless it is, in the file.
+struct ColumnChoice
 {
-  const auto given = [&](const std::string& name, const char* reading, const char* otherwise) {
-    return !name.empty() ? name : has(reading) ? reading : otherwise;
-  };
-  return { source.time,
-           given(source.motor_torque, "motor_torque_reading", "motor_torque"),
-           source.motor_angle,
-           source.output_angle,
-           source.motor_velocity,
-           source.load_torque,
-           given(source.temperature, "housing_temperature", "temperature") };
+  const char* option;
+  std::string SignalSource::*given;
+  const char* name;
+  const char* otherwise{};  // where `name` is missing
+};
+constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
+  { { "--time", &SignalSource::time, "time" },
+    { "--motor-torque", &SignalSource::motor_torque, "motor_torque_reading", "motor_torque" },
+    { "--motor-angle", &SignalSource::motor_angle, "motor_angle_encoder" },
+    { "--output-angle", &SignalSource::output_angle, "output_angle_encoder" },
+    { "--motor-velocity", &SignalSource::motor_velocity, "motor_velocity_encoder" },
+    { "--load-torque", &SignalSource::load_torque, "load_torque" },
+    { "--temperature", &SignalSource::temperature, "housing_temperature", "temperature" } }
+};
+
+bool contains(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void requireAngle(bool there, const std::string& place, const SignalSource& source)
+/// The columns of a file in the order of the signals. `place`: file and line. @throws InputError if one that was named
+/// is not there, or none of the angles.
+Names columnsOf(const std::string& place, const std::vector<std::string>& there, const SignalSource& source)
 {
-  if (!there)
+  Names names;
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    throw InputError(place + ": neither column '" + source.motor_angle + "' nor '" + source.output_angle +
-                     "' is there; name one with --motor-angle or --output-angle");
+    const ColumnChoice& choice = CHOICES[i];
+    const std::string& given = source.*choice.given;
+    if (!given.empty() && !contains(there, given))
+    {
+      throw InputError(place + ": " + choice.option + " " + given + ": no such column" + didYouMean(given, there) +
+                       "; it holds " + joined(there, ", "));
+    }
+    const bool is_named_so = choice.otherwise == nullptr || contains(there, choice.name);
+    names[i] = !given.empty() ? given : is_named_so ? choice.name : choice.otherwise;
   }
+  for (const Column column : { MOTOR_TORQUE, TIME })
+  {
+    if (!contains(there, names[column]))
+    {
+      throw InputError(place + ": column '" + names[column] + "' is missing; name one with " + CHOICES[column].option +
+                       "; it holds " + joined(there, ", "));
+    }
+  }
+  if (!contains(there, names[MOTOR_ANGLE]) && !contains(there, names[OUTPUT_ANGLE]))
+  {
+    throw InputError(place + ": neither column '" + names[MOTOR_ANGLE] + "' nor '" + names[OUTPUT_ANGLE] +
+                     "' is there; name one with --motor-angle or --output-angle; it holds " + joined(there, ", "));
+  }
+  return names;
 }
 
 SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scale)
@@ -79,15 +114,43 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
   return sample;
 }
 
-void readTable(const std::string& path, const SignalSource& source, const Take& take)
+/// Names of a table's columns. @throws InputError.
+std::vector<std::string> headerOf(const std::string& path)
 {
   std::ifstream file(path);
   std::string header;
-  std::getline(file, header);
-  header = "," + header.substr(0, header.find('\r')) + ",";
-  const auto has = [&](const std::string& name) { return header.find("," + name + ",") != std::string::npos; };
-  NumberTable<COLUMNS> table(path, columnsOf(source, has), COLUMNS - MOTOR_ANGLE);
-  requireAngle(table.hasColumn(MOTOR_ANGLE) || table.hasColumn(OUTPUT_ANGLE), path + ":1", source);
+  if (!std::getline(file, header))
+  {
+    throw InputError(path + " cannot be read, or is empty");
+  }
+  std::vector<std::string> names;
+  std::istringstream cells(header);
+  for (std::string name; std::getline(cells, name, ',');)
+  {
+    const std::size_t first = name.find_first_not_of(" \t\r");
+    names.push_back(first == std::string::npos ? "" : name.substr(first, name.find_last_not_of(" \t\r") + 1 - first));
+  }
+  return names;
+}
+
+/// The motor's speed as the drive's own sensors have it: what its angle changes by over the window. Before the first
+/// window is over, that of the first window.
+std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
+{
+  std::vector<double> velocity(time.size(), NOT_MEASURED);
+  const double period = time.size() > 1 ? time[1] - time[0] : 1.0;
+  const auto steps = static_cast<std::size_t>(std::max(std::lround(window / period), 1L));
+  for (std::size_t end = steps; end < time.size(); ++end)
+  {
+    velocity[end] = (angle[end] - angle[end - steps]) / (time[end] - time[end - steps]);
+  }
+  std::fill_n(velocity.begin(), std::min(steps, time.size()), steps < time.size() ? velocity[steps] : NOT_MEASURED);
+  return velocity;
+}
+
+void readTable(const std::string& path, const SignalSource& source, const Take& take)
+{
+  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", headerOf(path), source), COLUMNS - MOTOR_ANGLE);
   std::array<double, COLUMNS> row{};
   row.fill(NOT_MEASURED);
   while (table.read(row) && take(sampleOf(row, source.torque_scale)))
@@ -98,19 +161,23 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
 /// A run of a data set.
 void readRun(const std::string& path, const SignalSource& source, const Take& take)
 {
-  const std::vector<std::string> torques = source.motor_torque.empty() ?
-                                               std::vector<std::string>{ "motor_torque_reading", "motor_torque" } :
-                                               std::vector<std::string>{ source.motor_torque };
-  const Columns columns = readRunColumns(path, torques);
-  const Names names = columnsOf(source, [&](const std::string& name) { return columns.count(name) > 0; });
-  for (const Column column : { MOTOR_TORQUE, TIME })
+  const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
+  Columns columns =
+      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
+                                                         std::vector<std::string>{ source.motor_torque });
+  if (columns.empty())
   {
-    if (columns.count(names[column]) == 0)
-    {
-      throw InputError(path + ": column '" + names[column] + "' is missing");
-    }
+    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
   }
-  requireAngle(columns.count(names[MOTOR_ANGLE]) + columns.count(names[OUTPUT_ANGLE]) > 0, path, source);
+  std::vector<std::string> there;
+  std::transform(columns.begin(), columns.end(), std::back_inserter(there),
+                 [](const auto& item) { return item.first; });
+  const Names names = columnsOf(path, there, source);
+  if (columns.count(names[MOTOR_VELOCITY]) == 0 && columns.count(names[MOTOR_ANGLE]) > 0)
+  {
+    columns[names[MOTOR_VELOCITY]] =
+        velocityOf(columns.at(names[TIME]), columns.at(names[MOTOR_ANGLE]), source.velocity_window);
+  }
   std::array<double, COLUMNS> row{};
   row.fill(NOT_MEASURED);
   for (std::size_t i = 0; i < columns.at(names[TIME]).size(); ++i)
@@ -147,6 +214,13 @@ SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& na
 
 void readBag(const std::string& path, const SignalSource& source, const Take& take)
 {
+  for (const ColumnChoice& choice : CHOICES)
+  {
+    if (!(source.*choice.given).empty())
+    {
+      throw InputError(path + " is a bag: " + choice.option + " " + source.*choice.given + " names a column");
+    }
+  }
   rosbag::Bag bag;
   openForReading(bag, path);
   const JointNames names(source.joint);
@@ -154,6 +228,10 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
   CheckedMessage checked;
   double load = NOT_MEASURED;
   std::uint64_t samples = 0;
+  if (source.load_topic_given && rosbag::View(bag, rosbag::TopicQuery(source.load_topic)).size() == 0)
+  {
+    throw InputError(path + " has no topic " + source.load_topic + "; it holds:" + listTopics(bag));
+  }
   for (const rosbag::MessageInstance& message : view)
   {
     if (!checked.read(message))
@@ -184,6 +262,12 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
 }
 }  // namespace
 
+bool namesColumn(const SignalSource& source)
+{
+  return std::any_of(CHOICES.begin(), CHOICES.end(),
+                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
+}
+
 void readSignals(const std::string& path, const SignalSource& source, const Take& take)
 {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -200,6 +284,8 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
   source.states_topic =
       options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
   source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  source.load_topic_given = options.load_topic.has_value();
+  source.velocity_window = parameters.sensors.velocity_window;
   source.torque_scale = options.torque_scale.value_or(
       robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
   return source;
@@ -213,7 +299,11 @@ std::string wrongSignalFile(const std::string& path)
 
 void addSignalOptions(Command& command, SignalOptions& options)
 {
-  command.add("recordings", options.recordings, "one recording, or several of the same joint")
+  command
+      .add("recordings", options.recordings,
+           "one recording, or several of the same joint; a run of a data set (HDF5) is read with the parameters in its "
+           "file, "
+           "over them those of --config and --set")
       .required()
       .type("IN.csv|IN.bag|IN.h5")
       .check(wrongSignalFile);
@@ -223,15 +313,16 @@ void addSignalOptions(Command& command, SignalOptions& options)
   SignalSource& source = options.source;
   const auto column = [&command](const char* name, std::string& field, const char* meaning)
   { command.add(name, field, meaning).type("COLUMN"); };
-  column("--time", source.time, "CSV, HDF5: time [s]");
+  column("--time", source.time, "CSV, HDF5: time [s]; default: time");
   column("--motor-torque", source.motor_torque,
          "CSV, HDF5: motor torque, or current with --torque-scale; default: motor_torque_reading, else "
          "motor_torque");
-  column("--motor-angle", source.motor_angle, "CSV, HDF5: motor encoder [rad]");
-  column("--output-angle", source.output_angle, "CSV, HDF5: output encoder [rad]");
-  column("--motor-velocity", source.motor_velocity, "CSV, HDF5: motor speed [rad/s]; else differences of the angle");
+  column("--motor-angle", source.motor_angle, "CSV, HDF5: motor encoder [rad]; default: motor_angle_encoder");
+  column("--output-angle", source.output_angle, "CSV, HDF5: output encoder [rad]; default: output_angle_encoder");
+  column("--motor-velocity", source.motor_velocity,
+         "CSV, HDF5: motor speed [rad/s]; default: motor_velocity_encoder, else differences of the angle");
   column("--load-torque", source.load_torque,
-         "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]");
+         "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]; default: load_torque");
   column("--temperature", source.temperature,
          "CSV, HDF5: temperature [degC]; default: housing_temperature, else temperature");
   command.add("--torque-scale", options.torque_scale,

@@ -16,24 +16,30 @@ namespace hjt
 /// Where in a recording the signals of the joint lie.
 struct SignalSource
 {
-  // Columns of a CSV or HDF5 file; by default those of `joint_twin simulate` and of a data set.
-  std::string time{ "time" };
-  std::string motor_torque;  ///< empty: motor_torque_reading, or motor_torque where that is missing
-  std::string motor_angle{ "motor_angle_encoder" };
-  std::string output_angle{ "output_angle_encoder" };
-  std::string motor_velocity{ "motor_velocity_encoder" };
-  std::string load_torque{ "load_torque" };
-  std::string temperature;  ///< empty: housing_temperature, or temperature where that is missing
+  // Columns of a CSV or HDF5 file, which must be there; empty: those of `joint_twin simulate` and of a data set.
+  std::string time;
+  std::string motor_torque;
+  std::string motor_angle;
+  std::string output_angle;
+  std::string motor_velocity;
+  std::string load_torque;
+  std::string temperature;
   // Topics of a bag.
   std::string states_topic;
   std::string load_topic;
-  std::string joint;           ///< its name in both
-  double torque_scale{ 1.0 };  ///< motor torque per unit of the recorded signal
+  bool load_topic_given{};        ///< then it must be there
+  std::string joint;              ///< its name in both
+  double torque_scale{ 1.0 };     ///< motor torque per unit of the recorded signal
+  double velocity_window{ 0.0 };  ///< over which a data set's drive takes its motor speed, if that is not recorded [s]
 };
+
+/// Whether a column was named.
+bool namesColumn(const SignalSource& source);
 
 /// Gives every sample of a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of time, until that
 /// returns false.
-/// CSV, HDF5: a column that is not there is not measured; time, torque and one angle must be.
+/// CSV, HDF5: a column that is neither there nor named is not measured; time, torque and one angle must be. A data set
+/// without the motor's speed gets it from its angle.
 /// Bag: positions, velocities and efforts of NAME_motor and NAME in JointState messages; without NAME_motor the effort
 /// of NAME, scaled, is the torque. Efforts of NAME on the load topic hold until the next.
 /// @throws InputError

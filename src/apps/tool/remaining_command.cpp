@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 #include "apps/common/exit_code.hpp"
 #include "apps/common/output_file.hpp"
 #include "apps/common/report.hpp"
-#include "apps/tool/recorded_signals.hpp"
+#include "apps/tool/recorded_windows.hpp"
 
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
@@ -26,40 +26,59 @@ struct RemainingOptions : SignalOptions
 {
   std::optional<double> hours;
   std::string baseline;
+  std::string duty;
   std::string use_record;
 };
 
-/// Adds what a recording says of the drive's use. Gaps of a second and more are none. Every sample goes to `watch` too.
-void addUse(const std::string& path, const SignalSource& source, const Parameters& parameters, UsageHistory& use,
-            const std::function<void(const SignalSample&)>& watch)
+/// Adds what the samples of a recording say of the drive's use. Gaps of a second and more are none.
+class RecordedUse
 {
-  constexpr double LONGEST = 1.0;  // [s]
-  const double ratio = nominalRatio(parameters.gear);
-  std::optional<SignalSample> last;
-  readSignals(path, source,
-              [&](const SignalSample& sample)
-              {
-                watch(sample);
-                const auto motor = [&](const SignalSample& of)
-                { return std::isfinite(of.motor_angle) ? of.motor_angle : ratio * of.output_angle; };
-                const double seconds = last ? 1e-9 * static_cast<double>(sample.stamp - last->stamp) : 0.0;
-                const double speed = last ? std::abs(motor(sample) - motor(*last)) / seconds : 0.0;
-                const double torque =
-                    std::isfinite(sample.load_torque) ?
-                        sample.load_torque + parameters.output.gravity_torque *
-                                                 (parameters.output.gravity_torque != 0.0 ?
-                                                      std::sin(sample.output_angle - parameters.output.gravity_angle) :
-                                                      0.0) :
-                        ratio * sample.motor_torque;
-                if (seconds > 0.0 && seconds < LONGEST && std::isfinite(speed) && std::isfinite(torque))
-                {
-                  use.add({ seconds, speed, torque,
-                            std::isfinite(sample.temperature) ? sample.temperature : parameters.input.temperature });
-                }
-                last = std::isfinite(motor(sample)) ? sample : last;
-                return true;
-              });
-}
+public:
+  RecordedUse(const Parameters& parameters, UsageHistory& use)
+    : output_(parameters.output)
+    , temperature_(parameters.input.temperature)
+    , ratio_(nominalRatio(parameters.gear))
+    , use_(use)
+  {
+  }
+
+  void add(const SignalSample& sample)
+  {
+    constexpr double LONGEST = 1.0;  // [s]
+    const double seconds = last_ ? 1e-9 * static_cast<double>(sample.stamp - last_->stamp) : 0.0;
+    const double speed = last_ ? std::abs(motorAngle(sample) - motorAngle(*last_)) / seconds : 0.0;
+    const double torque = jointTorque(sample);
+    if (seconds > 0.0 && seconds < LONGEST && std::isfinite(speed) && std::isfinite(torque))
+    {
+      use_.add({ seconds, speed, torque, std::isfinite(sample.temperature) ? sample.temperature : temperature_ });
+    }
+    last_ = std::isfinite(motorAngle(sample)) ? sample : last_;
+  }
+
+private:
+  double motorAngle(const SignalSample& sample) const
+  {
+    return std::isfinite(sample.motor_angle) ? sample.motor_angle : ratio_ * sample.output_angle;
+  }
+
+  double jointTorque(const SignalSample& sample) const
+  {
+    if (!std::isfinite(sample.load_torque))
+    {
+      return ratio_ * sample.motor_torque;
+    }
+    const double weight = output_.gravity_torque != 0.0 ?
+                              output_.gravity_torque * std::sin(sample.output_angle - output_.gravity_angle) :
+                              0.0;
+    return sample.load_torque + weight;
+  }
+
+  OutputParameters output_;
+  double temperature_;  // of samples without one [degC]
+  double ratio_;
+  UsageHistory& use_;
+  std::optional<SignalSample> last_;
+};
 
 /// The same use, gone on with for so many hours.
 UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters& life)
@@ -96,38 +115,71 @@ Json endJson(const RemainingHours& remaining)
   return json;
 }
 
+/// Goes through the recordings: their use, unless a duty cycle says it, and the last assessment that counts, if there
+/// is a reference to hold them against. @throws InputError if that comes to none.
+Assessment readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
+{
+  const bool is_assessed = !options.baseline.empty();
+  Assessment assessment;
+  bool any = false;
+  std::string why_not;
+  for (const std::string& recording : options.recordings)
+  {
+    const RecordingParameters parameters = recordingParameters(options, recording);
+    ClosestAssessment judged;
+    assessor.reset();
+    const auto judge = [&](const SignalIndicators& window)
+    {
+      judged.take(assessor.update(window));
+      assessment = supersedes(assessor.assessment(), assessment) ? assessor.assessment() : assessment;
+    };
+    const std::optional<std::vector<SignalIndicators>> windows =
+        is_assessed ? windowsOfRun(recording, options, parameters) : std::nullopt;
+    if (windows)
+    {
+      std::for_each(windows->begin(), windows->end(), judge);
+    }
+    SignalMonitor monitor(parameters.values);
+    RecordedUse recorded(parameters.values, use);
+    const auto take = [&](const SignalSample& sample)
+    {
+      if (options.duty.empty())
+      {
+        recorded.add(sample);
+      }
+      if (is_assessed && !windows && monitor.update(sample))
+      {
+        judge(monitor.indicators());
+      }
+      return true;
+    };
+    if (options.duty.empty() || !windows)
+    {
+      readSignals(recording, signalSource(options, parameters.values), take);
+    }
+    any = any || judged.isJudged();
+    why_not += judged.isJudged() ? "" : (why_not.empty() ? "" : "\n  ") + judged.whyNotJudged(recording);
+  }
+  if (is_assessed && !any)
+  {
+    throw InputError("nothing can be judged by " + options.baseline + ": " + why_not);
+  }
+  return assessment;
+}
+
 int run(const RemainingOptions& options)
 {
-  const Parameters parameters = loadParameters(options);
+  const RecordingParameters first = recordingParameters(options, options.recordings.front());
+  const Parameters& parameters = first.values;
   requireWritable(options.use_record, options.force, options.recordings.front());
-  const SignalSource source = signalSource(options, parameters);
-  UsageHistory use(parameters.life);
+  UsageHistory use = options.duty.empty() ? UsageHistory(parameters.life) : UsageHistory(parameters.life, options.duty);
   Assessor assessor(parameters);
   if (!options.baseline.empty())
   {
     assessor.setReference(readBaseline(options.baseline, parameters, false));
   }
-  Assessment assessment;  // the last one that counts
-  for (const std::string& recording : options.recordings)
-  {
-    SignalMonitor monitor(parameters);
-    assessor.reset();
-    addUse(recording, source, parameters, use,
-           [&](const SignalSample& sample)
-           {
-             if (!options.baseline.empty() && monitor.update(sample) &&
-                 supersedes(assessor.update(monitor.indicators()), assessment))
-             {
-               assessment = assessor.assessment();
-             }
-           });
-  }
+  const Assessment assessment = readRecordings(options, assessor, use);
   const bool assessed = assessment.state == AssessmentState::ASSESSED;
-  if (!options.baseline.empty() && !assessed)
-  {
-    throw InputError(options.recordings.front() + ": no window lies at an operating point that " + options.baseline +
-                     " knows");
-  }
   if (use.turns() <= 0.0)
   {
     throw InputError(options.recordings.front() + ": the motor does not turn");
@@ -150,10 +202,12 @@ int run(const RemainingOptions& options)
     { "remaining_q90", "of 10 % of them", remaining.quantile[3], "h" },
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
     { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
+    { "parameters", "with the parameters of the", first.origin },
   };
   if (assessed)
   {
     lines.push_back({ "level", "assessed", levelName(assessment.level) });
+    lines.push_back({ "largest_score", "largest score over threshold", assessment.largest_score });
     lines.push_back({ "cause", "cause", causeName(assessment.cause) });
   }
   if (options.json)
@@ -173,8 +227,14 @@ void declare(Command& command, RemainingOptions& options)
       .range(1e-6, 1e7);
   command
       .add("--baseline", options.baseline,
-           "reference of the new drive, from `indicators`: the last window compared with it tells of wear")
+           "reference of the new drive, from `indicators`: the last verdict by it tells of wear")
       .type("FILE.yaml");
+  command
+      .add("--duty", options.duty,
+           "use so far, as a duty cycle that `life age` reads; the recordings are then assessed only")
+      .type("FILE.csv")
+      .existingFile()
+      .needs("--baseline");
   command.add("--use-record", options.use_record, "writes the use as a duty cycle, for `life` and life.use_record")
       .type("FILE.csv");
   addCommonOptions(command, options);
