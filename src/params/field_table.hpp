@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -552,6 +553,9 @@ void visitFields(P& p, Visitor&& visit)
   visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
         ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
 }
+
+/// Of the values and faults that shape a response surface or its faults (FNV-1a, 64 bits).
+std::uint64_t surfaceParametersHash(const Parameters& parameters);
 
 /// The parameters that shape a response surface, a line each; `faulty`: also those that shape its faults.
 std::string describeSurfaceParameters(const Parameters& parameters, bool faulty);

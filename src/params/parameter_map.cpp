@@ -50,4 +50,21 @@ Parameters parseParameters(const ParameterMap& map)
   throwIfAny(contradictions(parameters, map));
   return parameters;
 }
+
+void changeParameters(Parameters& parameters, const ParameterMap& changes)
+{
+  FieldReader reader(changes);
+  visitFields(parameters,
+              [&](const std::string& key, auto&&... field)
+              {
+                if (changes.count(key) > 0)
+                {
+                  reader(key, field...);
+                }
+              });
+  reader.readFaults(parameters.faults);
+  reader.refuseUnknownKeys();
+  throwIfAny(reader.errors());
+  throwIfAny(contradictions(parameters, changes));
+}
 }  // namespace hjt

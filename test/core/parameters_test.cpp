@@ -463,6 +463,33 @@ TEST(Parameters, AllThatIsWrongIsSaidAtOnce)
               AllOf(HasSubstr("motor.torque_limit"), HasSubstr("gear.teeth ="), HasSubstr("contact.law")));
 }
 
+TEST(Parameters, AFewThatAreChangedMakeWhatTheWholeMapMakes)
+{
+  ParameterMap changes;
+  for (const char* assignment : { "mesh.stiffness=2.5e+7", "solver.scene=auto", "bearing.balls=21" })
+  {
+    readAssignment(assignment, changes);
+  }
+  ParameterMap whole = defaultMap();
+  for (const auto& [key, value] : changes)
+  {
+    whole[key] = value;
+  }
+  const Parameters before = parseParameters(defaultMap());
+  Parameters changed = before;
+  changeParameters(changed, changes);
+  EXPECT_EQ(describeParameters(changed), describeParameters(parseParameters(whole)));
+  EXPECT_EQ(parametersHash(changed), parametersHash(parseParameters(whole)));
+  EXPECT_NE(parametersHash(changed), parametersHash(before));
+  EXPECT_NE(surfaceParametersHash(changed), surfaceParametersHash(before));
+  for (const char* wrong : { "mesh.stifness=2.5e+7", "mesh.stiffness=-1.0", "gear.teeth_flexspline=202" })
+  {
+    ParameterMap map;
+    readAssignment(wrong, map);
+    EXPECT_THROW(changeParameters(changed, map), ParameterError) << wrong;
+  }
+}
+
 TEST(YamlFiles, BrokenFilesAreRefusedWithPlace)
 {
   EXPECT_THAT(YamlFile("gear:\n  a: [1, 2\n").complaint(), HasSubstr(".yaml:"));

@@ -55,6 +55,13 @@ void readAssignment(const std::string& assignment, ParameterMap& map);
 /// other.
 Parameters parseParameters(const ParameterMap& map);
 
+/// Fills the fields that the map names, adds its faults, and checks all: for many sets of parameters that differ in a
+/// few. @throws ParameterError.
+void changeParameters(Parameters& parameters, const ParameterMap& changes);
+
+/// Of all values (FNV-1a, 64 bits).
+std::uint64_t parametersHash(const Parameters& parameters);
+
 /// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
