@@ -17,7 +17,8 @@ namespace hjt
 {
 namespace
 {
-constexpr int POSITIONS = 8;  // of the wave generator in a tooth pitch, for the loads of a turn
+constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // of all drives
+constexpr int POSITIONS = 8;                      // of the wave generator in a tooth pitch, for the loads of a turn
 /// Where a bearing's first spall may lie.
 constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_INNER_RACE, FaultKind::BEARING_BALL };
 }  // namespace
@@ -68,7 +69,14 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
     drive.crack_place = drawn("crack_place", places(FaultKind::FLEXSPLINE_CRACK));
     const auto tested = [&](std::uint64_t n) { return std::floor(static_cast<double>(n) * test + 1e-9); };
     drive.test = tested(i + 1) > tested(i);
-    const auto visit = [&](double hours, const DriveAge& age) {
+    const auto visit = [&](double hours, const DriveAge& age)
+    {
+      if (check_ups_.size() > MAX_CHECK_UPS)
+      {
+        required(node, "every")
+            .refuse("[h] makes more than " + std::to_string(MAX_CHECK_UPS) + " check-ups in the first " +
+                    std::to_string(i + 1) + " of " + std::to_string(drives) + " drives");
+      }
       check_ups_.push_back({ i, hours, age, stressAt(load_map, duties_[drive.duty].second, age) });
     };
     drive.life = ageing[drive.duty].live(drive.variation, longest, every, grease_changes, visit);
