@@ -224,6 +224,13 @@ std::string surfaceCacheFile(const Parameters& parameters, const std::string& di
   return fileOf("surface", header(parameters, {}), directory);
 }
 
+bool surfaceIsKept(const std::string& key, const std::string& directory)
+{
+  constexpr std::array KINDS{ "surface", "deviations", "balls" };
+  return std::any_of(KINDS.begin(), KINDS.end(),
+                     [&](const char* kind) { return fs::exists(fileOf(kind, key, directory)); });
+}
+
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source)
 {

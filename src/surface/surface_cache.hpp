@@ -41,6 +41,9 @@ SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointMode
 SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                        const SurfaceSource& source);
 
+/// Whether the directory has a file of the surface that a pool is asked for by this key.
+bool surfaceIsKept(const std::string& key, const std::string& directory);
+
 /// File of the surface of these parameters, all teeth equal, within the directory.
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);
 }  // namespace hjt

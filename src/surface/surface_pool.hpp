@@ -25,9 +25,12 @@ public:
   /// `kept`: number of surfaces, at least one, that stay in memory, the last requested ones, 8 MB each, also while no
   /// twin uses them.
   explicit SurfacePool(std::size_t kept) : kept_(kept) {}
+  virtual ~SurfacePool() = default;
+  SurfacePool(const SurfacePool&) = delete;
+  SurfacePool& operator=(const SurfacePool&) = delete;
 
   /// The surface under this key, made by `make` if it is not there; may be none.
-  Surface obtain(const std::string& key, const std::function<Surface()>& make);
+  virtual Surface obtain(const std::string& key, const std::function<Surface()>& make);
 
 private:
   using Entry = std::pair<std::string, std::shared_future<Surface>>;

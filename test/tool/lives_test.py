@@ -140,10 +140,20 @@ class Lives(tool.ToolTest):
             self.assertRegex(done.stdout, rf"\| {name} \| \d+ \| \d+ \| \d+ % \|")
         self.assertGreater(len(tool.read_bytes(self.path("a.png"))), 10000)
 
+    def test_a_dry_run_counts_check_ups_and_the_response_surfaces_that_each_needs(self):
+        self.write("plan.yaml", PLAN.replace("set:\n", "set:\n  solver.scene: auto\n").replace("drives: 5", "drives: 1")
+                   .replace("every: 15000.0", "every: 30000.0").replace("  - {name: work", "  # - {name: work"))
+        done = self.lives("a", "--dry-run")
+        check_ups = len(self.lives("a", "--list").stdout.splitlines()) - 1
+        self.assertRegex(done.stdout, rf"check-ups +{check_ups}\n")
+        self.assertRegex(done.stdout, rf"response surfaces to build +{check_ups}\n")
+
     def test_bad_plans_are_refused(self):
         for old, new, parts in [
                 ("lives:\n", "life:\n", ["bad.yaml:9: life is unknown"]),
                 ("drives: 5", "drives: 0", ["lives.drives = 0 [-] is out of range, allowed: 1"]),
+                ("every: 15000.0", "every: 0.005",
+                 ["bad.yaml:10: lives.every = 0.005 [h] makes more than 1000000 check-ups in the first 1 of 5 drives"]),
                 ("[rated.csv]", "[none.csv]", ["none.csv cannot be read"]),
                 ("duty:\n", "classes: {a: []}\nduty:\n", ["classes has no place in a plan of lives"]),
                 ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["draw it, or fix it"])]:

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -362,6 +363,7 @@ record:
         self.assertIn("0 runs done, 4 were there, 2 failed", done.stderr)
 
     def test_bad_plans_are_refused_before_anything_runs(self):
+        self.write("steep.csv", "time,load\n0,0\n1,1e300\n")
         for old, new, parts in [
                 ("duration: 0.06", "duration: -1.0",
                  ["plan.yaml:4: duration = -1.0 [s] is out of range, allowed: 0.001"]),
@@ -383,6 +385,13 @@ record:
                 ("load: {constant: 5.0}",
                  "temperature: {sinus: {mean: 100.0, amplitude: 60.0, frequency: 1.0, phase: 0.0}}",
                  ["plan.yaml:14: duty.0.temperature reaches 40 ... 160 [degC], allowed: -40 ... 150 [degC]"]),
+                ("sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}",
+                 "trapezoid: {peak: 0.1, slope: 1.0e+9, hold: 0.0, pause: 0.0}",
+                 ["plan.yaml:12: duty.0.speed.trapezoid has a half period", "allowed: >= 1.0e-9 [s]"]),
+                ("load: {constant: 5.0}", "load: {csv: {file: steep.csv, column: load}}",
+                 ["steep.csv:3: column 'load' = 1.0e+300 [N.m] is out of range"]),
+                ("load: {constant: 5.0}", "load: {csv: {file: {choice: [steep.csv, none.csv]}, column: time}}",
+                 ["none.csv cannot be read"]),
                 ("deflate: 0", "deflate: 0\n  indicators: some", ["record.indicators = 'some' must be true or false"]),
                 ("load: {constant: 5.0}", "load: {csv: {file: none.csv, column: load}}", ["none.csv cannot be read"]),
                 ("[0.5, 2.0]}", "[0.5, 2.0]}\n  gear.wave_amplitude: &loop {choice: [*loop]}",
@@ -422,17 +431,107 @@ record:
                 for directory in ("alone", "both"):
                     shutil.rmtree(self.path(directory))
 
-    def test_a_damaged_run_is_done_again(self):
+    def test_a_damaged_run_is_done_again_with_an_index_or_without(self):
+        for name, plan in [("h5", PLAN), ("bag", PLAN[:PLAN.index("  format:")] + "  format: bag\n")]:
+            self.write("plan.yaml", plan)
+            self.sweep(name)
+            before = tree(self.path(name))
+            for indexed, flipped in [(True, [(1, 0.5), (2, 0.9), (4, 0.2)]), (False, [(0, 0.5), (3, 0.9), (5, 0.2)])]:
+                with self.subTest(name, indexed=indexed):
+                    if not indexed:  # as after a first sweep that was interrupted
+                        os.remove(self.path(name + "/index.csv"))
+                    for run, place in flipped:
+                        path = self.path(f"{name}/runs/run_{run:09}.{name}")
+                        content = bytearray(tool.read_bytes(path))
+                        content[int(place * len(content))] ^= 0x10
+                        with open(path, "wb") as file:
+                            file.write(content)
+                    self.assertIn("3 runs done, 3 were there, 0 failed, 3 damaged ones done again",
+                                  self.sweep(name).stderr)
+                    self.assertEqual(tree(self.path(name)), before)
+
+    def test_a_file_carries_the_hash_of_its_bytes(self):
+        self.sweep("a", "--jobs", 1)
+        for row in self.index("a"):
+            content = tool.read_bytes(self.path("a/" + row["file"]))
+            known = 14695981039346656037
+            for byte in content.replace(row["file_hash"].encode(), b"0" * 16):
+                known = (known ^ byte) * 1099511628211 % 2 ** 64
+            self.assertEqual(f"{known:016x}", row["file_hash"])
+
+    def test_forces_that_were_not_found_are_not_numbers(self):
+        self.write("plan.yaml", """
+duration: 0.3
+set: {solver.scene: auto, solver.max_iterations: {grid: [2, 20]}}
+duty: [{torque: {constant: 0.4}, load: {constant: 20.0}}]
+record:
+  start: 0.01
+  groups: {teeth: {rate: 1000.0, columns: [mesh_force, tooth_x, motor_angle]}}
+""")
+        done = self.sweep("a")
+        few, enough = self.index("a")
+        self.assertEqual((few["status"], enough["status"], enough["rows_without_forces"]), ("ok", "ok", "0"))
+        self.assertGreater(int(few["rows_without_forces"]), 0)
+        self.assertIn(few["rows_without_forces"] + " rows without forces on the teeth", done.stderr)
+        for row in (few, enough):
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                unknown = numpy.isnan(file["teeth/mesh_force"])
+                self.assertEqual(file.attrs["rows_without_forces"], int(row["rows_without_forces"]))
+                self.assertEqual(unknown.any(axis=1).sum(), int(row["rows_without_forces"]))
+                numpy.testing.assert_array_equal(unknown.all(axis=1), unknown.any(axis=1))
+                numpy.testing.assert_array_equal(unknown, numpy.isnan(file["teeth/tooth_x"]))
+                self.assertTrue((numpy.abs(file["teeth/mesh_force"][:][~unknown.any(axis=1)]).max(axis=1) > 0.0).all())
+                self.assertTrue(numpy.isfinite(file["teeth/motor_angle"]).all())
+
+    def test_a_trapezoid_without_peak_hold_and_pause_stands_still(self):
+        self.write("plan.yaml", PLAN.replace("repeats: 3", "repeats: 1").replace("[10.0, 40.0]", "[10.0]").replace(
+            "sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}",
+            "trapezoid: {peak: {grid: [0.0, 1.0]}, slope: 20.0, hold: 0.0, pause: 0.0}").replace(
+                "[mesh_force,", "[speed_reference,"))
         self.sweep("a")
-        before = tree(self.path("a"))
-        for run, place in [(1, 0.5), (2, 0.9), (4, 0.2)]:
-            path = self.path(f"a/runs/run_{run:09}.h5")
-            content = bytearray(tool.read_bytes(path))
-            content[int(place * len(content))] ^= 0x10
-            with open(path, "wb") as file:
-                file.write(content)
-        self.assertIn("3 runs done, 3 were there, 0 failed, 3 damaged ones done again", self.sweep("a").stderr)
-        self.assertEqual(tree(self.path("a")), before)
+        reference = []
+        for row in self.index("a"):
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                reference.append(file["teeth/speed_reference"][:])
+        self.assertEqual(numpy.abs(reference[0]).max(), 0.0)
+        self.assertGreater(numpy.abs(reference[1]).max(), 0.1)
+
+    def test_the_table_of_a_duty_may_be_drawn(self):
+        for name, speed in [("slow.csv", 0.5), ("fast.csv", 1.0)]:
+            self.write(name, f"time,speed\n0,{speed}\n1,{speed}\n")
+        self.write("plan.yaml", PLAN.replace("repeats: 3", "repeats: 5").replace("[mesh_force,", "[speed_reference,")
+                   .replace("sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}",
+                            "csv: {file: {choice: [slow.csv, fast.csv]}, column: speed}")
+                   .replace("{constant: 5.0}", "{sinus: {amplitude: 5.0, frequency: 2.0}}"))
+        self.sweep("a")
+        drawn = set()
+        for row in self.index("a"):
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                table = row["duty.0.speed.csv.file"]
+                self.assertEqual(file["teeth/speed_reference"][-1], {"slow.csv": 0.5, "fast.csv": 1.0}[table])
+                drawn.add(table)
+        self.assertEqual(len(drawn), 2)
+
+    def test_goes_on_with_the_threads_that_there_are(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_STACK, (2 ** 30, 2 ** 30))  # of each thread, of at most 8 GB together
+            resource.setrlimit(resource.RLIMIT_AS, (2 ** 33, 2 ** 33))
+        if tool.SLOWER != 1.0:
+            self.skipTest("a sanitizer takes all addresses")
+        self.write("plan.yaml", PLAN.replace("repeats: 3", "repeats: 20"))
+        done = subprocess.run([self.executable, "sweep", "plan.yaml", "--out", "a", "--jobs", "40"], cwd=self.directory,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=300,
+                              preexec_fn=limit, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"[1-9]\d* of 40 threads \(--jobs\) could be started: ")
+        self.assertIn("40 runs done", done.stderr)
+        self.assertEqual(len(self.index("a")), 40)
+
+    def test_a_long_list_takes_no_minutes(self):
+        self.write("plan.yaml", PLAN.replace("repeats: 3", "repeats: 2500"))
+        exit_code, seconds, _ = self.measure("sweep", "plan.yaml", "--out", "a", "--list")
+        self.assertEqual(exit_code, 0)
+        self.assertLess(seconds, 3.0)  # 5000 runs
 
     def test_a_directory_of_another_plan_is_refused(self):
         self.sweep("a")
@@ -453,7 +552,8 @@ record:
     def test_dry_run_tells_runs_and_size_and_writes_nothing(self):
         done = self.sweep("a", "--dry-run")
         self.assertIn("runs 0 ... 5: class healthy, duty turning", done.stdout)
-        self.assertIn("expected time", done.stdout)
+        self.assertRegex(done.stdout, r"expected time, \d+ jobs +[0-9.]{1,6} (s|min)\n")
+        self.assertRegex(done.stdout, r"response surfaces to build +0\n")
         self.assertFalse(os.path.exists(self.path("a")))
 
     def test_the_shipped_plans_are_right(self):

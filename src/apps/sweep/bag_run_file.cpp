@@ -10,6 +10,7 @@
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/run_summary.hpp"
+#include "apps/sweep/file_seal.hpp"
 
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -63,7 +64,7 @@ void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
   last_ = twin.stamp();
 }
 
-void BagRunFile::finish(const OrderedJson& record)
+void BagRunFile::finish(OrderedJson record)
 {
   std_msgs::String message;
   message.data = record.dump();
@@ -74,6 +75,7 @@ void BagRunFile::finish(const OrderedJson& record)
         const std::lock_guard<std::mutex> lock(g_opening);
         bag_->close();
       });
+  sealFile(temporary_);
   bringToDisk(temporary_, path_);
 }
 

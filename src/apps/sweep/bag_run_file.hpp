@@ -20,7 +20,7 @@ public:
   ~BagRunFile() override;
 
   void record(Twin& twin, const DutyFeeder& feeder) override;
-  void finish(const OrderedJson& record) override;
+  void finish(OrderedJson record) override;
 
   static std::string readRecord(const std::string& path);  ///< empty if there is none
 

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
+#include <limits>
 #include <utility>
+
+#include "apps/sweep/file_seal.hpp"
 
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -19,80 +21,6 @@ namespace
 constexpr hsize_t ROWS_IN_CHUNK = 4096;
 constexpr const char* TIME = "time";
 constexpr const char* SEVERITY = "severity";
-
-/// The library may serve one thread at a time.
-std::unique_lock<std::mutex> lockLibrary()
-{
-  static std::mutex mutex;
-  std::unique_lock<std::mutex> lock(mutex);
-  // The library's own end of the process closes what a full disk left open, and crashes there; we close what we opened.
-  [[maybe_unused]] static const herr_t ENDS_BY_ITSELF = H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by exceptions
-  return lock;
-}
-
-/// Creation properties without times.
-Hdf5Handle withoutTimes(hid_t kind)
-{
-  Hdf5Handle properties(H5Pcreate(kind), H5Pclose);
-  H5Pset_obj_track_times(properties.get(), false);
-  return properties;
-}
-
-Hdf5Handle textType(std::size_t length)
-{
-  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  return type;
-}
-
-/// As an attribute of variable length: readers give that as text, one of fixed length as bytes.
-void writeText(hid_t object, const char* name, const std::string& text)
-{
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), H5T_VARIABLE);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  const char* const content = text.c_str();
-  H5Awrite(attribute.get(), type.get(), &content);
-}
-
-void writeNumber(hid_t object, const char* name, double value)
-{
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(object, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value);
-}
-
-/// A text as a data set of its own: an attribute may hold 64 kB at most, and object headers are no place for long ones.
-bool writeTextDataset(hid_t file, const char* name, const std::string& text)
-{
-  const Hdf5Handle type = textType(text.size());
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
-  const Hdf5Handle dataset(H5Dcreate2(file, name, type.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-                           H5Dclose);
-  return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
-}
-
-/// Numbers as a data set. @returns its success as the library does.
-herr_t writeRows(hid_t group, const char* name, const char* unit, const std::vector<double>& rows)
-{
-  const hsize_t count = rows.size();
-  const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  const Hdf5Handle properties = withoutTimes(H5P_DATASET_CREATE);
-  const Hdf5Handle dataset(
-      H5Dcreate2(group, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid())
-  {
-    return -1;
-  }
-  writeText(dataset.get(), "unit", unit);
-  return rows.empty() ? 0 : H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
-}
 
 /// A fault as it lies in memory and, without the gaps, in the file.
 struct FaultRow
@@ -132,21 +60,6 @@ bool writeFaults(hid_t file, const std::vector<GrowingFault>& faults)
          (rows.empty() || H5Dwrite(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
 }
 }  // namespace
-
-Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept
-{
-  std::swap(id_, other.id_);
-  std::swap(close_, other.close_);
-  return *this;
-}
-
-Hdf5Handle::~Hdf5Handle()
-{
-  if (id_ >= 0)
-  {
-    close_(id_);
-  }
-}
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
   : path_(std::move(path)), temporary_(path_ + ".part"), faults_(spec.faults), indicators_(recording.indicators)
@@ -253,16 +166,18 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
       continue;
     }
     const Instant instant{ twin.outputs(), twin.encoders(), twin.motorTorqueReading(), feeder.speedReference() };
-    if (group.per_tooth)
-    {
-      twin.toothForces(teeth_);
-    }
+    const bool teeth_known = !group.per_tooth || twin.toothForces(teeth_);
+    rows_without_forces_ += teeth_known ? 0 : 1;
     const double time = toSeconds(now - begin_);
     for (ColumnData& data : group.columns)
     {
       if (data.column == nullptr)
       {
         data.block.push_back(&data == &group.columns.back() ? severityAt(time) : time);
+      }
+      else if (data.column->per_tooth != nullptr && !teeth_known)
+      {
+        data.block.insert(data.block.end(), data.width, std::numeric_limits<double>::quiet_NaN());
       }
       else if (data.column->per_tooth != nullptr)
       {
@@ -346,8 +261,9 @@ void Hdf5RunFile::writeIndicators()
   }
 }
 
-void Hdf5RunFile::finish(const OrderedJson& record)
+void Hdf5RunFile::finish(OrderedJson record)
 {
+  record[ROWS_WITHOUT_FORCES] = rows_without_forces_;
   for (Group& group : groups_)
   {
     if (group.buffered > 0)
@@ -363,7 +279,7 @@ void Hdf5RunFile::finish(const OrderedJson& record)
   }
   {
     const auto lock = lockLibrary();
-    for (const char* key : { "run", "class", "duty", "status", "error", "version" })
+    for (const char* key : { "run", "class", "duty", "status", "error", "version", ROWS_WITHOUT_FORCES })
     {
       const auto& value = record.at(key);
       if (value.is_number())
@@ -387,6 +303,7 @@ void Hdf5RunFile::finish(const OrderedJson& record)
     check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
     file_ = Hdf5Handle();
   }
+  sealFile(temporary_);
   bringToDisk(temporary_, path_);
 }
 

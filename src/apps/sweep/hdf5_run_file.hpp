@@ -2,35 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include <hdf5.h>
-
+#include "apps/sweep/hdf5_tools.hpp"
 #include "apps/sweep/run_file.hpp"
 
 namespace hjt
 {
-/// An object of the HDF5 library, closed at the end.
-class Hdf5Handle
-{
-public:
-  using Close = herr_t (*)(hid_t);
-
-  Hdf5Handle() = default;
-  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
-  Hdf5Handle(Hdf5Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
-  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept;
-  ~Hdf5Handle();
-
-  hid_t get() const { return id_; }
-  bool valid() const { return id_ >= 0; }
-
-private:
-  hid_t id_{ -1 };
-  Close close_{};
-};
-
 /// A run as an HDF5 file: a group for each rate with a data set a column, time and severity, the indicators of each
 /// window, the faults, the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no
 /// times are kept.
@@ -41,7 +21,7 @@ public:
   ~Hdf5RunFile() override;
 
   void record(Twin& twin, const DutyFeeder& feeder) override;
-  void finish(const OrderedJson& record) override;
+  void finish(OrderedJson record) override;
 
   /// Of the data set of this name; empty if there is none.
   static std::string readText(const std::string& path, const char* name);
@@ -81,6 +61,7 @@ private:
   Stamp begin_{};
   std::vector<GrowingFault> faults_;
   ToothForces teeth_;
+  std::uint64_t rows_without_forces_{};
   std::vector<Group> groups_;
   bool indicators_;
   std::vector<SignalIndicators> windows_;

@@ -15,19 +15,12 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-constexpr double LARGE = 1e6;      // of any value of a waveform
-constexpr double BANDWIDTH = 8.0;  // of the speed control [Hz]
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
 /// Of the runs of a plan of lives.
 const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
 constexpr const char* SET = "set.";  // before what is drawn for each drive
-
-std::string fileOf(const PlanNode& csv)
-{
-  return PlanValues().text(csv, "file");
-}
 
 /// These faults in place of any other.
 void setFaults(const std::vector<GrowingFault>& faults, const std::string& origin, ParameterMap& map)
@@ -73,47 +66,7 @@ std::vector<GrowingFault> faultsOf(const PlanNode& list, const PlanValues& value
   }
   return faults;
 }
-
-/// Calls `visit` for every mapping `csv: {file: ..., column: ...}` below a node.
-template <class Visitor>
-void visitTables(const PlanNode& node, const Visitor& visit)
-{
-  for (const auto& [key, below] : node.entries)
-  {
-    if (key == "csv")
-    {
-      visit(below);
-    }
-    visitTables(below, visit);
-  }
-}
-
-OrderedJson jsonOf(const PlanNode& node)
-{
-  if (node.kind == Kind::SCALAR)
-  {
-    return jsonOf(node.scalar);
-  }
-  OrderedJson json = node.kind == Kind::MAP ? OrderedJson::object() : OrderedJson::array();
-  for (const auto& [key, below] : node.entries)
-  {
-    if (node.kind == Kind::MAP)
-    {
-      json[key] = jsonOf(below);
-    }
-    else
-    {
-      json.push_back(jsonOf(below));
-    }
-  }
-  return json;
-}
 }  // namespace
-
-OrderedJson jsonOf(const ParameterValue& value)
-{
-  return std::visit([](const auto& content) { return OrderedJson(content); }, value.value);
-}
 
 std::vector<std::string> Plan::overlays(const std::string& path)
 {
@@ -141,19 +94,20 @@ Plan::Plan(const std::string& path, ParameterMap base)
   name_ = values.text(root_, "name", std::filesystem::path(path).stem().string());
   seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }, 1));
   repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }, 1));
-  visitTables(required(root_, "duty", Kind::LIST),
-              [this](const PlanNode& csv)
-              {
-                allowOnly(csv, { "file", "column" });
-                const std::string file = (std::filesystem::path(directory_) / fileOf(csv)).string();
-                const std::string column = PlanValues().text(csv, "column");
-                tables_[csv.path] = TableWaveform::read(file, column);
-              });
+  duties_.readTables(required(root_, "duty", Kind::LIST), directory_);
   recording_ = readRecording(required(root_, "record", Kind::MAP));
   root_.find("lives") != nullptr ? makeLives() : makeBlocks();
   if (runs_ == 0)
   {
     root_.find("duty")->refuse("must have at least one duty cycle");
+  }
+  try
+  {
+    first_ = run(0).parameters;
+  }
+  catch (const InputError&)
+  {
+    // Whoever asks for the run is told.
   }
 }
 
@@ -309,22 +263,21 @@ RunSpec Plan::run(std::uint64_t number) const
   {
     required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
   }
-  allowOnly(*block.duty, { "name", "torque", "speed", "bandwidth", "load", "temperature" });
   spec.duty_name = values.text(*block.duty, "name", "duty");
-  spec.duty = dutyOf(*block.duty, values);
+  spec.duty = duties_.read(*block.duty, values);
   constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
   spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
-  ParameterMap map = settingsOf(values, number);
+  ParameterMap settings = settingsOf(values, number);
   const bool given = lives_ || root_.find("classes") != nullptr;
   if (given)
   {
     const std::uint64_t check_up = number / blocks_.size();
     spec.faults = lives_ ? lives_->faultsAt(check_up) : faultsOf(block.fault_class->second, values);
-    setFaults(spec.faults, block.fault_class->second.origin, map);
+    setFaults(spec.faults, block.fault_class->second.origin, settings);
     const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
     spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
   }
-  spec.parameters = parseParameters(map);
+  spec.parameters = parametersOf(settings, given);
   if (!given)
   {
     for (const Fault& fault : spec.parameters.faults)
@@ -338,90 +291,52 @@ RunSpec Plan::run(std::uint64_t number) const
 
 ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) const
 {
-  ParameterMap map = base_;
+  ParameterMap map;
   bool seeded = false;
   if (const PlanNode* settings = root_.find("set"))
   {
     for (const auto& [key, node] : settings->entries)
     {
-      map[key] = values.value(node);
-      map[key].origin = node.origin;
+      map[key] = { values.value(node).value, node.origin };
       seeded = seeded || key == NOISE_SEED;
     }
   }
   if (!seeded)
   {
-    map[NOISE_SEED].value = static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1);
+    map[NOISE_SEED] = { static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1), root_.origin };
   }
   return map;
 }
 
-RunDuty Plan::dutyOf(const PlanNode& duty, const PlanValues& values) const
+/// The settings of one run over those of the first, which set the same keys. Where something is wrong all is read, for
+/// the text of the error.
+Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) const
 {
-  RunDuty cycle;
-  const bool torque = duty.find("torque") != nullptr;
-  if (torque == (duty.find("speed") != nullptr))
+  const auto first_fault = settings.lower_bound(FAULTS);
+  const bool with_faults = first_fault != settings.end() && first_fault->first.rfind(FAULTS, 0) == 0;
+  if (first_ && (faults_given || !with_faults))
   {
-    duty.refuse("must have either torque or speed");
-  }
-  if (torque)
-  {
-    cycle.torque = waveform(duty, "torque", "N.m", values);
-  }
-  else
-  {
-    cycle.speed = waveform(duty, "speed", "rad/s", values);
-    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 }, BANDWIDTH);
-  }
-  if (duty.find("load") != nullptr)
-  {
-    cycle.load = waveform(duty, "load", "N.m", values);
-  }
-  if (duty.find("temperature") != nullptr)
-  {
-    cycle.temperature = waveform(duty, "temperature", "degC", values);
-    const Range reached = cycle.temperature->range();
-    if (reached.min < MIN_TEMPERATURE || reached.max > MAX_TEMPERATURE)
+    try
     {
-      required(duty, "temperature")
-          .refuse("reaches " + rangeText(reached) +
-                  " [degC], allowed: " + rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }) + " [degC]");
+      Parameters parameters = *first_;
+      parameters.faults = faults_given ? std::vector<Fault>() : parameters.faults;
+      changeParameters(parameters, settings);
+      return parameters;
+    }
+    catch (const ParameterError&)
+    {
     }
   }
-  return cycle;
-}
-
-std::shared_ptr<const Waveform> Plan::waveform(const PlanNode& map, const std::string& key, const char* unit,
-                                               const PlanValues& values) const
-{
-  const PlanNode& node = required(map, key, Kind::MAP);
-  allowOnly(node, { "constant", "sinus", "trapezoid", "csv" });
-  if (node.entries.size() != 1)
+  ParameterMap map = base_;
+  if (faults_given)
   {
-    node.refuse("must be one of constant, sinus, trapezoid, csv");
+    eraseFaults(map);
   }
-  const auto& [kind, shape] = node.entries.front();
-  const std::string slope_unit = std::string(unit) + "/s";
-  if (kind == "constant")
+  for (const auto& [key, value] : settings)
   {
-    return std::make_shared<ConstantWaveform>(values.number(node, kind, unit, { -LARGE, LARGE }));
+    map[key] = value;
   }
-  if (kind == "sinus")
-  {
-    allowOnly(shape, { "mean", "amplitude", "frequency", "phase" });
-    return std::make_shared<SinusWaveform>(
-        values.number(shape, "mean", unit, { -LARGE, LARGE }), values.number(shape, "amplitude", unit, { 0.0, LARGE }),
-        values.number(shape, "frequency", "Hz", { 0.0, 1e4 }), values.number(shape, "phase", "rad", { -1e3, 1e3 }));
-  }
-  if (kind == "trapezoid")
-  {
-    allowOnly(shape, { "peak", "slope", "hold", "pause" });
-    return std::make_shared<TrapezoidWaveform>(values.number(shape, "peak", unit, { -LARGE, LARGE }),
-                                               values.number(shape, "slope", slope_unit.c_str(), { 1e-6, 1e9 }),
-                                               values.number(shape, "hold", "s", { 0.0, 1e6 }),
-                                               values.number(shape, "pause", "s", { 0.0, 1e6 }));
-  }
-  return std::make_shared<TableWaveform>(tables_.at(shape.path));
+  return parseParameters(map);
 }
 
 void Plan::checkRates(const Parameters& parameters) const
@@ -455,11 +370,7 @@ std::vector<std::string> Plan::variableNames() const
 
 OrderedJson Plan::snapshot() const
 {
-  OrderedJson tables = OrderedJson::object();
-  for (const auto& [path, rows] : tables_)
-  {
-    tables[path] = *rows;
-  }
+  OrderedJson tables = duties_.tables();
   if (lives_)
   {
     tables["lives"] = lives_->duties();

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/common/ordered_json.hpp"
+#include "apps/sweep/duty_reader.hpp"
 #include "apps/sweep/lives.hpp"
 #include "apps/sweep/plan_node.hpp"
 #include "apps/sweep/plan_values.hpp"
@@ -21,8 +23,6 @@
 
 namespace hjt
 {
-OrderedJson jsonOf(const ParameterValue& value);
-
 /// One run of a plan, with nothing left open.
 struct RunSpec
 {
@@ -89,9 +89,7 @@ private:
   void makeLives();
   PlanValues valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const;
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
-  RunDuty dutyOf(const PlanNode& duty, const PlanValues& values) const;
-  std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const char* unit,
-                                           const PlanValues& values) const;
+  Parameters parametersOf(const ParameterMap& settings, bool faults_given) const;
   void checkRates(const Parameters& parameters) const;
 
   std::string directory_;
@@ -102,9 +100,10 @@ private:
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
   Recording recording_;
+  DutyReader duties_;
   std::unique_ptr<const Lives> lives_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;
-  std::map<std::string, std::shared_ptr<const TableWaveform::Rows>> tables_;  // by file and column
+  std::optional<Parameters> first_;  // of the first run, if there is no error in it
 };
 }  // namespace hjt

@@ -86,6 +86,33 @@ std::optional<double> numberIn(const ParameterValue& value)
   return number != nullptr ? std::optional<double>(*number) : std::nullopt;
 }
 
+OrderedJson jsonOf(const ParameterValue& value)
+{
+  return std::visit([](const auto& content) { return OrderedJson(content); }, value.value);
+}
+
+OrderedJson jsonOf(const PlanNode& node)
+{
+  if (node.kind == PlanNode::Kind::SCALAR)
+  {
+    return jsonOf(node.scalar);
+  }
+  OrderedJson json =
+      node.kind == PlanNode::Kind::MAP ? OrderedJson::object() : OrderedJson::array();
+  for (const auto& [key, below] : node.entries)
+  {
+    if (node.kind == PlanNode::Kind::MAP)
+    {
+      json[key] = jsonOf(below);
+    }
+    else
+    {
+      json.push_back(jsonOf(below));
+    }
+  }
+  return json;
+}
+
 PlanNode readPlanFile(const std::string& path)
 {
   try

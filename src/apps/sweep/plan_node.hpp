@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "apps/common/ordered_json.hpp"
+
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
@@ -35,6 +37,9 @@ struct PlanNode
 
 /// The number that a value is, whole or not; nothing if it is none.
 std::optional<double> numberIn(const ParameterValue& value);
+
+OrderedJson jsonOf(const ParameterValue& value);
+OrderedJson jsonOf(const PlanNode& node);
 
 /// @throws InputError naming file and line.
 PlanNode readPlanFile(const std::string& path);

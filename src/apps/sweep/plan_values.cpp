@@ -142,16 +142,15 @@ const PlanNode& required(const PlanNode& map, const std::string& key, PlanNode::
 
 void allowOnly(const PlanNode& map, const std::vector<std::string>& keys)
 {
-  const std::string list = joined(keys);
   if (map.kind != PlanNode::Kind::MAP)
   {
-    map.refuse("must be a mapping with keys of: " + list);
+    map.refuse("must be a mapping with keys of: " + joined(keys));
   }
   for (const auto& [key, node] : map.entries)
   {
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
     {
-      node.refuse("is unknown; allowed: " + list);
+      node.refuse("is unknown; allowed: " + joined(keys));
     }
   }
 }

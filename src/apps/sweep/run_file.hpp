@@ -12,6 +12,9 @@
 
 namespace hjt
 {
+/// Of a run's record: rows whose forces on the teeth are NaN, as no equilibrium of the teeth was found for them.
+constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
+
 /// What one run is written to. Nothing stands under its name before `finish`.
 class RunFile
 {
@@ -21,9 +24,9 @@ public:
   /// After every step. @throws InputError if the disk does not take it.
   virtual void record(Twin& twin, const DutyFeeder& feeder) = 0;
 
-  /// Writes what is known only now, brings all to the disk and gives the file its name. `record`: the run's row of the
-  /// index. @throws InputError.
-  virtual void finish(const OrderedJson& record) = 0;
+  /// Writes what is known only now, seals the file, brings it to the disk and gives it its name. `record`: the run's
+  /// row of the index, with an open seal. @throws InputError.
+  virtual void finish(OrderedJson record) = 0;
 };
 
 /// `twin`: none if the run has none; then only the record is written. @throws InputError.

@@ -22,10 +22,11 @@ struct SweepOptions
 
 struct SweepResult
 {
-  std::uint64_t done{};     ///< runs finished by this call
-  std::uint64_t present{};  ///< runs that stood there finished before
-  std::uint64_t damaged{};  ///< of those done, runs whose file did not match the index
-  std::uint64_t failed{};   ///< of this shard's, of those and of the others
+  std::uint64_t done{};                 ///< runs finished by this call
+  std::uint64_t present{};              ///< runs that stood there finished before
+  std::uint64_t damaged{};              ///< of those done, runs whose file was damaged
+  std::uint64_t failed{};               ///< of this shard's, of those and of the others
+  std::uint64_t rows_without_forces{};  ///< of them
 };
 
 /// Does all runs of the shard that are not finished. An interrupt ends it early; finished runs stay.
@@ -33,17 +34,9 @@ struct SweepResult
 SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options,
                      const SurfaceSource& surface_source);
 
-/// What a run costs, tried on its first tenths of a second.
-struct RunCost
-{
-  double surface{};           ///< before the first step, its response surface or the look for it in the cache [s]
-  double start{};             ///< before the first step, the surface at hand [s]
-  double real_time_factor{};  ///< simulated over real time, one core, nothing recorded [-]
-};
+/// A run of the plan before any has started. @throws InputError as `Plan::run`, with the number of the run.
+RunSpec checkedRun(const Plan& plan, std::uint64_t run);
 
-/// @throws ParameterError if the run's drive has no equilibrium.
-RunCost measureCost(const RunSpec& spec, const SurfaceSource& surface_source);
-
-/// Checks every run of the plan. @throws InputError as `Plan::run`, with the number of the run.
+/// All of them.
 void checkRuns(const Plan& plan);
 }  // namespace hjt

@@ -5,15 +5,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "apps/sweep/file_seal.hpp"
 #include "apps/sweep/run_file.hpp"
 
 #include "base/joined.hpp"
@@ -89,19 +88,6 @@ std::string otherThan(const Json& found, const Json& wanted)
   return "something else";
 }
 
-/// Of a file's bytes.
-std::string fileHash(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  std::uint64_t hash = textHash("");
-  std::vector<char> block(1 << 20);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-  {
-    hash = textHash({ block.data(), static_cast<std::size_t>(file.gcount()) }, hash);
-  }
-  return hexadecimal(hash);
-}
-
 /// Locks or unlocks one byte, whether it is in the file or not. False: another process holds it. A file system that
 /// knows no locks refuses none.
 bool lockByte(int file, std::uint64_t place, int command, short kind)
@@ -116,21 +102,6 @@ bool lockByte(int file, std::uint64_t place, int command, short kind)
   return fcntl(file, command, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
 }
 }  // namespace
-
-SweepDirectory::SweepDirectory(const Plan& plan, std::string path) : plan_(plan), path_(std::move(path))
-{
-  std::ifstream index(path_ + "/index.csv");
-  for (std::string line; std::getline(index, line);)
-  {
-    // run,"file","hash",...
-    const std::size_t hash = line.find(",\"", line.find("\",\"")) + 2;
-    const std::size_t end = line.find('"', hash);
-    if (std::isdigit(static_cast<unsigned char>(line[0])) != 0 && end != std::string::npos)
-    {
-      hashes_[std::strtoull(line.c_str(), nullptr, 10)] = line.substr(hash, end - hash);
-    }
-  }
-}
 
 SweepDirectory::~SweepDirectory()
 {
@@ -190,19 +161,9 @@ void SweepDirectory::lock(std::uint64_t run) const
   }
 }
 
-bool SweepDirectory::isFinished(std::uint64_t run)
+bool SweepDirectory::isFinished(std::uint64_t run) const
 {
-  if (!record(run).is_object())
-  {
-    return false;
-  }
-  const auto known = hashes_.find(run);
-  if (known == hashes_.end() || known->second == fileHash(runFile(run)))
-  {
-    return true;
-  }
-  hashes_.erase(known);
-  return false;
+  return record(run).is_object() && isSealed(runFile(run));
 }
 
 std::string SweepDirectory::runFileName(std::uint64_t run) const
@@ -219,7 +180,8 @@ std::string SweepDirectory::runFile(std::uint64_t run) const
 
 Json SweepDirectory::record(std::uint64_t run) const
 {
-  return readRunRecord(plan_.recording().format, runFile(run));
+  Json found = readRunRecord(plan_.recording().format, runFile(run));
+  return found.is_object() && found.value("run", Json()) == run ? found : Json();
 }
 
 std::uint64_t SweepDirectory::finishedRuns() const
@@ -237,7 +199,7 @@ std::string SweepDirectory::indexHeader() const
   std::string header =
       "run,file,file_hash,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,fault_"
       "ramp,"
-      "noise_seed,parameters_hash,version,error";
+      "noise_seed,parameters_hash,version,rows_without_forces,error";
   for (const std::string& name : plan_.variableNames())
   {
     header += "," + name;
@@ -248,7 +210,7 @@ std::string SweepDirectory::indexHeader() const
 std::string SweepDirectory::indexRow(const Json& record) const
 {
   std::string row = cell(record.at("run"));
-  for (const char* key : { "file", "file_hash", "status", "class", "duty", "repeat", "duration" })
+  for (const char* key : { "file", FILE_HASH, "status", "class", "duty", "repeat", "duration" })
   {
     row += "," + cell(record.value(key, Json()));
   }
@@ -258,9 +220,9 @@ std::string SweepDirectory::indexRow(const Json& record) const
     { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
     row += "," + joined(record.at("faults"), ";", text);
   }
-  for (const char* key : { "noise_seed", "parameters_hash", "version", "error" })
+  for (const char* key : { "noise_seed", "parameters_hash", "version", ROWS_WITHOUT_FORCES, "error" })
   {
-    row += "," + cell(record.at(key));
+    row += "," + cell(record.value(key, Json()));
   }
   for (const std::string& name : plan_.variableNames())
   {
@@ -269,7 +231,7 @@ std::string SweepDirectory::indexRow(const Json& record) const
   return row;
 }
 
-void SweepDirectory::writeIndex()
+void SweepDirectory::writeIndex() const
 {
   // Another shard may end while this one reads: whoever writes last has seen all.
   for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
@@ -278,12 +240,9 @@ void SweepDirectory::writeIndex()
     std::string text = indexHeader() + '\n';
     for (std::uint64_t run = 0; run < plan_.runs(); ++run)
     {
-      Json found = record(run);
+      const Json found = record(run);
       if (found.is_object())
       {
-        std::string& hash = hashes_[run];
-        hash = hash.empty() ? fileHash(runFile(run)) : hash;
-        found["file_hash"] = hash;
         text += indexRow(found) + '\n';
       }
     }
@@ -311,6 +270,7 @@ Json recordOf(const RunSpec& spec, const std::string& file)
            { "version", softwareVersion() },
            { "run", spec.run },
            { "file", file },
+           { FILE_HASH, OPEN_SEAL },
            { "status", "ok" },
            { "error", "" },
            { "class", spec.fault_class },
@@ -320,6 +280,6 @@ Json recordOf(const RunSpec& spec, const std::string& file)
            { "faults", faults },
            { "variables", variables },
            { "noise_seed", spec.parameters.sensors.noise_seed },
-           { "parameters_hash", hexadecimal(textHash(describeParameters(spec.parameters))) } };
+           { "parameters_hash", hexadecimal(parametersHash(spec.parameters)) } };
 }
 }  // namespace hjt

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
+#include <utility>
 
 #include "apps/common/ordered_json.hpp"
 #include "apps/sweep/plan.hpp"
@@ -14,7 +14,7 @@ namespace hjt
 class SweepDirectory
 {
 public:
-  SweepDirectory(const Plan& plan, std::string path);
+  SweepDirectory(const Plan& plan, std::string path) : plan_(plan), path_(std::move(path)) {}
   ~SweepDirectory();
   SweepDirectory(const SweepDirectory&) = delete;
   SweepDirectory& operator=(const SweepDirectory&) = delete;
@@ -25,15 +25,15 @@ public:
   /// Keeps other processes from writing this run until this one ends. @throws InputError if one does already.
   void lock(std::uint64_t run) const;
 
-  /// Whether the run's file is there, readable and, if the index was written since, has the index's hash.
-  bool isFinished(std::uint64_t run);
+  /// Whether the run's file is there, whole and undamaged.
+  bool isFinished(std::uint64_t run) const;
 
   std::string runFile(std::uint64_t run) const;      ///< whole path
   std::string runFileName(std::uint64_t run) const;  ///< from the directory on
   OrderedJson record(std::uint64_t run) const;       ///< none if the run is not finished
 
   /// Writes index.csv from the runs' files.
-  void writeIndex();
+  void writeIndex() const;
 
   /// One line of the index: of a finished run from its record, else with the status given. Without line end.
   std::string indexHeader() const;
@@ -45,7 +45,6 @@ private:
   const Plan& plan_;
   std::string path_;
   int plan_file_{ -1 };
-  std::map<std::uint64_t, std::string> hashes_;  // of the runs' files, by the index
 };
 
 /// What the index says of a run before it has run: labels, variables, seeds.

@@ -10,7 +10,9 @@
 #include "apps/common/interrupt.hpp"
 #include "apps/common/progress.hpp"
 #include "apps/common/report.hpp"
-#include "apps/common/text_table.hpp"
+#include "apps/common/run_summary.hpp"
+#include "apps/sweep/expectation.hpp"
+#include "apps/sweep/file_seal.hpp"
 #include "apps/sweep/run_file.hpp"
 #include "apps/sweep/sweep.hpp"
 #include "surface/surface_cache.hpp"
@@ -58,41 +60,12 @@ void printList(const Plan& plan, const SweepArguments& arguments)
     OrderedJson record = directory.record(run);
     if (!record.is_object())
     {
-      record = recordOf(plan.run(run), directory.runFileName(run));
+      record = recordOf(checkedRun(plan, run), directory.runFileName(run));
       record["status"] = "pending";
+      record[FILE_HASH] = nullptr;
     }
     std::cout << directory.indexRow(record) << '\n';
   }
-}
-
-std::string shortTime(double seconds)
-{
-  return seconds < 100.0 ? shortNumber(seconds) + " s" : shortNumber(seconds / 3600.0) + " h";
-}
-
-void printExpectation(const Plan& plan, const SweepArguments& arguments)
-{
-  const SurfaceSource surfaces = sharedSurfaces(plan, 1);
-  double time = 0.0;
-  double bytes = 0.0;
-  double simulated = 0.0;
-  for (const Plan::Block& block : plan.blocks())
-  {
-    const RunSpec spec = plan.run(block.first);
-    const RunCost cost = measureCost(spec, surfaces);
-    const auto runs = static_cast<double>(block.size);
-    const double surface = plan.lives() != nullptr && block.first == 0 ? cost.surface : 0.0;  // one a check-up
-    time += runs * (surface + cost.start + spec.duration / cost.real_time_factor);
-    bytes += runs * dataSize(plan.recording(), spec.duration, spec.parameters.gear.teeth_flexspline);
-    simulated += runs * spec.duration;
-    std::cout << "runs " << block.first << " ... " << block.last() << ": class " << spec.fault_class << ", duty "
-              << spec.duty_name << ", " << shortNumber(cost.real_time_factor) << " times real time\n";
-  }
-  printValues({ { "runs", std::to_string(plan.runs()), "" },
-                { "simulated, together", shortTime(simulated), "" },
-                { "expected time, " + std::to_string(arguments.jobs) + " jobs", shortTime(time / arguments.jobs), "" },
-                { "numbers of all files", bytes > 0.0 ? shortNumber(bytes / 1e6) : "-", "MB" } });
-  std::cout << "The time is estimated from the first 0.2 s of the first run of each line.\n";
 }
 }  // namespace
 
@@ -121,15 +94,15 @@ int sweep(const SweepArguments& arguments)
   {
     throw InputError(arguments.plan + " has no mapping 'lives'; joint_twin sweep works it off");
   }
-  checkRuns(plan);
   if (arguments.list)
   {
     printList(plan, arguments);
     return EXIT_DONE;
   }
+  checkRuns(plan);
   if (arguments.dry_run)
   {
-    printExpectation(plan, arguments);
+    printExpectation(plan, arguments.jobs, sharedSurfaces(plan, 1));
     return EXIT_DONE;
   }
   SweepDirectory directory(plan, arguments.out);
@@ -145,7 +118,8 @@ int sweep(const SweepArguments& arguments)
                         { "done", "", result.done },
                         { "present", "", result.present },
                         { "failed", "", result.failed },
-                        { "damaged", "", result.damaged } });
+                        { "damaged", "", result.damaged },
+                        { ROWS_WITHOUT_FORCES, "", result.rows_without_forces } });
   }
   else if (!arguments.quiet)
   {
@@ -153,6 +127,8 @@ int sweep(const SweepArguments& arguments)
               << " failed, " << result.damaged << " damaged ones done again; index: " << arguments.out
               << "/index.csv\n";
   }
+  warn(arguments.quiet ? 0 : result.rows_without_forces,
+       "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs");
   if (interruptSignal() != 0)
   {
     std::cerr << "joint_twin: interrupted; the same command resumes\n";

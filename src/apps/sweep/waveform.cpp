@@ -32,6 +32,10 @@ TrapezoidWaveform::TrapezoidWaveform(double peak, double slope, double hold, dou
 
 TrapezoidWaveform::Place TrapezoidWaveform::place(double time) const
 {
+  if (half_period_ < SHORTEST)
+  {
+    return { 1.0, 0.0 };
+  }
   const double halves = std::floor(time / half_period_);
   const bool forth = (std::fmod(halves, 2.0) == 0.0) == (peak_ >= 0.0);
   return { forth ? 1.0 : -1.0, time - halves * half_period_ };
@@ -54,7 +58,8 @@ double TrapezoidWaveform::slope(double time) const
   return at.time >= rise_ + hold_ && at.time < 2.0 * rise_ + hold_ ? -at.sign * slope_ : 0.0;
 }
 
-std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string& path, const std::string& column)
+std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string& path, const std::string& column,
+                                                               const Range& range, const std::string& unit)
 {
   NumberTable<2> table(path, { "time", column });
   auto rows = std::make_shared<Rows>();
@@ -63,6 +68,11 @@ std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string
     if (row[0] < 0.0 || (!rows->empty() && row[0] <= rows->back().first))
     {
       throw InputError(table.place() + ": column 'time' must start at 0 or later and ascend");
+    }
+    table.requireRange(1, row[1], range, unit);
+    if (!rows->empty() && !std::isfinite((row[1] - rows->back().second) / (row[0] - rows->back().first)))
+    {
+      throw InputError(table.place() + ": column '" + column + "' rises without bound");
     }
     rows->emplace_back(row[0], row[1]);
   }

@@ -47,15 +47,18 @@ private:
 };
 
 /// Periodic: up to the peak at a constant slope, there for `hold`, down to zero, there for `pause`; then the same
-/// with the opposite sign.
+/// with the opposite sign. Without a peak, where these times may all be zero, it stands still.
 class TrapezoidWaveform : public Waveform
 {
 public:
+  static constexpr double SHORTEST = 1e-9;  ///< half period of one with a peak [s]
+
   /// `slope` [1/s] of the quantity's unit, > 0; `hold`, `pause` [s].
   TrapezoidWaveform(double peak, double slope, double hold, double pause);
   double value(double time) const override;
   double slope(double time) const override;
   Range range() const override { return { -std::abs(peak_), std::abs(peak_) }; }
+  double halfPeriod() const { return half_period_; }  ///< [s]
 
 private:
   struct Place
@@ -75,7 +78,8 @@ public:
   using Rows = std::vector<std::pair<double, double>>;
 
   /// One column over the column `time` [s] of a CSV file. @throws InputError naming line and column.
-  static std::shared_ptr<const Rows> read(const std::string& path, const std::string& column);
+  static std::shared_ptr<const Rows> read(const std::string& path, const std::string& column, const Range& range,
+                                          const std::string& unit);
 
   explicit TableWaveform(std::shared_ptr<const Rows> rows) : rows_(std::move(rows)) {}
   double value(double time) const override;

@@ -11,6 +11,7 @@
 #include "apps/common/report.hpp"
 #include "apps/common/text_table.hpp"
 
+#include "base/number_text.hpp"
 #include "health/signal_sample.hpp"
 #include "ros_io/time.hpp"
 
@@ -178,7 +179,7 @@ void printTable(const WindowResult& window)
     std::printf("%-32s %14s %-10s", indicatorName(i), shortNumber(value).c_str(), indicatorUnit(i));
     if (std::isfinite(deviation.score))
     {
-      std::printf(" %14s %8.2f", shortNumber(deviation.expected).c_str(), deviation.score);
+      std::printf(" %14s %8s", shortNumber(deviation.expected).c_str(), fixedText(deviation.score, 2).c_str());
     }
     std::printf("\n");
   }
