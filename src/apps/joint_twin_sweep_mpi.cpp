@@ -10,6 +10,7 @@
 #include "apps/common/command.hpp"
 #include "apps/common/exit_code.hpp"
 #include "apps/common/interrupt.hpp"
+#include "apps/common/output_file.hpp"
 #include "apps/sweep/sweep_runner.hpp"
 
 namespace
@@ -29,7 +30,9 @@ int sweepAs(int rank, int ranks, int argc, char** argv)
     arguments.shard = static_cast<std::uint64_t>(rank);
     arguments.shards = static_cast<std::uint64_t>(ranks);
     arguments.quiet = rank > 0;
-    return hjt::sweep(arguments);
+    const int code = hjt::sweep(arguments);
+    hjt::finishStandardOutput();
+    return code;
   }
   catch (const std::exception& error)
   {

@@ -17,8 +17,8 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
 /// Brings what was printed to where it goes. @throws InputError if not all could be written.
 void finishStandardOutput();
 
-/// A CSV file of numbers; every number can be read back exactly. Written as `PATH.part`, it has its name from `close` on;
-/// a device, a pipe and standard output are written to. Without `close` the rows stay in the `.part`.
+/// A CSV file of numbers; every number can be read back exactly. Written as `PATH.part`, it has its name from `close`
+/// on; a device, a pipe and standard output are written to. Without `close` the rows stay in the `.part`.
 class CsvWriter
 {
 public:
