@@ -79,6 +79,11 @@ public:
     return { std::prev(this->end()), true };
   }
 
+  std::pair<iterator, bool> insert(const typename List::value_type& member)
+  {
+    return emplace(member.first, member.second);
+  }
+
   template <class Iterator>
   void insert(Iterator first, Iterator last)
   {
