@@ -115,7 +115,7 @@ def fault_class(kind, severities, place):
 
 
 def read(path, columns):
-    with h5py.File(path) as file:
+    with h5py.File(path, "r") as file:
         group = file["signals"]
         motor, output, motor_torque, *joint_torque = (group[column][:] for column in columns)
         time = group.attrs["first_time"] + numpy.arange(len(motor)) / group.attrs["sample_rate"]

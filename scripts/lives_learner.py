@@ -28,7 +28,7 @@ def read(directory):
     index = index[index.status == "ok"]
     rows = []
     for run in index.to_dict("records"):
-        with h5py.File(directory + "/" + run["file"]) as file:
+        with h5py.File(directory + "/" + run["file"], "r") as file:
             windows = {run["duty"] + "." + name: column[:] for name, column in file["indicators"].items()
                        if not name.startswith("window_")}
         means = {name: numpy.nanmean(values) for name, values in windows.items() if numpy.isfinite(values).any()}

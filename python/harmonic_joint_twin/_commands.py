@@ -4,12 +4,14 @@ import json
 import os
 import tempfile
 import warnings
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from numpy.typing import NDArray
 
 from harmonic_joint_twin import _hjt
+
+if TYPE_CHECKING:  # numpy has it from 1.20 on
+    from numpy.typing import NDArray
 
 Path = Union[str, "os.PathLike[str]"]
 Value = Union[bool, int, float, str, Sequence[float]]
@@ -120,7 +122,7 @@ def compare(recording: Path, report: Path, *, joint: Optional[str] = None, arm: 
                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force}, overlays)
 
 
-def _rows(path: str) -> NDArray[np.void]:
+def _rows(path: str) -> "NDArray[np.void]":
     with open(path, encoding="utf-8") as file:
         names = file.readline().strip().split(",")
         columns = np.loadtxt(file, delimiter=",", ndmin=2).reshape(-1, len(names))

@@ -154,7 +154,7 @@ class Commands(Recordings):
         with open(found["index"], newline="", encoding="utf-8") as file:
             lines = list(csv.DictReader(file))
         self.assertEqual([line["status"] for line in lines], ["ok"] * 3)
-        with h5py.File(os.path.join("data", lines[2]["file"])) as file:
+        with h5py.File(os.path.join("data", lines[2]["file"]), "r") as file:
             self.assertEqual(file["signals/motor_angle"].shape, (30,))
         with self.assertRaisesRegex(hjt.InputError, "has no mapping 'lives'"):
             hjt.lives("plan.yaml", "lives")
