@@ -146,16 +146,15 @@ record:
         # The motor's speed was not recorded: it is that of the drive's sensors all the same.
         found, *origin = read("--time", "time")
         self.assertEqual(origin, ["signals", "run"])
-        for name in ("running_torque", "load", "window_turns", "ripple_wave_generator_2"):
-            for window, value in list(zip(found, windows[name] if name in windows else windows["window_" + name]))[1:]:
-                self.assertAlmostEqual({**window["indicators"], **window, "window_turns": window["turns"]}[name], value,
-                                       delta=1e-7)
+        for name in ("running_torque", "kinematic_error"):
+            for window, value in list(zip(found, windows[name]))[1:]:
+                self.assertAlmostEqual(window["indicators"][name], value, delta=1e-9)
         found, *origin = read("--set", "output.gravity_torque=0.0")
         self.assertEqual(origin, ["signals", "run, under those of the command line"])
         self.assertEqual(found[0]["load"], 0.0)
-        self.fail_with(1, [f"{run}: --motor-angle motor_angle: no such column (did you mean motor_angle_encoder?); it "
+        self.fail_with(1, [f"{run}: --motor-angle motor_angel_encoder: no such column (did you mean motor_angle_encoder?); it "
                            "holds load_torque, motor_angle_encoder, motor_torque_reading"],
-                       "indicators", run, "--motor-angle", "motor_angle")
+                       "indicators", run, "--motor-angle", "motor_angel_encoder")
         self.fail_with(1, [f"{run}: --motor-torque torque: no such column; it holds load_torque"], "indicators", run,
                        "--motor-torque", "torque")
 
