@@ -152,8 +152,8 @@ record:
         found, *origin = read("--set", "output.gravity_torque=0.0")
         self.assertEqual(origin, ["signals", "run, under those of the command line"])
         self.assertEqual(found[0]["load"], 0.0)
-        self.fail_with(1, [f"{run}: --motor-angle motor_angel_encoder: no such column (did you mean motor_angle_encoder?); it "
-                           "holds load_torque, motor_angle_encoder, motor_torque_reading"],
+        self.fail_with(1, [f"{run}: --motor-angle motor_angel_encoder: no such column (did you mean "
+                           "motor_angle_encoder?); it holds load_torque, motor_angle_encoder, motor_torque_reading"],
                        "indicators", run, "--motor-angle", "motor_angel_encoder")
         self.fail_with(1, [f"{run}: --motor-torque torque: no such column; it holds load_torque"], "indicators", run,
                        "--motor-torque", "torque")
