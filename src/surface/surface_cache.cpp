@@ -2,8 +2,10 @@
 #include "surface/surface_cache.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -228,7 +230,7 @@ bool surfaceIsKept(const std::string& key, const std::string& directory)
 {
   constexpr std::array KINDS{ "surface", "deviations", "balls" };
   return std::any_of(KINDS.begin(), KINDS.end(),
-                     [&](const char* kind) { return fs::exists(fileOf(kind, key, directory)); });
+                     [&](const char* kind) { return std::filesystem::exists(fileOf(kind, key, directory)); });
 }
 
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
