@@ -8,8 +8,8 @@
 
 namespace hjt
 {
-/// Rows of a CSV file with a header: texts between commas, without quotes. Blanks around a text, a byte order mark and a
-/// carriage return before a line's end are not part of it.
+/// Rows of a CSV file with a header: texts between commas, without quotes. Blanks around a text, a byte order mark and
+/// a carriage return before a line's end are not part of it.
 class CsvRows
 {
 public:
@@ -18,7 +18,7 @@ public:
 
   const std::vector<std::string>& header() const { return header_; }
 
-  /// Reads the next row; false at the end. @throws InputError naming the line if it has not as many texts as the header.
+  /// Reads the next row; false at the end. @throws InputError naming the line if it differs in columns from the header.
   bool next();
 
   /// Of the row read last; valid until the next is.
