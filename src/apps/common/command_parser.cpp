@@ -59,7 +59,12 @@ void addValues(DeclaredOption& option, const std::string& text)
   option.values.push_back(text.substr(begin));
 }
 
-/// Values behind an option's name: at most so many.
+[[noreturn]] void refuseMissing(const DeclaredOption& option)
+{
+  refuse(option.name + ": " + std::to_string(option.least) + " required " + typeText(option) + " missing");
+}
+
+/// Words that may be the values behind an option's name: at most so many.
 class Values : public po::typed_value<Words>
 {
 public:
@@ -112,9 +117,11 @@ std::vector<po::option> split(const CommandNode& command, const Words& words)
     {
       refuse(error.what());
     }
-    refuse(option->most == 0 ?
-               name + " takes no value" :
-               name + ": " + std::to_string(option->least) + " required " + typeText(*option) + " missing");
+    if (option->most == 0)
+    {
+      refuse(name + " takes no value");
+    }
+    refuseMissing(*option);
   }
 }
 
@@ -123,19 +130,38 @@ Words distribute(CommandNode& command, Words words)
 {
   std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));
   Words unexpected;
-  for (const po::option& found : split(command, words))
+  const auto give = [&unexpected](DeclaredOption* option, const std::string& value)
   {
-    const bool is_option = found.position_key < 0;
-    DeclaredOption* option = is_option ? findOption(command, "--" + found.string_key) : nextArgument(command);
     if (option == nullptr)
     {
-      unexpected.insert(unexpected.end(), found.original_tokens.begin(), found.original_tokens.end());
+      unexpected.push_back(value);
+      return;
+    }
+    option->given = true;
+    addValues(*option, value);
+  };
+  for (const po::option& found : split(command, words))
+  {
+    DeclaredOption* option = findOption(command, "--" + found.string_key);
+    if (option == nullptr)
+    {
+      const bool is_argument = found.position_key >= 0;
+      for (const std::string& word : found.original_tokens)
+      {
+        give(is_argument ? nextArgument(command) : nullptr, word);
+      }
       continue;
     }
     option->given = true;
+    const std::size_t before = option->values.size();
+    const bool follow = found.original_tokens.size() > 1;  // behind the name, else behind an equals sign
     for (const std::string& value : found.value)
     {
-      addValues(*option, value);
+      if (follow && findOption(command, value) != nullptr)
+      {
+        refuseMissing(*option);
+      }
+      give(option->values.size() - before < option->most ? option : nextArgument(command), value);
     }
   }
   return unexpected;
