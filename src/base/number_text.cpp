@@ -140,4 +140,16 @@ std::optional<double> decimalNumber(const char* text)
   const DecimalPoint decimal_point;
   return std::strtod(text, nullptr);  // beyond the largest number it is infinite
 }
+
+std::optional<double> nonFiniteNumber(const std::string& text)
+{
+  const bool is_negative = text.rfind('-', 0) == 0;
+  const std::string unsigned_text = text.substr(is_negative || text.rfind('+', 0) == 0 ? 1 : 0);
+  if (unsigned_text == ".inf" || unsigned_text == ".Inf" || unsigned_text == ".INF")
+  {
+    return is_negative ? -HUGE_VAL : HUGE_VAL;
+  }
+  const bool is_nan = text == ".nan" || text == ".NaN" || text == ".NAN";
+  return is_nan ? std::optional(std::nan("")) : std::nullopt;
+}
 }  // namespace hjt

@@ -24,4 +24,7 @@ std::string rangeText(const Range& range);
 /// text.
 std::optional<double> decimalNumber(const std::string& text);
 std::optional<double> decimalNumber(const char* text);
+
+/// Infinity or not a number as YAML spells them (.inf, -.Inf, .NAN); nothing if it is another text.
+std::optional<double> nonFiniteNumber(const std::string& text);
 }  // namespace hjt

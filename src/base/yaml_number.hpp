@@ -7,10 +7,12 @@
 
 namespace hjt
 {
-/// A decimal number of a YAML file; yaml-cpp's own as<double>() follows the program's locale. @throws YAML::Exception.
+/// A number of a YAML file; yaml-cpp's own as<double>() follows the program's locale. @throws YAML::Exception.
 inline double yamlNumber(const YAML::Node& node)
 {
-  const std::optional<double> number = node.IsScalar() ? decimalNumber(node.Scalar()) : std::nullopt;
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
+  const std::optional<double> decimal = decimalNumber(text);
+  const std::optional<double> number = decimal ? decimal : nonFiniteNumber(text);
   if (!number)
   {
     throw YAML::TypedBadConversion<double>(node.Mark());

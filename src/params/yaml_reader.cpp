@@ -80,14 +80,9 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
     }
     return value;
   }
-  const std::string unsigned_text = text.substr(text.front() == '-' || text.front() == '+' ? 1 : 0);
-  if (isOneOf(unsigned_text, { ".inf", ".Inf", ".INF" }))
+  if (const auto number = nonFiniteNumber(text))
   {
-    return text.front() == '-' ? -HUGE_VAL : HUGE_VAL;
-  }
-  if (isOneOf(text, { ".nan", ".NaN", ".NAN" }))
-  {
-    return std::nan("");
+    return *number;
   }
   const bool is_true = isOneOf(text, { "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON" });
   if (is_true || isOneOf(text, { "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF" }))

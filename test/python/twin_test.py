@@ -64,7 +64,7 @@ class Run(unittest.TestCase):
         self.assertEqual(twin.stamp, 10000000)
         self.assertEqual(twin.time, 0.01)
         self.assertEqual(len(twin.run_to(0.01)), 0)
-        with self.assertRaisesRegex(hjt.InputError, r"time = 0.005000 \[s\] is out of range"):
+        with self.assertRaisesRegex(hjt.InputError, r"time = 0.005 \[s\] is out of range"):
             twin.run_to(0.005)
 
     def test_rows_are_plain_numpy(self):
@@ -107,8 +107,8 @@ class Run(unittest.TestCase):
     def test_bad_inputs_are_refused_before_the_first_step(self):
         twin = hjt.Twin(hjt.Parameters())
         for arguments, words in (
-                ({"motor_torque": [0.1, float("nan")]}, r"motor_torque\[1\] = nan is not a finite number"),
-                ({"load_torque": float("inf"), "steps": 3}, "load_torque = inf is not a finite number"),
+                ({"motor_torque": [0.1, float("nan")]}, r"motor_torque\[1\] = \.nan is not a finite number"),
+                ({"load_torque": float("inf"), "steps": 3}, r"load_torque = \.inf is not a finite number"),
                 ({"motor_torque": np.zeros(5), "steps": 6}, "motor_torque has 5 values for 6 steps"),
                 ({"motor_torque": np.zeros(5), "load_torque": np.zeros(4)}, "load_torque has 4 values for 5 steps"),
                 ({"motor_torque": np.zeros((5, 2))}, r"motor_torque has 2 dimensions"),
@@ -117,7 +117,7 @@ class Run(unittest.TestCase):
                 ({"steps": -1}, "steps = -1"), ({"steps": 5, "every": 0}, "every = 0")):
             with self.assertRaisesRegex(hjt.InputError, words):
                 twin.run(**arguments)
-        with self.assertRaisesRegex(hjt.InputError, "torque = nan is not a finite number"):
+        with self.assertRaisesRegex(hjt.InputError, r"torque = \.nan is not a finite number"):
             twin.command_motor_torque(float("nan"))
         with self.assertRaisesRegex(hjt.ParameterError, "severity = 3"):
             twin.inject_fault("tooth_wear:3:1")

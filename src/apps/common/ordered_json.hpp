@@ -20,12 +20,15 @@ template <class Key, class Value, class, class Allocator>
 class OrderedMembers : public std::list<std::pair<const Key, Value>, Allocator>
 {
 public:
+  // Names that the library prescribes.
+  // NOLINTBEGIN(readability-identifier-naming)
   using List = std::list<std::pair<const Key, Value>, Allocator>;
   using key_type = Key;
   using mapped_type = Value;
   using key_compare = std::equal_to<Key>;  // keys are found by this alone
   using iterator = typename List::iterator;
   using const_iterator = typename List::const_iterator;
+  // NOLINTEND(readability-identifier-naming)
   using List::erase;
 
   OrderedMembers() = default;

@@ -97,8 +97,7 @@ OrderedJson jsonOf(const PlanNode& node)
   {
     return jsonOf(node.scalar);
   }
-  OrderedJson json =
-      node.kind == PlanNode::Kind::MAP ? OrderedJson::object() : OrderedJson::array();
+  OrderedJson json = node.kind == PlanNode::Kind::MAP ? OrderedJson::object() : OrderedJson::array();
   for (const auto& [key, below] : node.entries)
   {
     if (node.kind == PlanNode::Kind::MAP)

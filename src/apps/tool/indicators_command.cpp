@@ -111,8 +111,9 @@ WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, 
   WindowSeries measured = readOne(options.recordings[index], options, options);
   if (!options.models.empty())
   {
+    const CommonOptions& common = options;
     SignalOptions twin;
-    static_cast<CommonOptions&>(twin) = options;
+    static_cast<CommonOptions&>(twin) = common;
     twin.joint_namespace = options.joint_namespace;
     model = readOne(options.models[index], twin, options).windows;
     measured.windows.resize(std::min(measured.windows.size(), model.size()));
