@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// While it lives, the C library reads and writes this thread's numbers with a decimal point, whatever locale the program
-/// has set. Does not allocate.
+/// While it lives, the C library reads and writes this thread's numbers with a decimal point, whatever locale the
+/// program has set. Does not allocate.
 class DecimalPoint
 {
 public:

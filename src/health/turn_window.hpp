@@ -26,7 +26,8 @@ public:
 
   void reset() noexcept;
 
-  /// `torsion`: motor angle / nominal ratio - output angle [rad]. An angle beyond 1e15 marks, or none, empties the store.
+  /// `torsion`: motor angle / nominal ratio - output angle [rad]. An angle beyond 1e15 marks, or none, empties the
+  /// store.
   void update(double motor_angle, double torsion) noexcept;
 
   /// Motor travel over output travel, from the instant the motor stood exactly one turn behind until now [-].

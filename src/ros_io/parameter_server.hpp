@@ -23,8 +23,8 @@ ParameterMap readParameterServer(const std::string& parameter_namespace);
 /// Puts all parameters below `parameter_namespace`, in place of what is there.
 void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
 
-/// Parameters that a node finds on the server and that its start did not set: a server outlives its nodes, so they may be
-/// those of an earlier launch.
+/// Parameters that a node finds on the server and that its start did not set: a server outlives its nodes, so they may
+/// be those of an earlier launch.
 class FoundParameters
 {
 public:

@@ -8,9 +8,9 @@
 
 namespace hjt
 {
-/// A table from its file: the header, the numbers as they lie in memory, and the hash of both. The nodes stay in the file.
-/// `header`: whose length is a multiple of the size of a number. False if the file is not that of ofOwn in mapped_file.hpp,
-/// begins otherwise, or is damaged.
+/// A table from its file: the header, the numbers as they lie in memory, and the hash of both. The nodes stay in the
+/// file. `header`: its length is a multiple of the size of a number. False if the file is not that of ofOwn in
+/// mapped_file.hpp, begins otherwise, or is damaged.
 bool readTable(const std::string& path, const std::string& header, SurfaceTable& table);
 bool readTable(const std::string& path, const std::string& header, DeviationTable& table);
 bool readTable(const std::string& path, const std::string& header, BallTable& table);

@@ -97,8 +97,8 @@ public:
   /// A window was completed. `model`: indicators of a model that were subtracted from it.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
-  /// The same in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures more in search
-  /// of the cause. Once all are done the assessment is that of the new window.
+  /// The same in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures more in
+  /// search of the cause. Once all are done the assessment is that of the new window.
   void begin(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
   void advance(std::size_t signatures) noexcept
   {

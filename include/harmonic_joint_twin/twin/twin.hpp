@@ -124,7 +124,8 @@ public:
   void setTemperature(Stamp stamp, double degrees) noexcept { push({ stamp, InputKind::TEMPERATURE, degrees }); }
 
   /// Queues a fault, which sets in `fault.onset` after the stamp, or is taken away (severity 0), like an input; one
-  /// that is not valid, or whose stamp is beyond +-MAX_STAMP, is refused and counted. While any is active all teeth are solved at every step.
+  /// that is not valid, or whose stamp is beyond +-MAX_STAMP, is refused and counted. While any is active all teeth are
+  /// solved at every step.
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;
 

@@ -14,7 +14,8 @@
 
 namespace hjt
 {
-/// The duty cycles of a plan in one run. All members throw InputError that names file, line, key, value, unit and range.
+/// The duty cycles of a plan in one run. All members throw InputError that names file, line, key, value, unit and
+/// range.
 class DutyReader
 {
 public:
