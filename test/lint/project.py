@@ -6,6 +6,7 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 # Not part of the package: history, results and caches (as in .gitignore).
+SKIPPED = 77  # exit code of a check that cannot be made here
 SKIPPED_FOLDERS = {".git", "build", "devel", "install", "out", "__pycache__", ".vscode"}
 SKIPPED_SUFFIXES = (".bag", ".active", ".pyc")
 
@@ -37,7 +38,7 @@ def lines(root, path):
 def skip(reason):
     """Ends a check that cannot be made here; ctest knows the exit code."""
     print(f"skipped: {reason}")
-    sys.exit(77)
+    sys.exit(SKIPPED)
 
 
 def run(check, root=ROOT):
