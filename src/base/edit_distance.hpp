@@ -27,8 +27,8 @@ inline std::size_t editDistance(const std::string& from, const std::string& to)
   return row.back();
 }
 
-/// " (did you mean speed?)" with the name that is nearest to an unknown one; nothing if none is near.
-inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
+/// The name that is nearest to an unknown one; empty if none is near.
+inline std::string nearestName(const std::string& unknown, const std::vector<std::string>& known)
 {
   std::string nearest;
   std::size_t distance = std::max<std::size_t>(2, unknown.size() / 3) + 1;
@@ -40,6 +40,13 @@ inline std::string didYouMean(const std::string& unknown, const std::vector<std:
       nearest = name;
     }
   }
+  return nearest;
+}
+
+/// " (did you mean speed?)" with the nearest name; nothing if none is near.
+inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
+{
+  const std::string nearest = nearestName(unknown, known);
   return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 }  // namespace hjt

@@ -226,8 +226,7 @@ void checkTogether(CommandNode& command)
 
 CommandNode& subcommand(CommandNode& command, const std::string& given)
 {
-  std::string nearest;
-  std::size_t distance = std::max<std::size_t>(2, given.size() / 3) + 1;
+  Words names;
   for (CommandNode& candidate : command.subcommands)
   {
     const std::string name = candidate.name.substr(command.name.size() + 1);
@@ -235,12 +234,9 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
     {
       return candidate;
     }
-    if (const std::size_t edits = editDistance(given, name); edits < distance)
-    {
-      nearest = name;
-      distance = edits;
-    }
+    names.push_back(name);
   }
+  const std::string nearest = nearestName(given, names);
   const std::string program = command.name.substr(0, command.name.find(' '));
   throw UsageError(program + ": unknown subcommand '" + given + "'" +
                    (nearest.empty() ? ";" : ", did you mean " + nearest + "?") + " `" + command.name +
