@@ -13,8 +13,8 @@
 #endif
 
 #include "apps/common/command.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/output_file.hpp"
+#include "output/exit_code.hpp"
+#include "output/output_file.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt

@@ -13,8 +13,8 @@
 #include <pybind11/stl.h>
 
 #include "apps/common/command.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
 
 namespace hjt
 {

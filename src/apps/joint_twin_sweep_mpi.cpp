@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "apps/common/command.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/sweep/sweep_runner.hpp"
+#include "apps/tool/sweep_runner.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
 
 namespace
 {

@@ -17,12 +17,12 @@
 #include <topic_tools/shape_shifter.h>
 
 #include "apps/common/command.hpp"
-#include "apps/common/exit_code.hpp"
+#include "bags/bag_file.hpp"
+#include "bags/bag_inputs.hpp"
+#include "bags/bag_writer.hpp"
 #include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/bag_inputs.hpp"
-#include "ros_io/bag_writer.hpp"
+#include "output/exit_code.hpp"
 #include "ros_io/shutdown_signals.hpp"
 
 namespace

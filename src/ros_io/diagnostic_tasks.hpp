@@ -13,7 +13,7 @@
 #include <ros/publisher.h>
 #include <ros/time.h>
 
-#include "ros_io/time.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

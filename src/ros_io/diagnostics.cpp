@@ -8,7 +8,7 @@
 
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
-#include "ros_io/time.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

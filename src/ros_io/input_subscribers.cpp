@@ -3,9 +3,9 @@
 
 #include <ros/console.h>
 
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
-#include "ros_io/time.hpp"
-#include "ros_io/topics.hpp"
 
 namespace hjt
 {

@@ -12,8 +12,8 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 
-#include "ros_io/conversions.hpp"
-#include "ros_io/inbox.hpp"
+#include "live/inbox.hpp"
+#include "messages/conversions.hpp"
 
 namespace hjt
 {

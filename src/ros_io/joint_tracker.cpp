@@ -7,9 +7,9 @@
 #include <ros/console.h>
 
 #include "gear/ratio.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 #include "ros_io/node_surface_source.hpp"
-#include "ros_io/time.hpp"
-#include "ros_io/topics.hpp"
 #include "tracking/effort.hpp"
 
 namespace hjt

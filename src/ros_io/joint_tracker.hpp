@@ -19,13 +19,13 @@
 #include <std_msgs/Float64.h>
 #include <std_srvs/Trigger.h>
 
+#include "messages/telemetry_messages.hpp"
+#include "messages/tracker_outputs.hpp"
 #include "ros_io/diagnostics.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/recent_events.hpp"
-#include "ros_io/telemetry_messages.hpp"
 #include "ros_io/telemetry_stream.hpp"
-#include "ros_io/tracker_outputs.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict.hpp"
 

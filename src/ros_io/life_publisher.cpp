@@ -12,8 +12,8 @@
 
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/time.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

@@ -13,7 +13,7 @@
 #include "harmonic_joint_twin/RemainingLife.h"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
 #include "life/life_estimate.hpp"
-#include "ros_io/slot_ring.hpp"
+#include "live/slot_ring.hpp"
 
 namespace hjt
 {

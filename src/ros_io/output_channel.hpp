@@ -7,8 +7,8 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
-#include "ros_io/channels.hpp"
-#include "ros_io/slot_ring.hpp"
+#include "live/slot_ring.hpp"
+#include "messages/channels.hpp"
 
 namespace hjt
 {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "ros_io/time.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/timing_publisher.hpp"
 
-#include "ros_io/time.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

@@ -7,7 +7,7 @@
 
 #include "harmonic_joint_twin/Timing.h"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "ros_io/twin_loop.hpp"
+#include "live/twin_loop.hpp"
 
 namespace hjt
 {

@@ -10,10 +10,10 @@
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/printable.hpp"
 #include "base/text_stream.hpp"
+#include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
-#include "ros_io/printable.hpp"
-#include "ros_io/topics.hpp"
 #include "tracking/plausible.hpp"
 
 namespace hjt

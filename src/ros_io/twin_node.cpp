@@ -5,8 +5,8 @@
 
 #include <ros/console.h>
 
+#include "messages/time.hpp"
 #include "ros_io/node_surface_source.hpp"
-#include "ros_io/time.hpp"
 
 namespace hjt
 {

@@ -7,14 +7,14 @@
 #include <std_srvs/Trigger.h>
 
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "live/inbox.hpp"
+#include "live/realtime.hpp"
+#include "live/twin_loop.hpp"
 #include "ros_io/diagnostics.hpp"
-#include "ros_io/inbox.hpp"
 #include "ros_io/input_subscribers.hpp"
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/output_publishers.hpp"
-#include "ros_io/realtime.hpp"
 #include "ros_io/timing_publisher.hpp"
-#include "ros_io/twin_loop.hpp"
 
 namespace hjt
 {

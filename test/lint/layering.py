@@ -27,24 +27,29 @@ SEES = {
     "life": ["twin"],
     "studies": ["twin", "life"],
     "python": ["tracking"],
-    "ros_io": ["arm", "life"],
-    "apps/common": ["ros_io"],
-    "apps/sweep": ["apps/common"],
-    "apps/compare": ["apps/common"],
-    "apps/tool": ["apps/common", "apps/compare", "apps/sweep", "identification", "studies"],
-    "apps": ["apps/sweep", "apps/tool"],
+    "live": ["twin"],
+    "output": ["twin"],
+    "messages": ["tracking", "life"],
+    "bags": ["messages"],
+    "datasets": ["bags", "output"],
+    "recordings": ["datasets", "identification"],
+    "ros_io": ["live", "messages", "arm"],
+    "apps/common": ["recordings"],
+    "apps/tool": ["apps/common", "studies"],
+    "apps": ["apps/tool", "ros_io"],
     "bench": ["apps/common", "studies"],
     "test/core": ["arm", "identification", "studies"],
-    "test/ros": ["ros_io"],
+    "test/ros": ["ros_io", "recordings"],
     "test/outside": ["twin"],
     "test/support": [],
 }
-WITH_ROS = {"ros_io", "apps", "apps/common", "apps/sweep", "apps/compare", "apps/tool", "test/ros"}
+WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "ros_io", "apps", "apps/common", "apps/tool", "test/ros"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
 LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/stat|time|unistd)\.h|"
                        r"(Eigen|boost|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
 # Libraries that one folder alone may use.
 OWN_LIBRARIES = {
+    "live": re.compile(r"<(pthread|pwd|sched|sys/prctl|sys/resource)\.h>$"),
     "arm": re.compile(r"<(kdl|kdl_parser)/[\w/.-]+>$"),
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "python": re.compile(r"<pybind11/\w+\.h>$"),

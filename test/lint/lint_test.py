@@ -71,7 +71,7 @@ class Layering(Tree):
         for folder, header in [("gear", '"harmonic_joint_twin/params/parameters.hpp"'), ("gear", "<Eigen/Core>"),
                                ("gear", '"base/number_text.hpp"'), ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'),
                                ("ros_io", "<ros/ros.h>"), ("ros_io", '"harmonic_joint_twin/Health.h"'),
-                               ("identification", "<ceres/ceres.h>"), ("apps/tool", '"apps/common/progress.hpp"')]:
+                               ("identification", "<ceres/ceres.h>"), ("apps/tool", '"output/progress.hpp"')]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_clean(layering.check)

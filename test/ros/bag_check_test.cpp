@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged bags are refused or read; nothing ends the program.
-#include "ros_io/bag_check.hpp"
+#include "bags/bag_check.hpp"
 
 #include <unistd.h>
 
@@ -17,10 +17,10 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 
+#include "bags/bag_file.hpp"
+#include "bags/bag_inputs.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/bag_inputs.hpp"
-#include "ros_io/recorded_motion.hpp"
+#include "recordings/recorded_motion.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

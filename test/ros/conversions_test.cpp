@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_io/conversions.hpp"
+#include "messages/conversions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@
 
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/channels.hpp"
-#include "ros_io/time.hpp"
+#include "messages/channels.hpp"
+#include "messages/time.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

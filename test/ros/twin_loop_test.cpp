@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_io/twin_loop.hpp"
+#include "live/twin_loop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "ros_io/conversions.hpp"
-#include "ros_io/latency_histogram.hpp"
-#include "ros_io/slot_ring.hpp"
-#include "ros_io/time.hpp"
+#include "live/latency_histogram.hpp"
+#include "live/slot_ring.hpp"
+#include "messages/conversions.hpp"
+#include "messages/time.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 

@@ -15,6 +15,9 @@ constexpr Stamp MAX_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
 /// Largest magnitude of a stamp that a MAX_STAMP_LENGTH is added to [ns]; messages stay below.
 constexpr Stamp MAX_STAMP = std::numeric_limits<Stamp>::max() / 2;
 
+/// A stamp further from the clock than this is damaged, or of a clock that was never set [ns]: a day.
+constexpr Stamp FAR_STAMP = 86'400'000'000'000;
+
 constexpr bool isStamp(Stamp stamp)
 {
   return stamp >= -MAX_STAMP && stamp <= MAX_STAMP;

@@ -3,8 +3,8 @@
 
 #include <iostream>
 
-#include "apps/common/interrupt.hpp"
-#include "apps/common/progress.hpp"
+#include "output/interrupt.hpp"
+#include "output/progress.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"

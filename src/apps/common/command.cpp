@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "apps/common/command_node.hpp"
-#include "apps/common/exit_code.hpp"
+#include "output/exit_code.hpp"
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"

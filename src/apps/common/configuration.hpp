@@ -6,14 +6,12 @@
 #include <vector>
 
 #include "apps/common/command.hpp"
+#include "messages/topics.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
-/// Of the node by default.
-constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
-
 /// What every subcommand of the tool takes.
 struct CommonOptions
 {

@@ -6,12 +6,12 @@
 #include <iostream>
 #include <optional>
 
-#include "apps/common/interrupt.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/interrupt.hpp"
+#include "output/progress.hpp"
+#include "output/text_table.hpp"
 
 #include "base/number_text.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

@@ -6,7 +6,7 @@
 
 #include "apps/common/configuration.hpp"
 
-#include "ros_io/recorded_motion.hpp"
+#include "recordings/recorded_motion.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <string>
 
-#include "apps/common/exit_code.hpp"
+#include "output/exit_code.hpp"
 
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 

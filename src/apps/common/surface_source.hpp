@@ -4,8 +4,8 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/common/progress.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
+#include "output/progress.hpp"
 
 namespace hjt
 {

@@ -15,18 +15,18 @@
 #include <rosbag/view.h>
 
 #include "apps/common/arm_recording.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/json.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/json.hpp"
+#include "output/progress.hpp"
+#include "output/text_table.hpp"
 
 #include "arm/arm_configuration.hpp"
+#include "bags/bag_file.hpp"
+#include "bags/checked_message.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/checked_message.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/stream_timing.hpp"
 

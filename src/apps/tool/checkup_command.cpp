@@ -8,18 +8,18 @@
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/run_summary.hpp"
+#include "output/exit_code.hpp"
+#include "output/output_file.hpp"
+#include "output/report.hpp"
+#include "output/run_summary.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "arm/check_up.hpp"
+#include "bags/bag_writer.hpp"
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_writer.hpp"
 
 namespace hjt
 {

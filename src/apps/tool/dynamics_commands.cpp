@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
 #include "apps/common/not_converged.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/exit_code.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/text_table.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "studies/quasi_static_check.hpp"

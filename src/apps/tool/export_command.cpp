@@ -6,8 +6,8 @@
 #include <Eigen/Dense>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
 #include "apps/common/not_converged.hpp"
+#include "output/exit_code.hpp"
 
 #include "base/number_text.hpp"
 #include "elements/motor.hpp"

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/exit_code.hpp"
+#include "output/report.hpp"
+#include "output/text_table.hpp"
 
 namespace hjt
 {

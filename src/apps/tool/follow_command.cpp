@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "apps/common/arm_recording.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
 #include "apps/common/surface_source.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/text_table.hpp"
 
-#include "apps/tool/tracked_bag.hpp"
+#include "recordings/tracked_bag.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/tracker.hpp"
 

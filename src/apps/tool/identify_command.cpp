@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "apps/common/arm_recording.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/report.hpp"
+#include "output/text_table.hpp"
 
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"

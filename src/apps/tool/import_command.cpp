@@ -7,21 +7,21 @@
 #include <optional>
 #include <string>
 
-#include "apps/common/interrupt.hpp"
 #include "apps/common/motion_options.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/run_summary.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/run_summary.hpp"
+#include "output/text_table.hpp"
 
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Temperature.h>
 
+#include "bags/bag_writer.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
-#include "ros_io/bag_writer.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

@@ -9,22 +9,22 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/run_summary.hpp"
-#include "apps/common/text_table.hpp"
-#include "apps/tool/indicators_report.hpp"
 #include "apps/tool/recorded_windows.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/run_summary.hpp"
+#include "output/text_table.hpp"
+#include "recordings/indicators_report.hpp"
 
+#include "bags/bag_file.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/conversions.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/conversions.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
+#include "output/exit_code.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
 
 #include "life/drive_ageing.hpp"
 #include "life/revolution_load_analysis.hpp"

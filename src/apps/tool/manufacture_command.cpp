@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/report.hpp"
+#include "output/exit_code.hpp"
+#include "output/report.hpp"
 
 #include "gear/manufacture_errors.hpp"
 

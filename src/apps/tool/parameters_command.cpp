@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/json.hpp"
+#include "output/exit_code.hpp"
+#include "output/json.hpp"
 
 #include "params/choices.hpp"
 #include "params/field_table.hpp"

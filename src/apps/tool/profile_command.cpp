@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/report.hpp"
+#include "output/exit_code.hpp"
+#include "output/report.hpp"
 
 #include "gear/flank_shapes.hpp"
 #include "gear/tooth_profile.hpp"

@@ -2,10 +2,10 @@
 #include <limits>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
 #include "apps/common/not_converged.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
+#include "output/exit_code.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
 
 #include "studies/ratchet_analysis.hpp"
 

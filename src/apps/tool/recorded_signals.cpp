@@ -13,17 +13,17 @@
 #include <rosbag/view.h>
 
 #include "apps/common/motion_options.hpp"
-#include "apps/sweep/run_file.hpp"
+#include "datasets/run_file.hpp"
 
+#include "bags/bag_file.hpp"
+#include "bags/checked_message.hpp"
 #include "base/edit_distance.hpp"
 #include "base/joined.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/checked_message.hpp"
-#include "ros_io/conversions.hpp"
-#include "ros_io/time.hpp"
+#include "messages/conversions.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

@@ -9,7 +9,7 @@
 #include "apps/common/configuration.hpp"
 
 #include "health/signal_sample.hpp"
-#include "ros_io/topics.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {

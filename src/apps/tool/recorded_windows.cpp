@@ -6,10 +6,10 @@
 #include <tuple>
 
 #include "apps/common/configuration.hpp"
-#include "apps/sweep/run_file.hpp"
+#include "datasets/run_file.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/time.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/exit_code.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/report.hpp"
 #include "apps/tool/recorded_windows.hpp"
+#include "output/exit_code.hpp"
+#include "output/output_file.hpp"
+#include "output/report.hpp"
 
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"

@@ -7,18 +7,18 @@
 #include <rosbag/view.h>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/output_file.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
-#include "apps/common/text_table.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/progress.hpp"
+#include "output/run_summary.hpp"
+#include "output/text_table.hpp"
 
+#include "bags/bag_file.hpp"
+#include "bags/bag_inputs.hpp"
+#include "bags/bag_recorder.hpp"
 #include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "ros_io/bag_file.hpp"
-#include "ros_io/bag_inputs.hpp"
-#include "ros_io/bag_recorder.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/sweep/sweep_runner.hpp"
+#include "apps/tool/sweep_runner.hpp"
 
 #include <algorithm>
 #include <cstdio>

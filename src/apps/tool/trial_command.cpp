@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/exit_code.hpp"
-#include "apps/common/interrupt.hpp"
-#include "apps/common/progress.hpp"
-#include "apps/common/report.hpp"
-#include "apps/common/run_summary.hpp"
 #include "apps/common/surface_source.hpp"
 #include "apps/tool/torque_profile.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/run_summary.hpp"
 
-#include "ros_io/time.hpp"
+#include "messages/time.hpp"
 #include "studies/trial.hpp"
 
 namespace hjt

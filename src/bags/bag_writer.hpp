@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ros/datatypes.h>
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <rosbag/message_instance.h>
+
+#include "base/file_lock.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+/// Writes a bag as `PATH.active` and gives it its name when closed, as `rosbag record` does: what stands under the name
+/// is always readable, also after an error or an interrupt. The same calls give the same bytes, those that rosbag::Bag
+/// would write, uncompressed; but a chunk goes to the disk as one, where that one seeks twice a message.
+///
+/// Where the disk takes no more, the bag is given up: it stays as `PATH.active` without an index, and the InputError
+/// tells how much is in it. `rosbag reindex` makes it readable but for the last chunk, 0.8 MB at most. Nothing can be
+/// written after that.
+///
+/// Format: http://wiki.ros.org/Bags/Format/2.0
+class BagWriter
+{
+public:
+  /// @throws InputError if the file cannot be written, or another BagWriter writes it.
+  explicit BagWriter(std::string path);
+
+  /// Closes; an error of the disk is then swallowed, so call `close` where it matters.
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
+  /// @throws InputError if the disk takes no more, or the stamp is zero, which a bag cannot hold.
+  template <class Message>
+  void write(const std::string& topic, Stamp stamp, const Message& message)
+  {
+    namespace traits = ros::message_traits;
+    const ros::Time time = begin(stamp);
+    const auto known = topics_.find(topic);
+    const std::uint32_t connection = known != topics_.end() ?
+                                         known->second :
+                                         topics_[topic] =
+                                             connect(topic, { { "type", traits::datatype(message) },
+                                                              { "md5sum", traits::md5sum(message) },
+                                                              { "message_definition", traits::definition(message) } });
+    const std::uint32_t size = ros::serialization::serializationLength(message);
+    ros::serialization::OStream stream(append(connection, time, size), size);
+    ros::serialization::serialize(stream, message);
+    end();
+  }
+
+  /// The message as it is: bytes, time, type and connection. @throws rosbag::BagException if it cannot be read.
+  void copy(const rosbag::MessageInstance& message);
+
+  /// Leaves no file if nothing was written. @throws InputError if not all could be written.
+  void close();
+
+  bool isOpen() const { return file_ != nullptr; }
+  const std::string& path() const { return path_; }
+  std::uint64_t messages() const { return messages_; }
+
+private:
+  struct IndexEntry
+  {
+    ros::Time time;
+    std::uint32_t offset;  // of the message in the chunk
+  };
+
+  struct Connection
+  {
+    std::string topic;
+    ros::M_string header;
+    std::vector<IndexEntry> index;  // of the running chunk
+  };
+
+  struct ChunkInfo
+  {
+    std::uint64_t position{};
+    ros::Time first;
+    ros::Time last;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  // connection, messages
+  };
+
+  ros::Time begin(Stamp stamp);
+  std::uint32_t connect(const std::string& topic, const ros::M_string& header);
+  std::uint8_t* append(std::uint32_t connection, const ros::Time& time, std::uint32_t size);
+  void end();
+  void writeChunk();
+  void writeFileHeader(std::uint64_t index_position);
+  void flush(const std::vector<std::uint8_t>& bytes);
+  [[noreturn]] void giveUp(const std::string& reason);
+
+  std::string path_;
+  std::string active_path_;
+  FileLock lock_;                                         // of active_path_
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;  // none: closed
+  std::uint64_t position_{};                              // in the file
+  std::vector<std::uint8_t> chunk_;                       // the running one's messages and new connections
+  ChunkInfo running_;
+  std::vector<ChunkInfo> chunks_;
+  std::vector<Connection> connections_;
+  std::map<std::string, std::uint32_t> topics_;    // connections of `write`
+  std::map<ros::M_string, std::uint32_t> copied_;  // connections of `copy`, by header and topic
+  std::map<boost::shared_ptr<ros::M_string>, std::uint32_t> copied_headers_;  // the same, found faster
+  std::vector<std::uint8_t> scratch_;
+  std::uint64_t messages_{};
+};
+}  // namespace hjt

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/bag_run_file.hpp"
+
+#include <cstdio>
+#include <mutex>
+#include <utility>
+
+#include <rosbag/view.h>
+#include <std_msgs/String.h>
+
+#include "datasets/file_seal.hpp"
+#include "output/run_summary.hpp"
+
+#include "bags/bag_file.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Opening and closing look for plugins (compression, encryption), which is not made for several threads.
+std::mutex g_opening;
+
+/// Writes. A run that cannot be written is removed: an error must not tell how to read what is left of it.
+template <class Action>
+void writeOrRefuse(const Action& action)
+{
+  try
+  {
+    action();
+  }
+  catch (const InputError& error)
+  {
+    const std::string text = error.what();
+    throw InputError(text.substr(0, text.find("; ")));
+  }
+}
+}  // namespace
+
+BagRunFile::BagRunFile(const Twin* twin, std::string path)
+  : path_(std::move(path)), temporary_(path_ + ".part"), last_(SIMULATION_EPOCH)
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  bag_.emplace(temporary_);
+  if (twin != nullptr)
+  {
+    recorder_.emplace(*twin, DEFAULT_NAMESPACE, *bag_);
+  }
+}
+
+BagRunFile::~BagRunFile()
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  bag_.reset();
+  std::remove(temporary_.c_str());
+  std::remove((temporary_ + ".active").c_str());
+}
+
+void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
+{
+  writeOrRefuse([&] { recorder_->record(twin); });
+  last_ = twin.stamp();
+}
+
+void BagRunFile::finish(OrderedJson record)
+{
+  std_msgs::String message;
+  message.data = record.dump();
+  writeOrRefuse(
+      [&]
+      {
+        bag_->write(RECORD_TOPIC, last_, message);
+        const std::lock_guard<std::mutex> lock(g_opening);
+        bag_->close();
+      });
+  sealFile(temporary_);
+  bringToDisk(temporary_, path_);
+}
+
+std::string BagRunFile::readRecord(const std::string& path)
+{
+  const std::lock_guard<std::mutex> lock(g_opening);
+  try
+  {
+    rosbag::Bag bag;
+    openForReading(bag, path);
+    rosbag::View view(bag, rosbag::TopicQuery(RECORD_TOPIC));
+    for (const rosbag::MessageInstance& message : view)
+    {
+      const auto text = message.instantiate<std_msgs::String>();
+      return text ? text->data : std::string();
+    }
+  }
+  catch (const std::exception&)
+  {
+    // Not a bag, or a damaged one: as if it were not there.
+  }
+  return {};
+}
+}  // namespace hjt

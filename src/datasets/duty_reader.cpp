@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/duty_reader.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "datasets/variable.hpp"
+
+#include "base/number_text.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr Range LARGE{ -1e6, 1e6 };  // any value of a waveform
+constexpr double BANDWIDTH = 8.0;    // of the speed control [Hz]
+
+/// What a key that holds a text may be in some run.
+std::vector<std::string> textsOf(const PlanNode& map, const std::string& key)
+{
+  const PlanNode& node = required(map, key);
+  if (!Variable::stands(node))
+  {
+    return { PlanValues().text(map, key) };
+  }
+  std::vector<std::string> texts;
+  const PlanNode& list = node.entries.front().second;
+  for (const auto& [number, element] : list.entries)
+  {
+    texts.push_back(PlanValues().text(list, number));
+  }
+  return texts;
+}
+
+/// Of what a key of a duty cycle gives.
+const char* unitOf(const std::string& key)
+{
+  return key == "speed" ? "rad/s" : key == "temperature" ? "degC" : "N.m";
+}
+
+std::shared_ptr<const Waveform> trapezoid(const PlanNode& shape, const char* unit, const PlanValues& values)
+{
+  allowOnly(shape, { "peak", "slope", "hold", "pause" });
+  const double peak = values.number(shape, "peak", unit, LARGE);
+  const double slope = values.number(shape, "slope", (std::string(unit) + "/s").c_str(), { 1e-6, 1e9 });
+  const double hold = values.number(shape, "hold", "s", { 0.0, 1e6 }, 0.0);
+  const double pause = values.number(shape, "pause", "s", { 0.0, 1e6 }, 0.0);
+  const TrapezoidWaveform wave(peak, slope, hold, pause);
+  if (peak != 0.0 && wave.halfPeriod() < TrapezoidWaveform::SHORTEST)
+  {
+    shape.refuse("has a half period, 2 peak / slope + hold + pause, of " + numberText(wave.halfPeriod()) +
+                 " [s], allowed: >= " + numberText(TrapezoidWaveform::SHORTEST) + " [s]");
+  }
+  return std::make_shared<TrapezoidWaveform>(wave);
+}
+}  // namespace
+
+void DutyReader::readTables(const PlanNode& duties, const std::string& directory)
+{
+  for (const auto& [number, duty] : duties.entries)
+  {
+    for (const auto& [key, shape] : duty.entries)
+    {
+      const PlanNode* csv = shape.find("csv");
+      if (csv == nullptr)
+      {
+        continue;
+      }
+      allowOnly(*csv, { "file", "column" });
+      for (const std::string& file : textsOf(*csv, "file"))
+      {
+        for (const std::string& column : textsOf(*csv, "column"))
+        {
+          const std::string path = (std::filesystem::path(directory) / file).string();
+          tables_[{ file, column }] = TableWaveform::read(path, column, LARGE, unitOf(key));
+        }
+      }
+    }
+  }
+}
+
+RunDuty DutyReader::read(const PlanNode& duty, const PlanValues& values) const
+{
+  allowOnly(duty, { "name", "torque", "speed", "bandwidth", "load", "temperature" });
+  RunDuty cycle;
+  const bool torque = duty.find("torque") != nullptr;
+  if (torque == (duty.find("speed") != nullptr))
+  {
+    duty.refuse("must have either torque or speed");
+  }
+  if (torque)
+  {
+    cycle.torque = waveform(duty, "torque", values);
+  }
+  else
+  {
+    cycle.speed = waveform(duty, "speed", values);
+    cycle.bandwidth = values.number(duty, "bandwidth", "Hz", { 0.1, 100 }, BANDWIDTH);
+  }
+  if (duty.find("load") != nullptr)
+  {
+    cycle.load = waveform(duty, "load", values);
+  }
+  if (duty.find("temperature") != nullptr)
+  {
+    cycle.temperature = waveform(duty, "temperature", values);
+    const Range reached = cycle.temperature->range();
+    if (reached.min < MIN_TEMPERATURE || reached.max > MAX_TEMPERATURE)
+    {
+      required(duty, "temperature")
+          .refuse("reaches " + rangeText(reached) +
+                  " [degC], allowed: " + rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }) + " [degC]");
+    }
+  }
+  return cycle;
+}
+
+std::shared_ptr<const Waveform> DutyReader::waveform(const PlanNode& map, const std::string& key,
+                                                     const PlanValues& values) const
+{
+  const char* unit = unitOf(key);
+  const PlanNode& node = required(map, key, PlanNode::Kind::MAP);
+  allowOnly(node, { "constant", "sinus", "trapezoid", "csv" });
+  if (node.entries.size() != 1)
+  {
+    node.refuse("must be one of constant, sinus, trapezoid, csv");
+  }
+  const auto& [kind, shape] = node.entries.front();
+  if (kind == "constant")
+  {
+    return std::make_shared<ConstantWaveform>(values.number(node, kind, unit, LARGE));
+  }
+  if (kind == "sinus")
+  {
+    allowOnly(shape, { "mean", "amplitude", "frequency", "phase" });
+    return std::make_shared<SinusWaveform>(values.number(shape, "mean", unit, LARGE, 0.0),
+                                           values.number(shape, "amplitude", unit, { 0.0, LARGE.max }),
+                                           values.number(shape, "frequency", "Hz", { 0.0, 1e4 }),
+                                           values.number(shape, "phase", "rad", { -1e3, 1e3 }, 0.0));
+  }
+  if (kind == "trapezoid")
+  {
+    return trapezoid(shape, unit, values);
+  }
+  return std::make_shared<TableWaveform>(tables_.at({ values.text(shape, "file"), values.text(shape, "column") }));
+}
+
+OrderedJson DutyReader::tables() const
+{
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [table, rows] : tables_)
+  {
+    json[table.first][table.second] = *rows;
+  }
+  return json;
+}
+}  // namespace hjt

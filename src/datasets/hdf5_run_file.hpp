@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/hdf5_tools.hpp"
+#include "datasets/run_file.hpp"
+
+namespace hjt
+{
+/// A run as an HDF5 file: a group for each rate with a data set a column, time and severity, the indicators of each
+/// window, the faults, the parameters, the record. docs/datasets.md describes it. The same run gives the same bytes: no
+/// times are kept.
+class Hdf5RunFile : public RunFile
+{
+public:
+  Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path);
+  ~Hdf5RunFile() override;
+
+  void record(Twin& twin, const DutyFeeder& feeder) override;
+  void finish(OrderedJson record) override;
+
+  /// Of the data set of this name; empty if there is none.
+  static std::string readText(const std::string& path, const char* name);
+  static Columns readColumns(const std::string& path, const std::vector<std::string>& holding);
+
+private:
+  struct ColumnData
+  {
+    const RunColumn* column;  // none: time or severity
+    Hdf5Handle dataset;
+    std::size_t width;  // numbers a row
+    std::vector<double> block;
+  };
+  struct Group
+  {
+    bool float32;
+    Stamp period;  // [ns]
+    hsize_t rows_in_block;
+    hsize_t buffered{};
+    hsize_t written{};
+    bool per_tooth{};
+    std::vector<ColumnData> columns{};
+  };
+
+  void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start, int deflate);
+  double severityAt(double time) const;
+  void flush(Group& group);
+  void writeIndicators();
+  void close() noexcept;
+  [[noreturn]] void fail() const;
+  hid_t check(hid_t result) const;
+
+  std::string path_;
+  std::string temporary_;
+  Hdf5Handle file_;
+  Stamp from_{};  // recorded are instants after this one
+  Stamp begin_{};
+  std::vector<GrowingFault> faults_;
+  ToothForces teeth_;
+  std::uint64_t rows_without_forces_{};
+  std::vector<Group> groups_;
+  bool indicators_;
+  std::vector<SignalIndicators> windows_;
+};
+}  // namespace hjt

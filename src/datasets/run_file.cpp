@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/run_file.hpp"
+
+#include <filesystem>
+
+#include "datasets/bag_run_file.hpp"
+#include "datasets/hdf5_run_file.hpp"
+
+namespace hjt
+{
+std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
+                                     const std::string& path)
+{
+  if (recording.format == RunFormat::BAG)
+  {
+    return std::make_unique<BagRunFile>(twin, path);
+  }
+  return std::make_unique<Hdf5RunFile>(recording, spec, twin, path);
+}
+
+const char* runFileExtension(RunFormat format)
+{
+  return format == RunFormat::BAG ? ".bag" : ".h5";
+}
+
+OrderedJson readRunRecord(RunFormat format, const std::string& path)
+{
+  if (!std::filesystem::exists(path))
+  {
+    return nullptr;
+  }
+  const std::string text =
+      format == RunFormat::BAG ? BagRunFile::readRecord(path) : Hdf5RunFile::readText(path, "record");
+  return OrderedJson::parse(text, nullptr, false);
+}
+
+std::string readRunParameters(const std::string& path)
+{
+  return Hdf5RunFile::readText(path, "parameters");
+}
+
+Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding)
+{
+  return Hdf5RunFile::readColumns(path, holding);
+}
+
+double dataSize(const Recording& recording, double duration, int teeth)
+{
+  double bytes = 0.0;
+  for (const RecordingGroup& group : recording.groups)
+  {
+    for (const RunColumn* column : group.columns)
+    {
+      const double numbers = column->per_tooth != nullptr ? teeth : 1;
+      bytes += (duration - recording.start) * group.rate * numbers * (group.float32 ? 4.0 : 8.0);
+    }
+  }
+  return bytes;
+}
+}  // namespace hjt

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/plan.hpp"
+#include "datasets/run_duty.hpp"
+#include "output/ordered_json.hpp"
+
+namespace hjt
+{
+/// Of a run's record: rows whose forces on the teeth are NaN, as no equilibrium of the teeth was found for them.
+constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
+
+/// What one run is written to. Nothing stands under its name before `finish`.
+class RunFile
+{
+public:
+  virtual ~RunFile() = default;
+
+  /// After every step. @throws InputError if the disk does not take it.
+  virtual void record(Twin& twin, const DutyFeeder& feeder) = 0;
+
+  /// Writes what is known only now, seals the file, brings it to the disk and gives it its name. `record`: the run's
+  /// row of the index, with an open seal. @throws InputError.
+  virtual void finish(OrderedJson record) = 0;
+};
+
+/// `twin`: none if the run has none; then only the record is written. @throws InputError.
+std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
+                                     const std::string& path);
+
+/// Of the format's files, with the dot.
+const char* runFileExtension(RunFormat format);
+
+/// The record of a finished run; none if there is no readable file.
+OrderedJson readRunRecord(RunFormat format, const std::string& path);
+
+/// The parameters of a run's HDF5 file, as describeParameters has them; empty if it holds none.
+std::string readRunParameters(const std::string& path);
+
+/// Numbers by the name of their column, one a row each.
+using Columns = std::map<std::string, std::vector<double>>;
+
+/// The columns of the first group of a run's HDF5 file that holds one of these; none if no group does.
+/// @throws InputError if the file cannot be read.
+Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding);
+
+/// Bytes of the numbers of a run.
+double dataSize(const Recording& recording, double duration, int teeth);
+}  // namespace hjt

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+#include "datasets/run_file.hpp"
+#include "datasets/sweep_directory.hpp"
+
+#include "surface/surface_cache.hpp"
+
+namespace hjt
+{
+/// What a run costs.
+struct RunCost
+{
+  double surfaces{};          ///< the building of its response surfaces, or the look for them in the cache [s]
+  double ends{};              ///< before the first step, the surfaces at hand, and after the last one [s]
+  double real_time_factor{};  ///< simulated over real time, one core [-]
+};
+
+/// Simulates runs of a plan, one after the other.
+class RunSimulation
+{
+public:
+  static constexpr std::uint64_t WHOLE = 1'000'000;  ///< added to `simulated` over a run
+
+  RunSimulation(const Plan& plan, const SweepDirectory& directory, const SurfaceSource& surface_source,
+                std::atomic<std::uint64_t>& simulated)
+    : plan_(plan), directory_(directory), surface_source_(surface_source), simulated_(simulated)
+  {
+  }
+
+  /// A run through to its end, into its file. False: interrupted, and no file left.
+  /// @throws InputError if the file cannot be written.
+  bool simulate(std::uint64_t number);
+
+  /// Tries a run, for no longer than `seconds` by the clock, and leaves nothing of it.
+  /// @throws InputError, ParameterError if the run's drive has no equilibrium.
+  RunCost sample(std::uint64_t number, double seconds);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  bool march(Twin& twin, const RunSpec& spec, RunFile& file, Clock::time_point until);
+
+  const Plan& plan_;
+  const SweepDirectory& directory_;
+  const SurfaceSource& surface_source_;
+  std::atomic<std::uint64_t>& simulated_;
+  std::uint64_t on_surface_{};
+};
+}  // namespace hjt

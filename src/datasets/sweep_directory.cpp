@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sweep_directory.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "datasets/file_seal.hpp"
+#include "datasets/run_file.hpp"
+
+#include "base/joined.hpp"
+#include "base/number_text.hpp"
+#include "base/source_hash.hpp"
+#include "base/text_hash.hpp"
+#include "base/text_stream.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+using Json = OrderedJson;
+
+/// Version and hash of the code: runs made by another code are not added to.
+std::string softwareVersion()
+{
+  return std::string(HJT_VERSION "+") + sourceHash();
+}
+
+constexpr const char* FORMAT = "harmonic_joint_twin data set 1";
+/// Byte of plan.json that is locked while it is written; run N locks byte N.
+constexpr std::uint64_t PLAN_LOCK = 1ull << 62;
+
+std::string hexadecimal(std::uint64_t number)
+{
+  TextStream text;
+  text << std::hex << number;
+  return text.str();
+}
+
+/// A cell of the index: texts in quotes, nothing for what is not there.
+std::string cell(const Json& value)
+{
+  if (value.is_null())
+  {
+    return "";
+  }
+  if (value.is_number_float())
+  {
+    return numberText(value.get<double>());
+  }
+  if (!value.is_string())
+  {
+    return value.is_array() ? "\"" + value.dump() + "\"" : value.dump();
+  }
+  std::string text = value.get<std::string>();
+  for (std::size_t at = 0; (at = text.find_first_of("\"\n", at)) != std::string::npos; at += 2)
+  {
+    text.replace(at, 1, text[at] == '"' ? "\"\"" : "; ");
+  }
+  return "\"" + text + "\"";
+}
+
+/// In what the document of a directory differs from that of a plan.
+std::string otherThan(const Json& found, const Json& wanted)
+{
+  const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
+                                                                    { "version", "another version of the software" },
+                                                                    { "plan", "another plan" },
+                                                                    { "tables", "other tables of the plan" },
+                                                                    { "configuration", "another configuration" } } };
+  for (const auto& [key, what] : parts)
+  {
+    if (!found.is_object() || found.value(key, Json()) != wanted.at(key))
+    {
+      return what;
+    }
+  }
+  return "something else";
+}
+
+/// Locks or unlocks one byte, whether it is in the file or not. False: another process holds it. A file system that
+/// knows no locks refuses none.
+bool lockByte(int file, std::uint64_t place, int command, short kind)
+{
+  struct flock lock
+  {
+  };
+  lock.l_type = kind;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = static_cast<off_t>(place);
+  lock.l_len = 1;
+  return fcntl(file, command, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
+}
+}  // namespace
+
+SweepDirectory::~SweepDirectory()
+{
+  if (plan_file_ >= 0)
+  {
+    close(plan_file_);
+  }
+}
+
+void SweepDirectory::open()
+{
+  const std::string name = path_ + "/plan.json";
+  std::error_code error;
+  fs::create_directories(path_ + "/runs", error);
+  if (error)
+  {
+    throw InputError(path_ + " cannot be made: " + error.message());
+  }
+  Json document{ { "format", FORMAT }, { "version", softwareVersion() } };
+  document.update(plan_.snapshot());
+  const std::string text = document.dump(1) + '\n';
+  // The plan is written before any run, perhaps by another shard at this moment: looked for in the opposite order.
+  const bool empty = fs::is_empty(path_ + "/runs");
+  plan_file_ = ::open(name.c_str(), O_RDWR | O_CLOEXEC | (empty ? O_CREAT : 0), 0666);
+  if (plan_file_ < 0)
+  {
+    throw InputError(errno == ENOENT ? path_ +
+                                           "/runs holds files of something else, and there is no plan.json; give "
+                                           "another --out" :
+                                       name + " cannot be opened: " + std::strerror(errno));
+  }
+  lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLKW, F_WRLCK);
+  std::ifstream file(name, std::ios::binary);
+  const std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  // Not there yet, or left half written by a process that was killed.
+  if (found.size() < text.size() && text.compare(0, found.size(), found) == 0)
+  {
+    if (pwrite(plan_file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) || fsync(plan_file_) != 0)
+    {
+      throw InputError(name + " cannot be written: " + std::strerror(errno));
+    }
+  }
+  else if (found != text)
+  {
+    throw InputError(name + " is of " + otherThan(Json::parse(found, nullptr, false), document) +
+                     "; give another --out");
+  }
+  lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLK, F_UNLCK);
+}
+
+void SweepDirectory::lock(std::uint64_t run) const
+{
+  if (!lockByte(plan_file_, run, F_OFD_SETLK, F_WRLCK))
+  {
+    throw InputError(runFile(run) + " is being written by another sweep into " + path_ +
+                     "; wait for it, or give each a shard of its own");
+  }
+}
+
+bool SweepDirectory::isFinished(std::uint64_t run) const
+{
+  return record(run).is_object() && isSealed(runFile(run));
+}
+
+std::string SweepDirectory::runFileName(std::uint64_t run) const
+{
+  char number[32];
+  std::snprintf(number, sizeof(number), "%09llu", static_cast<unsigned long long>(run));
+  return std::string("runs/run_") + number + runFileExtension(plan_.recording().format);
+}
+
+std::string SweepDirectory::runFile(std::uint64_t run) const
+{
+  return path_ + "/" + runFileName(run);
+}
+
+Json SweepDirectory::record(std::uint64_t run) const
+{
+  Json found = readRunRecord(plan_.recording().format, runFile(run));
+  return found.is_object() && found.value("run", Json()) == run ? found : Json();
+}
+
+std::uint64_t SweepDirectory::finishedRuns() const
+{
+  std::uint64_t finished = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_ + "/runs"))
+  {
+    finished += entry.path().extension() == runFileExtension(plan_.recording().format) ? 1 : 0;
+  }
+  return finished;
+}
+
+std::string SweepDirectory::indexHeader() const
+{
+  std::string header =
+      "run,file,file_hash,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,fault_"
+      "ramp,"
+      "noise_seed,parameters_hash,version,rows_without_forces,error";
+  for (const std::string& name : plan_.variableNames())
+  {
+    header += "," + name;
+  }
+  return header;
+}
+
+std::string SweepDirectory::indexRow(const Json& record) const
+{
+  std::string row = cell(record.at("run"));
+  for (const char* key : { "file", FILE_HASH, "status", "class", "duty", "repeat", "duration" })
+  {
+    row += "," + cell(record.value(key, Json()));
+  }
+  for (const char* key : { "kind", "severity", "place", "onset", "ramp" })
+  {
+    const auto text = [key](const Json& fault)
+    { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
+    row += "," + joined(record.at("faults"), ";", text);
+  }
+  for (const char* key : { "noise_seed", "parameters_hash", "version", ROWS_WITHOUT_FORCES, "error" })
+  {
+    row += "," + cell(record.value(key, Json()));
+  }
+  for (const std::string& name : plan_.variableNames())
+  {
+    row += "," + cell(record.at("variables").value(name, Json()));
+  }
+  return row;
+}
+
+void SweepDirectory::writeIndex() const
+{
+  // Another shard may end while this one reads: whoever writes last has seen all.
+  for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
+  {
+    seen = now;
+    std::string text = indexHeader() + '\n';
+    for (std::uint64_t run = 0; run < plan_.runs(); ++run)
+    {
+      const Json found = record(run);
+      if (found.is_object())
+      {
+        text += indexRow(found) + '\n';
+      }
+    }
+    writeTextFile(path_ + "/index.csv", text);
+  }
+}
+
+Json recordOf(const RunSpec& spec, const std::string& file)
+{
+  Json variables = Json::object();
+  for (const auto& [name, value] : spec.variables)
+  {
+    variables[name] = jsonOf(value);
+  }
+  Json faults = Json::array();
+  for (const auto& [fault, ramp] : spec.faults)
+  {
+    faults.push_back({ { "kind", describe(fault.kind).name },
+                       { "severity", fault.severity },
+                       { "place", fault.place },
+                       { "onset", fault.onset },
+                       { "ramp", ramp } });
+  }
+  return { { "format", FORMAT },
+           { "version", softwareVersion() },
+           { "run", spec.run },
+           { "file", file },
+           { FILE_HASH, OPEN_SEAL },
+           { "status", "ok" },
+           { "error", "" },
+           { "class", spec.fault_class },
+           { "duty", spec.duty_name },
+           { "repeat", spec.repeat },
+           { "duration", spec.duration },
+           { "faults", faults },
+           { "variables", variables },
+           { "noise_seed", spec.parameters.sensors.noise_seed },
+           { "parameters_hash", hexadecimal(parametersHash(spec.parameters)) } };
+}
+}  // namespace hjt

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "live/twin_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include <pthread.h>
+#include <sys/prctl.h>
+
+namespace hjt
+{
+namespace
+{
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+/// Of the loop, by the wall clock.
+constexpr milliseconds CYCLE_PERIOD{ 1 };
+/// Upper bound of the shortest sleep: messages of several instants go out together, and threads are woken less often.
+constexpr milliseconds SHORT_PAUSE{ 4 };
+/// The longest sleep, while nobody awaits an instant: how long a request may wait for its answer.
+constexpr milliseconds MAX_PAUSE{ 50 };
+/// Simulated at most in one cycle, more than MAX_PAUSE, so that the loop stays responsive while it catches up [ns].
+constexpr Stamp MAX_CATCH_UP = 60'000'000;
+/// A smaller step back, as time synchronisation makes, is waited out [ns].
+constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
+/// How long a request waits for the loop.
+constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
+/// More than the loop ever has on its stack [bytes].
+constexpr std::size_t STACK_SIZE = 256 * 1024;
+
+Stamp nanoseconds(steady_clock::duration duration)
+{
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Between two cycles whose messages are awaited: short beside the delay that the twin keeps anyway.
+steady_clock::duration shortestPause(Stamp input_delay)
+{
+  constexpr int SHARE = 5;
+  return std::clamp<steady_clock::duration>(input_delay / SHARE / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD,
+                                            CYCLE_PERIOD, SHORT_PAUSE);
+}
+
+/// Has the pages of the stack mapped before the first cycle needs them.
+__attribute__((noinline)) void touchStack()
+{
+  std::array<volatile char, STACK_SIZE> stack;
+  constexpr std::size_t PAGE = 4096;
+  for (std::size_t byte = 0; byte < stack.size(); byte += PAGE)
+  {
+    stack[byte] = 0;
+  }
+}
+
+void prepareThread()
+{
+  pthread_setname_np(pthread_self(), "twin_loop");
+  // Linux may let a thread without real-time priority sleep 50 us longer than requested.
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  touchStack();
+}
+}  // namespace
+
+TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+                   AfterCycle after_cycle)
+  : twin_(twin)
+  , inbox_(inbox)
+  , clock_(std::move(clock))
+  , clock_kind_(clock_kind)
+  , after_step_(std::move(after_step))
+  , after_cycle_(std::move(after_cycle))
+  , input_delay_(toStampLength(twin.parameters().input.delay))
+  , shortest_pause_(after_cycle_ ? shortestPause(input_delay_) : CYCLE_PERIOD)
+  , deadline_(toStampLength(twin.parameters().realtime.deadline))
+  , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
+  , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
+  , arrived_(Inbox::makeBuffer())
+  , thread_([this] { run(); })
+{
+}
+
+TwinLoop::~TwinLoop()
+{
+  stopping_ = true;
+  thread_.join();
+}
+
+bool TwinLoop::reset()
+{
+  const std::uint64_t request = ++resets_requested_;
+  const auto deadline = steady_clock::now() + REQUEST_TIMEOUT;
+  while (resets_done_ < request && steady_clock::now() < deadline)
+  {
+    std::this_thread::sleep_for(CYCLE_PERIOD);
+  }
+  return resets_done_ >= request;
+}
+
+void TwinLoop::run()
+{
+  prepareThread();
+  auto wake_up = steady_clock::now();
+  while (!stopping_)
+  {
+    const auto begin = steady_clock::now();
+    cycle();
+    const auto end = steady_clock::now();
+    keepTimes(begin, end);
+    shown_status_.tryWrite(status_);
+    // Without a sleep while it catches up, however short those cycles: they add nothing to the sleep after them.
+    const auto length = pause(after_cycle_ ? after_cycle_(twin_.stamp()) : twin_.stamp());
+    wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + length, end) : end;
+    if (wake_up > end)
+    {
+      // Instants that nobody awaits are due with the one that ends the sleep.
+      if (length > CYCLE_PERIOD)
+      {
+        released_ = std::max(released_, status_.clock + nanoseconds(wake_up - begin - CYCLE_PERIOD));
+      }
+      std::this_thread::sleep_until(wake_up);
+      status_.timing.wake_up.add(nanoseconds(steady_clock::now() - wake_up));
+    }
+  }
+}
+
+/// From one wake-up to the next: to the next awaited instant, in whole periods.
+steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
+{
+  if (clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
+  {
+    return CYCLE_PERIOD;
+  }
+  const Stamp ahead = next_awaited + input_delay_ - status_.clock;
+  return std::clamp<steady_clock::duration>(ahead / nanoseconds(CYCLE_PERIOD) * CYCLE_PERIOD, shortest_pause_,
+                                            MAX_PAUSE);
+}
+
+void TwinLoop::cycle() noexcept
+{
+  // Without a time there is nothing to restart, and inputs cannot be ordered yet.
+  if (clock_() == 0)
+  {
+    resets_done_ = resets_requested_.load();
+    return;
+  }
+  // The inputs first, then the clock: what came after a jump back is not mistaken for what came before it.
+  std::size_t waiting = arrived_.size();
+  inbox_.take(arrived_);
+  if (readClock(clock_()))
+  {
+    forgetInputs(waiting);
+    waiting = 0;
+  }
+  stampInputs(waiting);
+  const Stamp limit = std::max<Stamp>(status_.clock - input_delay_, 0);
+  answerRequests(limit, waiting);
+  if (status_.state == LoopState::RUNNING || tryStart(limit))
+  {
+    handOverInputs();
+    catchUp(limit);
+  }
+  status_.twin_stamp = twin_.stamp();
+  status_.outputs = twin_.outputs();
+  status_.counters = twin_.counters();
+  status_.assessment = twin_.assessment();
+}
+
+/// @returns whether the clock has jumped back.
+bool TwinLoop::readClock(Stamp now) noexcept
+{
+  const bool back = now + CLOCK_JUMP_TOLERANCE < status_.clock;
+  if (back)
+  {
+    ++status_.clock_jumps;
+    status_.state = LoopState::WAITING_FOR_CLOCK;
+    status_.clock = now;
+    status_.lag = 0;
+  }
+  status_.clock = std::max(status_.clock, now);
+  return back;
+}
+
+void TwinLoop::answerRequests(Stamp limit, std::size_t waiting) noexcept
+{
+  const std::uint64_t requested = resets_requested_;
+  if (requested != resets_done_)
+  {
+    forgetInputs(waiting);
+    start(limit);
+    ++status_.resets;
+    resets_done_ = requested;
+  }
+}
+
+/// Those that had arrived before this cycle: the first `count`.
+void TwinLoop::forgetInputs(std::size_t count) noexcept
+{
+  arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(std::min(count, arrived_.size())));
+}
+
+/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes
+/// now; one far from the clock is refused.
+void TwinLoop::stampInputs(std::size_t waiting) noexcept
+{
+  const auto fresh = arrived_.begin() + static_cast<std::ptrdiff_t>(waiting);
+  for (auto input = fresh; input != arrived_.end(); ++input)
+  {
+    input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
+  }
+  const auto kept_end = std::remove_if(
+      fresh, arrived_.end(), [this](const Input& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+  status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
+  arrived_.erase(kept_end, arrived_.end());
+}
+
+bool TwinLoop::tryStart(Stamp limit) noexcept
+{
+  if (!wait_for_first_input_)
+  {
+    start(status_.clock);
+    return true;
+  }
+  // Several topics may bring the first input, in any order: the earliest stamp counts once the clock has passed it.
+  status_.state = LoopState::WAITING_FOR_INPUT;
+  Stamp first = std::numeric_limits<Stamp>::max();
+  for (const Input& input : arrived_)
+  {
+    if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
+    {
+      first = std::min(first, input.stamp);
+    }
+  }
+  if (first > limit)
+  {
+    return false;
+  }
+  start(first);
+  return true;
+}
+
+void TwinLoop::start(Stamp stamp) noexcept
+{
+  twin_.reset(stamp);
+  status_.state = LoopState::RUNNING;
+  status_.lag = 0;
+  status_.largest_lag = 0;
+  status_.command_seen = false;
+  status_.timing = {};
+  released_ = status_.clock;
+  start_stamp_ = stamp;
+  start_time_ = steady_clock::now();
+  // The twin was not there yet when these were due: they act from its first instant and are not late.
+  for (Input& input : arrived_)
+  {
+    input.stamp = std::max(input.stamp, stamp);
+  }
+}
+
+void TwinLoop::handOverInputs() noexcept
+{
+  for (const Input& input : arrived_)
+  {
+    twin_.push(input);
+    if (input.kind == InputKind::MOTOR_TORQUE)
+    {
+      status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
+      status_.command_seen = true;
+    }
+  }
+  arrived_.clear();
+}
+
+void TwinLoop::catchUp(Stamp limit) noexcept
+{
+  if (clock_kind_ == ClockKind::STEPPED && status_.lag < step_length_)
+  {
+    released_ = status_.clock;
+  }
+  const Stamp first = twin_.stamp() + step_length_;
+  const Stamp until = std::min(limit, twin_.stamp() + MAX_CATCH_UP);
+  while (twin_.step(until))
+  {
+    after_step_(twin_);
+  }
+  status_.lag = std::max<Stamp>(limit - twin_.stamp(), 0);
+  status_.largest_lag = std::max(status_.largest_lag, status_.lag);
+  if (twin_.stamp() >= first)
+  {
+    judgeLateness(std::max(first + input_delay_, released_));
+  }
+}
+
+void TwinLoop::judgeLateness(Stamp due) noexcept
+{
+  const Stamp lateness = clock_() - due;
+  status_.timing.lateness.add(lateness);
+  if (lateness > deadline_)
+  {
+    ++status_.timing.missed_deadlines;
+  }
+}
+
+void TwinLoop::keepTimes(steady_clock::time_point begin, steady_clock::time_point end) noexcept
+{
+  ++status_.cycles;
+  if (end - begin > CYCLE_PERIOD)
+  {
+    ++status_.overruns;
+  }
+  if (status_.state == LoopState::RUNNING)
+  {
+    LoopTiming& timing = status_.timing;
+    timing.longest_cycle = std::max(timing.longest_cycle, nanoseconds(end - begin));
+    timing.busy += nanoseconds(end - begin);
+    timing.elapsed = nanoseconds(end - start_time_);
+    timing.simulated = twin_.stamp() - start_stamp_;
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "live/inbox.hpp"
+#include "live/latency_histogram.hpp"
+#include "live/try_lock_value.hpp"
+
+namespace hjt
+{
+enum class LoopState : std::uint8_t
+{
+  WAITING_FOR_CLOCK,  ///< no time has been seen yet
+  WAITING_FOR_INPUT,  ///< input.wait_for_first_input: at rest until a torque arrives
+  RUNNING
+};
+
+/// How the loop keeps up, since the last start or reset.
+struct LoopTiming
+{
+  LatencyHistogram wake_up;          ///< how late a cycle began after the loop had asked to be woken, by the wall clock
+  LatencyHistogram lateness;         ///< how late the oldest instant of a cycle was simulated after it was due
+  std::uint64_t missed_deadlines{};  ///< cycles in which that was more than realtime.deadline
+  Stamp longest_cycle{};             ///< by the wall clock [ns]
+  Stamp busy{};                      ///< sum of all cycles, by the wall clock [ns]
+  Stamp elapsed{};                   ///< by the wall clock [ns]
+  Stamp simulated{};                 ///< [ns]
+
+  /// Simulated over wall time; 0 at the start [-].
+  double realTimeFactor() const noexcept { return shareOfElapsed(simulated); }
+  /// Share of the wall time in which the loop worked [-].
+  double load() const noexcept { return shareOfElapsed(busy); }
+
+private:
+  double shareOfElapsed(Stamp length) const noexcept
+  {
+    return elapsed > 0 ? static_cast<double>(length) / static_cast<double>(elapsed) : 0.0;
+  }
+};
+
+/// Whose time the loop follows.
+enum class ClockKind : std::uint8_t
+{
+  RUNNING,  ///< runs on by itself: every instant is due at a time of its own
+  STEPPED   ///< moves when somebody says so (/clock): all the instants of a step are due once it has been read
+};
+
+/// What the loop shows of itself once per cycle.
+struct LoopStatus
+{
+  LoopState state{};
+  Stamp clock{};        ///< time read last [ns]
+  Stamp twin_stamp{};   ///< simulated instant [ns]
+  Stamp lag{};          ///< how far the twin is behind the instant it should have reached [ns]
+  Stamp largest_lag{};  ///< since the last start or reset [ns]
+  std::uint64_t cycles{};
+  std::uint64_t overruns{};     ///< cycles whose work took longer than their period
+  std::uint64_t clock_jumps{};  ///< times the clock jumped back
+  std::uint64_t resets{};       ///< resets on request
+  std::uint64_t far_stamps{};   ///< inputs refused: stamped further than FAR_STAMP from the clock
+  bool command_seen{};          ///< a motor torque command has come since the last start or reset
+  Stamp last_command{};         ///< latest stamp of one [ns]
+  JointOutputs outputs;
+  TwinCounters counters;
+  Assessment assessment;
+  LoopTiming timing;
+};
+
+/// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
+///
+/// The twin stays `input.delay` behind the clock. It never skips time: after a jump forward it catches up, a
+/// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
+/// it.
+///
+/// On a clock that runs, the loop sleeps until the next instant that somebody awaits, at least a fifth of `input.delay`
+/// (one to SHORT_PAUSE), at most MAX_PAUSE. What it simulates then is what it would have simulated in between: inputs
+/// act by their stamps.
+class TwinLoop
+{
+public:
+  using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
+  using AfterStep = std::function<void(Twin&)>;  ///< called at every simulated instant; must not wait or allocate
+  /// Called after each cycle with the instant it has reached; returns the next one whose result somebody awaits [ns].
+  /// Must not wait or allocate.
+  using AfterCycle = std::function<Stamp(Stamp)>;
+
+  /// Starts the thread. Without `after_cycle` every instant is awaited.
+  TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+           AfterCycle after_cycle = {});
+
+  /// Stops the thread.
+  ~TwinLoop();
+
+  /// From any thread: restarts the twin at the current instant. Waits for it. False: the loop did not answer.
+  bool reset();
+
+  LoopStatus status() const { return shown_status_.read(); }
+
+  /// The loop's thread, for its priority and processor.
+  std::thread::native_handle_type thread() { return thread_.native_handle(); }
+
+private:
+  void run();
+  std::chrono::steady_clock::duration pause(Stamp next_awaited) const noexcept;
+  void cycle() noexcept;
+  bool readClock(Stamp now) noexcept;
+  void answerRequests(Stamp limit, std::size_t waiting) noexcept;
+  void forgetInputs(std::size_t count) noexcept;
+  void stampInputs(std::size_t waiting) noexcept;
+  bool tryStart(Stamp limit) noexcept;
+  void start(Stamp stamp) noexcept;
+  void handOverInputs() noexcept;
+  void catchUp(Stamp limit) noexcept;
+  void judgeLateness(Stamp due) noexcept;
+  void keepTimes(std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) noexcept;
+
+  Twin& twin_;
+  Inbox& inbox_;
+  Clock clock_;
+  const ClockKind clock_kind_;
+  AfterStep after_step_;
+  AfterCycle after_cycle_;
+  const Stamp input_delay_;
+  const std::chrono::steady_clock::duration shortest_pause_;
+  const Stamp deadline_;     ///< for each instant, after it was due [ns]
+  const Stamp step_length_;  ///< [ns]
+  const bool wait_for_first_input_;
+  std::vector<Input> arrived_;  ///< not yet given to the twin, which takes them once it has started
+  Stamp released_{};            ///< no instant simulated now was due before this time of the clock [ns]
+  Stamp start_stamp_{};         ///< first instant since the last start or reset [ns]
+  std::chrono::steady_clock::time_point start_time_;
+  LoopStatus status_;
+  TryLockValue<LoopStatus> shown_status_;
+  std::atomic<std::uint64_t> resets_requested_{ 0 };
+  std::atomic<std::uint64_t> resets_done_{ 0 };
+  std::atomic<bool> stopping_{ false };
+  std::thread thread_;
+};
+}  // namespace hjt

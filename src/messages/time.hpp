@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <ros/time.h>
+
+#include "harmonic_joint_twin/base/stamp.hpp"
+
+namespace hjt
+{
+// Differences of times are taken of stamps: those of ros::Time throw beyond 68 years.
+
+/// Last time that ROS can express [ns].
+constexpr Stamp LAST_ROS_STAMP = 4'294'967'295'999'999'999;
+
+/// ROS time of a stamp [ns]; one that ROS cannot express becomes the nearest it can.
+inline ros::Time toRosTime(Stamp stamp)
+{
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(std::clamp<Stamp>(stamp, 0, LAST_ROS_STAMP)));
+  return time;
+}
+
+/// Stamp [ns] of a ROS time, also of one that came with more than a second of nanoseconds.
+inline Stamp fromRosTime(const ros::Time& time)
+{
+  return std::min(static_cast<Stamp>(time.toNSec()), LAST_ROS_STAMP);
+}
+
+/// Stamp of a header, or of the reception where the header has none [ns].
+inline Stamp stampOr(const ros::Time& header_stamp, const ros::Time& received)
+{
+  return fromRosTime(header_stamp.isZero() ? received : header_stamp);
+}
+}  // namespace hjt

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "messages/measured_drive.hpp"
+#include "messages/stamp_periods.hpp"
+#include "messages/telemetry_messages.hpp"
+#include "messages/topics.hpp"
+
+namespace hjt
+{
+/// Names of the topics of TrackerOutputs below `joint_namespace`.
+inline std::vector<std::string> trackerTopics(const std::string& joint_namespace)
+{
+  std::vector<std::string> names;
+  for (const char* name : { topics::COMPARISON, topics::INDICATORS, topics::ASSESSMENT, topics::CONTACT_FORCES,
+                            topics::ENCODERS, topics::HEALTH, topics::STRESS })
+  {
+    names.push_back(joint_namespace + "/" + name);
+  }
+  return names;
+}
+
+/// The topics of one joint beside a robot, each with a `Sink<Message>` that its messages go to. The ring is solved only
+/// for messages that are due and wanted.
+///
+/// A sink is constructed from (context, topic's name, first message) and has `bool isWanted()`, `Message& message()`,
+/// to be filled, and `send()`.
+template <template <class> class Sink>
+class TrackerOutputs
+{
+public:
+  /// @throws ParameterError as MeasuredGear.
+  template <class Context>
+  TrackerOutputs(Context&& context, const Parameters& parameters)
+    : drive_(parameters)
+    , report_periods_(parameters.publish.indicators_rate)
+    , comparison_(context, topics::COMPARISON, makeMessage<harmonic_joint_twin::Comparison>(parameters))
+    , indicators_(context, topics::INDICATORS, makeIndicators(parameters))
+    , assessment_(context, topics::ASSESSMENT, makeAssessment(parameters))
+    , ring_topics_(RingTopic<harmonic_joint_twin::ContactForces>{ StampPeriods(parameters.publish.contact_forces_rate),
+                                                                  { context, topics::CONTACT_FORCES,
+                                                                    makeContactForces(parameters) } },
+                   RingTopic<harmonic_joint_twin::Encoders>{
+                       StampPeriods(parameters.publish.encoders_rate),
+                       { context, topics::ENCODERS, makeMessage<harmonic_joint_twin::Encoders>(parameters) } },
+                   RingTopic<harmonic_joint_twin::Health>{
+                       StampPeriods(parameters.publish.health_rate),
+                       { context, topics::HEALTH, makeMessage<harmonic_joint_twin::Health>(parameters) } },
+                   RingTopic<harmonic_joint_twin::Stress>{ StampPeriods(parameters.publish.stress_rate),
+                                                           { context, topics::STRESS, makeStress(parameters) } })
+  {
+  }
+
+  /// After each comparison of the tracker.
+  void offer(Stamp stamp, const Comparison& comparison, const Tracker& tracker)
+  {
+    fillComparison(stamp, comparison, comparison_.message());
+    comparison_.send();
+    if (report_periods_.begins(stamp))
+    {
+      fillIndicators(stamp, tracker.signalIndicators(), indicators_.message());
+      indicators_.send();
+      fillAssessment(stamp, tracker.assessment(), assessment_.message());
+      assessment_.send();
+    }
+    drive_.note(comparison, std::get<RingTopic<harmonic_joint_twin::Health>>(ring_topics_).sink.isWanted());
+    bool is_any_due = false;
+    const auto look = [&](auto& topic)
+    {
+      topic.is_due = topic.periods.begins(stamp) && topic.sink.isWanted();
+      is_any_due = is_any_due || topic.is_due;
+    };
+    std::apply([&](auto&... topic) { (look(topic), ...); }, ring_topics_);
+    if (!is_any_due || !drive_.moveTo(comparison))
+    {
+      return;
+    }
+    const auto send = [&](auto& topic)
+    {
+      if (topic.is_due)
+      {
+        drive_.fill(stamp, topic.sink.message());
+        topic.sink.send();
+      }
+    };
+    std::apply([&](auto&... topic) { (send(topic), ...); }, ring_topics_);
+  }
+
+  std::uint64_t failures() const { return drive_.failures(); }  ///< instants without an equilibrium
+
+private:
+  /// A topic that the ring is solved for.
+  template <class Message>
+  struct RingTopic
+  {
+    StampPeriods periods;
+    Sink<Message> sink;
+    bool is_due{};
+  };
+
+  MeasuredDrive drive_;
+  StampPeriods report_periods_;
+  Sink<harmonic_joint_twin::Comparison> comparison_;
+  Sink<harmonic_joint_twin::Indicators> indicators_;
+  Sink<harmonic_joint_twin::Assessment> assessment_;
+  std::tuple<RingTopic<harmonic_joint_twin::ContactForces>, RingTopic<harmonic_joint_twin::Encoders>,
+             RingTopic<harmonic_joint_twin::Health>, RingTopic<harmonic_joint_twin::Stress>>
+      ring_topics_;
+};
+}  // namespace hjt

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output/interrupt.hpp"
+
+#include <utility>
+
+namespace hjt
+{
+namespace
+{
+volatile std::sig_atomic_t g_signal = 0;
+bool g_has_scope = false;
+}  // namespace
+
+int interruptSignal()
+{
+  return g_signal;
+}
+
+InterruptScope::InterruptScope() : is_outer_(!std::exchange(g_has_scope, true))
+{
+  if (is_outer_)
+  {
+    catchSignal(caught_[0], SIGINT, SA_RESETHAND);
+    catchSignal(caught_[1], SIGTERM, SA_RESETHAND);
+    catchSignal(caught_[2], SIGHUP, SA_RESETHAND);
+  }
+}
+
+InterruptScope::InterruptScope(Guest /*guest*/) : is_outer_(!std::exchange(g_has_scope, true))
+{
+  if (is_outer_)
+  {
+    g_signal = 0;
+    catchSignal(caught_[0], SIGINT, 0);
+  }
+}
+
+InterruptScope::~InterruptScope()
+{
+  for (const Caught& caught : caught_)
+  {
+    if (caught.signal != 0)
+    {
+      sigaction(caught.signal, &caught.before, nullptr);
+    }
+  }
+  g_has_scope = g_has_scope && !is_outer_;
+}
+
+void InterruptScope::catchSignal(Caught& caught, int signal, int flags) const
+{
+  struct sigaction action
+  {
+  };
+  action.sa_handler = [](int number) { g_signal = number; };
+  action.sa_flags = flags;
+  sigaction(signal, nullptr, &caught.before);
+  if (signal != SIGHUP || caught.before.sa_handler != SIG_IGN)  // which it is below nohup
+  {
+    sigaction(signal, &action, nullptr);
+    caught.signal = signal;
+  }
+}
+}  // namespace hjt

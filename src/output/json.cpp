@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output/json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "output/ordered_json.hpp"
+#include "output/text_table.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+/// Into the library's own value.
+struct JsonWriter
+{
+  using Library = OrderedJson;
+
+  static Library convert(const Json& json)
+  {
+    return std::visit([](const auto& value) { return converted(value); }, json.value_);
+  }
+
+private:
+  template <class Value>
+  static Library converted(const Value& value)
+  {
+    return value;
+  }
+  static Library converted(const std::vector<Json>& values)
+  {
+    Library array = Library::array();
+    for (const Json& value : values)
+    {
+      array.push_back(convert(value));
+    }
+    return array;
+  }
+  static Library converted(const std::vector<Json::Member>& members)
+  {
+    Library object = Library::object();
+    for (const auto& [name, value] : members)
+    {
+      object[name] = convert(value);
+    }
+    return object;
+  }
+};
+
+Json& Json::operator[](const std::string& path)
+{
+  const std::size_t dot = path.find('.');
+  const std::string name = path.substr(0, dot);
+  if (!std::holds_alternative<std::vector<Member>>(value_))
+  {
+    value_ = std::vector<Member>();
+  }
+  auto& members = std::get<std::vector<Member>>(value_);
+  auto found =
+      std::find_if(members.begin(), members.end(), [&name](const Member& member) { return member.first == name; });
+  if (found == members.end())
+  {
+    found = members.insert(members.end(), { name, Json() });
+  }
+  return dot == std::string::npos ? found->second : found->second[path.substr(dot + 1)];
+}
+
+std::string Json::dump() const
+{
+  return JsonWriter::convert(*this).dump(2);
+}
+
+double Json::number() const
+{
+  return std::visit(
+      [](const auto& value)
+      {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_arithmetic_v<Value>)
+        {
+          return static_cast<double>(value);
+        }
+        return std::nan("");
+      },
+      value_);
+}
+
+std::string Json::shortText() const
+{
+  if (const auto* number = std::get_if<double>(&value_))
+  {
+    return shortNumber(*number);
+  }
+  if (const auto* text = std::get_if<std::string>(&value_))
+  {
+    return *text;
+  }
+  if (const auto* truth = std::get_if<bool>(&value_))
+  {
+    return *truth ? "yes" : "no";
+  }
+  if (std::holds_alternative<std::nullptr_t>(value_))
+  {
+    return "-";
+  }
+  return JsonWriter::convert(*this).dump();
+}
+
+std::vector<double> readJsonNumbers(const std::string& path, const std::vector<std::string>& names)
+{
+  std::vector<double> numbers;
+  try
+  {
+    std::ifstream file(path);
+    const auto object = nlohmann::json::parse(file);
+    for (const std::string& name : names)
+    {
+      const bool is_there = (numbers.empty() || object.contains(name)) && !object.at(name).is_null();
+      numbers.push_back(is_there ? object.at(name).get<double>() : std::nan(""));
+    }
+  }
+  catch (const nlohmann::json::exception& error)
+  {
+    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
+  }
+  return numbers;
+}
+}  // namespace hjt

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recordings/recording_comparison.hpp"
+#include "recordings/recording_contents.hpp"
+
+#include "tracking/verdict.hpp"
+
+namespace hjt
+{
+constexpr const char* COMPARISON_FILE = "comparison.json";
+constexpr const char* BASELINE_FILE = "baseline.yaml";
+
+/// All that a report is made of.
+struct ComparisonRecord
+{
+  std::string recording;
+  std::string joint;
+  std::string made_with;  ///< name and version of the program
+  MotionFindings found;
+  RecordingContents contents;
+  Decimated<TwinState> twin_states;
+  Verdict verdict;
+};
+
+/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
+/// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
+/// of the recording.
+/// @throws InputError if a file cannot be written.
+void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+                     const ComparisonRecord& record);
+
+/// What an earlier comparison left of the joint when it was sound.
+struct SoundJoint
+{
+  OwnReference own;
+  std::vector<ReferenceBin> baseline;  ///< none: the recording was too short for one
+};
+
+/// @throws InputError if the directory holds no comparison, or one of another gear.
+SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters);
+}  // namespace hjt

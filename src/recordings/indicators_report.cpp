@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/indicators_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "output/output_file.hpp"
+#include "output/report.hpp"
+#include "output/text_table.hpp"
+
+#include "base/number_text.hpp"
+#include "health/signal_sample.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+const char* stateName(AssessmentState state)
+{
+  constexpr std::array NAMES{ "waiting", "learning", "assessed", "no reference", "too few windows" };
+  return NAMES[static_cast<std::size_t>(state)];
+}
+
+Json toJson(const Assessment& assessment)
+{
+  const std::vector<Column<Evidence>> columns{ { "indicator",
+                                                 [](const Evidence& item) { return indicatorName(item.indicator); } },
+                                               { "value", &Evidence::value },
+                                               { "expected", &Evidence::expected },
+                                               { "score", &Evidence::score } };
+  const std::vector<Evidence> evidence(
+      assessment.evidence.begin(),
+      assessment.evidence.begin() + static_cast<std::ptrdiff_t>(assessment.evidence_count));
+  Json alternatives{ std::initializer_list<Json::Member>{} };
+  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  {
+    alternatives[causeName(assessment.alternatives[i].cause)] = assessment.alternatives[i].confidence;
+  }
+  return { { "state", stateName(assessment.state) },
+           { "windows_here", assessment.windows_here },
+           { "windows_needed", assessment.windows_needed },
+           { "level", levelName(assessment.level) },
+           { "cause", causeName(assessment.cause) },
+           { "confidence", assessment.confidence },
+           { "severity", assessment.severity },
+           { "severity_deviation", assessment.severity_deviation },
+           { "alternatives", alternatives },
+           { "largest_score", assessment.largest_score },
+           { "evidence", Table(columns, evidence).rows() } };
+}
+
+/// Of a window, for documents and files alike.
+const std::vector<Column<WindowResult>> POINT_COLUMNS{
+  { "time", [](const WindowResult& window) { return toSeconds(window.indicators.stamp); } },
+  { "turns", [](const WindowResult& window) { return window.indicators.turns; } },
+  { "speed", [](const WindowResult& window) { return window.indicators.point.speed; } },
+  { "direction", [](const WindowResult& window) { return window.indicators.point.direction; } },
+  { "load", [](const WindowResult& window) { return window.indicators.point.load; } },
+  { "load_constant", [](const WindowResult& window) { return window.indicators.point.load_constant; } },
+  { "load_sine", [](const WindowResult& window) { return window.indicators.point.load_sine; } },
+  { "load_cosine", [](const WindowResult& window) { return window.indicators.point.load_cosine; } },
+  { "inertia", [](const WindowResult& window) { return window.indicators.point.inertia; } },
+  { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
+};
+
+/// What `value` gives for each indicator, by its name.
+template <class Value>
+Json byIndicator(const Value& value)
+{
+  Json json;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    json[indicatorName(i)] = value(i);
+  }
+  return json;
+}
+
+/// Sound value, difference from it, own variance, what goes with each common cause; null: not compared.
+Json residualJson(const WindowResult& window)
+{
+  return byIndicator(
+      [&](std::size_t i)
+      {
+        const WindowResidual& residual = window.residual;
+        std::vector<double> numbers{ residual.sound[i], residual.difference[i], residual.own[i] };
+        numbers.insert(numbers.end(), residual.common[i].begin(), residual.common[i].end());
+        return residual.own[i] > 0.0 ? Json(numbers) : Json();
+      });
+}
+
+/// The indicator that is furthest from its reference, and the difference of the averaged windows from it.
+struct Strongest
+{
+  std::size_t indicator{};
+  double score{};
+  double spreads{};  // of the mean [-]
+  double percent{};  // of the reference; NaN: that is nothing beside the spread, as of a part of a line
+};
+
+std::optional<Strongest> strongestOf(const WindowResult& window)
+{
+  const FeatureScores scores = featureScores(window.deviations);
+  const FeatureScore& most = *std::max_element(scores.begin(), scores.end(),
+                                               [](const FeatureScore& a, const FeatureScore& b)
+                                               { return std::abs(a.score) < std::abs(b.score); });
+  const Deviation& deviation = window.deviations[most.indicator];
+  if (!most.compared || !(deviation.spread > 0.0))
+  {
+    return std::nullopt;
+  }
+  const double difference = window.residual.difference[most.indicator];
+  const bool is_share = std::abs(deviation.expected) > deviation.spread;
+  return Strongest{ most.indicator, most.score, difference / deviation.spread,
+                    is_share ? 100.0 * difference / std::abs(deviation.expected) : NOT_MEASURED };
+}
+
+Json strongestJson(const WindowResult& window)
+{
+  const std::optional<Strongest> strongest = strongestOf(window);
+  return !strongest ? Json() :
+                      Json{ { "indicator", indicatorName(strongest->indicator) },
+                            { "score", strongest->score },
+                            { "spreads", strongest->spreads },
+                            { "percent", strongest->percent } };
+}
+
+std::vector<Column<WindowResult>> documentColumns()
+{
+  using W = const WindowResult&;
+  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
+  columns.insert(columns.begin(), { { "recording", &WindowResult::recording },
+                                    { "made_of", &WindowResult::origin },
+                                    { "parameters", &WindowResult::parameters } });
+  columns.push_back({ "indicators", [](W window)
+                      { return byIndicator([&](std::size_t i) { return window.indicators.values[i]; }); } });
+  columns.push_back(
+      { "scores", [](W window) { return byIndicator([&](std::size_t i) { return window.deviations[i].score; }); } });
+  columns.push_back({ "residual", residualJson });
+  columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
+  columns.push_back({ "averaged", [](const WindowResult& window) { return window.residual.windows; } });
+  columns.push_back({ "strongest", strongestJson });
+  columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
+  return columns;
+}
+
+std::vector<Column<WindowResult>> fileColumns()
+{
+  std::vector<Column<WindowResult>> columns = POINT_COLUMNS;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    columns.push_back({ indicatorName(i), [i](const WindowResult& window) { return window.indicators.values[i]; } });
+  }
+  columns.push_back({ "state", [](const WindowResult& window) { return static_cast<int>(window.assessment.state); } });
+  columns.push_back({ "level", [](const WindowResult& window) { return static_cast<int>(window.assessment.level); } });
+  columns.push_back({ "cause", [](const WindowResult& window) { return static_cast<int>(window.assessment.cause); } });
+  columns.push_back({ "confidence", [](const WindowResult& window) { return window.assessment.confidence; } });
+  columns.push_back({ "severity", [](const WindowResult& window) { return window.assessment.severity; } });
+  columns.push_back(
+      { "severity_deviation", [](const WindowResult& window) { return window.assessment.severity_deviation; } });
+  columns.push_back({ "largest_score", [](const WindowResult& window) { return window.assessment.largest_score; } });
+  return columns;
+}
+
+void printTable(const WindowResult& window)
+{
+  std::printf("%-32s %14s %-10s %14s %8s\n", "indicator", "value", "unit", "healthy", "score");
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const double value = window.indicators.values[i];
+    const Deviation& deviation = window.deviations[i];
+    if (!std::isfinite(value))
+    {
+      continue;
+    }
+    std::printf("%-32s %14s %-10s", indicatorName(i), shortNumber(value).c_str(), indicatorUnit(i));
+    if (std::isfinite(deviation.score))
+    {
+      std::printf(" %14s %8s", shortNumber(deviation.expected).c_str(), fixedText(deviation.score, 2).c_str());
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+void writeWindows(const std::string& path, const std::vector<WindowResult>& windows)
+{
+  writeTable(path, fileColumns(), windows);
+}
+
+void printDocument(const std::vector<WindowResult>& windows, double threshold)
+{
+  printReport(true, { { "threshold", "", threshold },
+                      { "windows", "", Table(documentColumns(), windows).rows() },
+                      { "assessment", "", toJson(windows.back().assessment) } });
+}
+
+void printSummary(const std::vector<WindowResult>& windows)
+{
+  const WindowResult& last = windows.back();
+  printTable(last);
+  const Assessment& assessment = last.assessment;
+  const bool judged = assessment.state == AssessmentState::ASSESSED;
+  std::vector<ReportLine> lines{ { "", "windows", windows.size() },
+                                 { "", "turns in the last", last.indicators.turns },
+                                 { "", "motor speed in it", last.indicators.point.speed, "rad/s" },
+                                 { "", "made of", last.origin },
+                                 { "", "with the parameters of the", last.parameters },
+                                 { "", "state", stateName(assessment.state) },
+                                 { "", "level", judged ? levelName(assessment.level) : "not judged" } };
+  if (const std::optional<Strongest> strongest = strongestOf(last))
+  {
+    lines.push_back({ "", "largest score over threshold", assessment.largest_score });
+    lines.push_back({ "", "that of", indicatorName(strongest->indicator) });
+    lines.push_back({ "", "its deviation", strongest->spreads, "spreads" });
+    if (std::isfinite(strongest->percent))
+    {
+      lines.push_back({ "", "of its reference", strongest->percent, "%" });
+    }
+  }
+  if (assessment.level != HealthLevel::OK)
+  {
+    lines.push_back({ "", "most likely cause", causeName(assessment.cause) });
+    lines.push_back({ "", "confidence", assessment.confidence });
+    lines.push_back({ "", "severity", assessment.severity });
+    lines.push_back({ "", "its standard deviation", assessment.severity_deviation });
+  }
+  printReport(false, lines);
+  if (!judged)
+  {
+    std::printf("not judged: %s\n", whyNotJudged(assessment).c_str());
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "bags/recorded_topic.hpp"
+#include "messages/tracker_outputs.hpp"
+#include "recordings/recorded_motion.hpp"
+
+namespace hjt
+{
+/// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
+/// too, it holds all of its messages as they are.
+class TrackedBag
+{
+public:
+  /// One joint whose comparisons go into the bag.
+  struct Joint
+  {
+    std::string name;             ///< in the messages
+    std::string joint_namespace;  ///< its topics lie below, e.g. "/elbow/joint_twin"
+    const Parameters& parameters;
+  };
+
+  /// A CSV file's times count from SIMULATION_EPOCH.
+  /// @throws InputError if a file cannot be opened, or the recording holds a topic of the twin already.
+  TrackedBag(const std::string& path, const MotionSource& source, const std::vector<Joint>& joints);
+
+  /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
+  void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker);
+
+  /// Takes over the rest. @throws InputError if not all could be written.
+  void close();
+
+private:
+  void copyUntil(Stamp recorded);
+
+  const std::string source_path_;
+  rosbag::Bag source_;  // not open: the recording is no bag
+  rosbag::View view_;   // of all of it
+  std::optional<rosbag::View::iterator> next_;
+  BagWriter writer_;
+  Stamp start_{};  // stamp of the first row [ns]
+  Stamp delay_{};  // of its recording behind that [ns]
+  std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
+};
+}  // namespace hjt
