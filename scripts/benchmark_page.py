@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run time against error: runs `work_precision` over its problems and writes docs/benchmark.md. Started by
-scripts/benchmark."""
+"""Run time against error: runs `work_precision` over its problems; writes every run to out/benchmark and the summary
+docs/benchmark.md. Started by scripts/benchmark."""
 import argparse
 import concurrent.futures
 import json
@@ -16,6 +16,8 @@ import threading
 import time
 
 import matplotlib
+
+import benchmark_summary
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
@@ -49,9 +51,9 @@ STYLES = {
     "PETSc bdf 2, KLU": ("#56B4E9", "-", "o", 1.2), "PETSc rosw ra34pw2, KLU": ("#56B4E9", "--", "s", 1.2),
     "PETSc arkimex 3, KLU": ("#56B4E9", ":", "x", 1.2), "RADAU5, dense": ("#999999", "-", "D", 1.2),
 }
-INTRODUCTION = """# Run time against error
+INTRODUCTION = """# Run time against error, every run
 
-Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
+Written by `scripts/benchmark`. One right-hand side, the dynamic ring of docs/model.md (804 states:
 every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model, first against its
 peers and then as the levels of detail to choose from. **Error**: root mean square over the samples, over the standard
 deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of
@@ -321,32 +323,6 @@ def section(problem, reference, rows, images):
     return lines, [f"**{reference['title']}**", "", *lost, ""] if lost else [], ratios
 
 
-def renewed(page, sections, ratios, remark):
-    """The page with these sections, by title, and the rows of these ratios in the table of all, in place of its own."""
-    def cells(title, quantity, by_level):
-        return table_row([f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)])
-
-    for title, lines in sections.items():
-        body = "\n".join([lines[0], "", remark, *lines[1:]]).rstrip() + "\n\n"
-        own = re.compile(r"^## " + re.escape(title) + r"\n.*?(?=^## )", re.MULTILINE | re.DOTALL)
-        if own.search(page):
-            page = own.sub(lambda _, text=body: text, page, count=1)
-        else:
-            page = page.replace("## Insertion from cold", body + "## Insertion from cold", 1)
-    header = "Below 10 from 1e-2 to 1e-5:\n\n"
-    for title, by_quantity in ratios:
-        for quantity, by_level in by_quantity.items():
-            row = re.compile(r"^\| " + re.escape(f"{title}: {QUANTITIES[quantity]} |") + ".*$", re.MULTILINE)
-            page = row.sub(lambda _, text=cells(title, quantity, by_level): text, page, count=1)
-            page = re.sub(r"^- " + re.escape(f"{title}, {QUANTITIES[quantity]} to ") + r".*\n", "", page,
-                          flags=re.MULTILINE)
-            page = page.replace(header, header + "".join(
-                f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}\n"
-                for level, ratio in by_level.items()
-                if 1e-5 <= level <= 1e-2 and (ratio == "peer only" or (isinstance(ratio, float) and ratio < 10.0))), 1)
-    return page
-
-
 def table_row(cells):
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
@@ -366,14 +342,17 @@ def kinks(references):
             "thousands of teeth making and losing contact within steps, limit their agreement.", ""]
 
 
+def ratio_table(sections):
+    header = ["best peer's time over ours, at an error of", *(f"{level:.0e}" for level in LEVELS)]
+    return table(header, [[f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)]
+                          for title, ratios in sections for quantity, by_level in ratios.items()])
+
+
 def verdict(sections):
     """How the best peer's time stands to ours: the targets, level by level."""
-    header = ["best peer's time over ours", *(f"{level:.0e}" for level in LEVELS)]
-    body = []
     below, slower = [], []
     for title, ratios in sections:
         for quantity, by_level in ratios.items():
-            body.append([f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)])
             for level, ratio in by_level.items():
                 behind = ratio == "peer only" or (isinstance(ratio, float) and ratio < 1.0)
                 if 1e-5 <= level <= 1e-2 and (behind or (isinstance(ratio, float) and ratio < 10.0)):
@@ -385,7 +364,7 @@ def verdict(sections):
         return [f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}" for title, quantity, level,
                 ratio in cases]
     lines = ["## All in one table", "", "Wanted: 10 and more at errors from 1e-2 to 1e-5, 1 and more down to 1e-9.", "",
-             *table(header, body)]
+             *ratio_table(sections)]
     if below:
         lines += ["Below 10 from 1e-2 to 1e-5:", "", *named(below), ""]
     if slower:
@@ -419,7 +398,8 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/benchmark", description=__doc__)
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--parts", required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--docs", required=True, help="folder of the page (default: docs)")
+    parser.add_argument("--docs", required=True, help="folder of the summary (default: docs)")
+    parser.add_argument("--out", required=True, help="folder of the complete page (default: out/benchmark)")
     parser.add_argument("--work", required=True, help="folder of references and results (default: build/benchmark)")
     parser.add_argument("--problems", default=",".join(PROBLEMS), help="which, by commas (default: all)")
     parser.add_argument("--runs", type=int, default=10,
@@ -430,52 +410,46 @@ def main():
     parser.add_argument("--limit", type=float, default=4.0,
                         help="processor time after which a run is given up [s] (default: 4)")
     parser.add_argument("--reuse", action="store_true", help="take references and results at hand, however old")
-    parser.add_argument("--into", metavar="REMARK",
-                        help="renew the sections of these problems in the page at hand, each with this remark")
     options = parser.parse_args()
     if options.quick:
         options.runs = min(options.runs, 3)
-    images = os.path.join(options.docs, "images", "benchmark")
+    images = os.path.join(options.out, "images", "benchmark")
     os.makedirs(images, exist_ok=True)
     os.makedirs(options.work, exist_ok=True)
     problems = options.problems.split(",")
     progress = Progress(problems)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         measured = dict(zip(problems, pool.map(lambda problem: measure(problem, options, progress), problems)))
-    body, lost, ratios, solvers, sections = [], [], [], set(), {}
+    body, lost, ratios, solvers, levels = [], [], [], set(), []
     for problem in problems:
         reference, rows = measured[problem]
         lines, missing, by_quantity = section(problem, reference, rows, images)
         body += lines
-        sections[reference["title"]] = lines
+        if problem == "levels":
+            levels = lines[:lines.index("<details><summary>every run</summary>")]
         lost += missing
         if by_quantity:
             ratios.append((reference["title"], by_quantity))
         solvers |= {row["solver"] for row in rows}
-    page = os.path.join(options.docs, "benchmark.md")
-    if options.into:
-        with open(page, encoding="utf-8") as source:
-            text = renewed(source.read(), sections, ratios, options.into)
-        with open(page, "w", encoding="utf-8") as out:
-            out.write(text)
-        print(f"renewed {page}", file=sys.stderr)
-        return
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
     references = {problem: reference for problem, (reference, _) in measured.items()}
-    lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *parts(options.parts), "## Omissions", ""]
+    teeth = parts(options.parts)
+    machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most "
+               f"{options.runs} runs of each, fewer of those that take longer.")
+    lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *teeth, "## Omissions", ""]
     if absent:
         lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
     lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that "
               f"(tighter "
               "settings of a solver that gave up early or twice with it), or failed:", "", *lost, OMISSIONS.strip(), "",
-              "---", "",
-              f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} "
-              f"runs of each, "
-              "fewer of those that take longer: the tables say how many."]
+              "---", "", machine]
+    page = os.path.join(options.out, "benchmark.md")
     with open(page, "w", encoding="utf-8") as out:
         out.write("\n".join(lines).rstrip() + "\n")
     print(f"wrote {page}", file=sys.stderr)
+    if problems == PROBLEMS:
+        benchmark_summary.write(options.docs, options.out, ratio_table(ratios), levels, teeth, machine)
 
 
 if __name__ == "__main__":

@@ -60,7 +60,8 @@ def energy(page, parameters):
                    "β)²) and costs an eighth "
                    "of that times (travel in a step)²; signs at random, all at top speed. It counts straight flanks "
                    "alone: a double arc meets more teeth, at up to 24°, and the sliders of the cup kink too",
-                   known=name == "violent")
+                   known="the bound counts straight flanks alone; double arcs and the sliders of the cup kink too"
+                   if name == "violent" else "")
     if page.fast:
         return
     orders = [slope(rates, [row["relative_residual"] for row in rows]) for rows in runs.values()]

@@ -36,7 +36,7 @@ class Row:
     value: float
     unit: str
     reason: str
-    known: bool = False  # that it does not hold; the page says why
+    known: str = ""  # why it does not hold; empty if it should
 
     @property
     def holds(self):
@@ -117,9 +117,9 @@ class Page:
         self._flush()
         self.lines += markdown_table(header, rows) + [""]
 
-    def check(self, name, quantity, source, bound, value, unit, reason, known=False):
-        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: that it
-        does not hold, which the text of the section explains."""
+    def check(self, name, quantity, source, bound, value, unit, reason, known=""):
+        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: why it does
+        not hold; empty if it should."""
         if any(row.name == name for row in self.rows):
             raise ValueError(f"two rows are called {name}")
         row = Row(name, quantity, source, bound, float(value), unit, reason, known)
@@ -147,7 +147,8 @@ class Page:
             header = ["row", "quantity", "source", "expected", "twin", "tolerance", "verdict"]
             cells = [[f"`{row.name}`", row.quantity, row.source, with_unit(row.bound.expected(), row.unit),
                       with_unit(number(row.value), row.unit), f"{row.bound.tolerance(row.unit)}: {row.reason}",
-                      row.verdict] for row in self.pending]
+                      f"{row.verdict}: {row.known}" if row.known and not row.holds else row.verdict]
+                     for row in self.pending]
             self.lines += markdown_table(header, cells) + [""]
             self.pending = []
 
