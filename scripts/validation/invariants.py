@@ -53,6 +53,8 @@ def energy(page, parameters):
                 for (name, seed), rows in runs.items()])
     for name in motions:
         ends = [rows[-1] for (motion, _), rows in runs.items() if motion == name]
+        page.value(f"invariants.energy_{name}_10kHz",
+                   max(rows[0]["relative_residual"] for (motion, _), rows in runs.items() if motion == name), "")
         worst = max(ends, key=lambda row: row["relative_residual"] - kinks(row, parameters))
         page.check(f"invariants.energy_{name}", f"energy left over, {name} motion, {rates[-1] // 1000} kHz, worst seed",
                    "conservation of energy", AtMost(kinks(worst, parameters)), worst["relative_residual"], "",
@@ -298,6 +300,7 @@ def frame(page, parameters):
     milliradian = bending * 1e-3 / pitch
     fixed = page.tool("invariants", "state", "--loads", "150.0", "--set", "ring.bending_law=absolute")["states"][0]
     lost = abs(fixed["wave_generator_torque"] + fixed["output_torque"] + fixed["cup_torque"])
+    page.value("invariants.frame_absolute_lost", lost, "N·m")
     page.text(f"The thesis' absolute law (eq. 5.47–5.53) takes a turn of the whole for a deformation: "
               f"{milliradian:.0f} N on every segment for each "
               f"milliradian, where bending the rim takes {middle['curvature_force']:.0f} N at most. Under load the rim "

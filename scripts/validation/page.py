@@ -77,6 +77,7 @@ class Page:
     lines: list = field(default_factory=list)
     commands: list = field(default_factory=list)
     pending: list = field(default_factory=list)  # rows not yet in a table
+    values: list = field(default_factory=list)  # name, value, unit of what is shown and not judged
     results: dict = field(default_factory=dict)
 
     @property
@@ -125,6 +126,10 @@ class Page:
         row = Row(name, quantity, source, bound, float(value), unit, reason, known)
         self.rows.append(row)
         self.pending.append(row)
+
+    def value(self, name, value, unit):
+        """A number that other pages show and nothing is judged by."""
+        self.values.append((name, float(value), unit))
 
     def figure(self, name, caption, draw, size=(8.0, 3.2)):
         """`draw` fills a matplotlib figure, which is written beside the page."""

@@ -108,3 +108,4 @@ def write(docs, complete, pages, titles):
         table.writerow(["row", "value", "unit", "expected", "holds"])
         table.writerows([row.name, number(row.value), row.unit, row.bound.expected(), "yes" if row.holds else "no"]
                         for row in rows)
+        table.writerows([name, number(value), unit, "", ""] for page in pages for name, value, unit in page.values)
