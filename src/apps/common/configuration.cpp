@@ -48,7 +48,7 @@ void addCommonOptions(Command& command, CommonOptions& options)
 
 void addNamespaceOption(Command& command, std::string& joint_namespace)
 {
-  command.add("--joint-namespace", joint_namespace, "of the twin's topics")
+  command.add("--joint-namespace", joint_namespace, "ROS namespace of the twin's topics")
       .type("NAME")
       .check(
           [](const std::string& name)

@@ -513,7 +513,7 @@ void print(const ArmOptions& options, const Check& check, const std::vector<std:
                                check.contents.temperature);
   for (const RecordingFinding& finding : check.findings)
   {
-    printLine(finding.stops ? "WRONG" : "mind", finding.text);
+    printLine(finding.stops ? "ERROR" : "NOTE", finding.text);
   }
   std::cout << std::flush;
   if (!check.joints.empty())

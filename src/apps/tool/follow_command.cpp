@@ -260,7 +260,7 @@ private:
       {
         bag_->offer(number_, *now, tracker_);
       }
-      // The column is the torque of a controller, whichever load is taken.
+      // The column is always the controller's torque, independent of the load option.
       while (!motor_parts_.empty() && motor_parts_.front().time < now->time)
       {
         motor_parts_.pop_front();

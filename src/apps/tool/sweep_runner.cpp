@@ -78,7 +78,8 @@ void addSweepOptions(Command& command, SweepArguments& arguments)
   command.add("--jobs", arguments.jobs, "runs at the same time").range(1, 4096);
   command.flag("--dry-run", arguments.dry_run, "check every run, tell time and size to expect, run nothing");
   command.flag("--list", arguments.list, "print the index with every run of the plan, run nothing");
-  command.flag("--json", arguments.json, "how many runs were done, as a JSON document on stdout");
+  command.flag("--json", arguments.json,
+               "print the numbers of runs done, found and failed as one JSON document on stdout");
   addConfigurationOptions(command, arguments);
 }
 
