@@ -10,7 +10,7 @@ same right-hand side: the dynamic ring of [model.md](model.md) (804 states: ever
 spline), the operating model, and the levels of detail to choose from.
 
 ```sh
-scripts/benchmark                    # some hours: installs the peers, measures; the complete page in out/benchmark
+scripts/benchmark                    # ten minutes: installs the peers, measures; the complete page in out/benchmark
 scripts/benchmark --reuse            # writes the pages again from what was measured
 ```
 

@@ -11,6 +11,7 @@ import project
 
 VALUES = "docs/validation.csv"
 MARK = "<!-- value:"
+CODE_SPAN = re.compile(r"`[^`]*`")
 MARKED = re.compile(r"(?P<number>-?\d+(?:\.(?P<digits>\d+))?)"
                     r"<!-- value: (?P<row>[\w.]+)(?: \* (?P<factor>[\d.e-]+))? -->")
 
@@ -36,6 +37,7 @@ def check(root):
     problems, marked = [], 0
     for path in project.files(root, "", [".md"]):
         for number, line in project.lines(root, path):
+            line = CODE_SPAN.sub("", line)
             found = list(MARKED.finditer(line))
             marked += len(found)
             if line.count(MARK) != len(found):
