@@ -94,7 +94,8 @@ def chapter_3(page):
         [
             "Table 3.6", "r_m = 32.15 mm",
             f"tip radius and half the tooth height make "
-            f"{1e3 * (m.circular_spline_tip_radius + 0.5 * m.circular_spline_tooth_height):.2f} mm", "teeth by their positions"
+            f"{1e3 * (m.circular_spline_tip_radius + 0.5 * m.circular_spline_tooth_height):.2f} mm",
+            "teeth by their positions"
         ],
         [
             "Table 3.1, 5.7b", "b = 30.33 mm measured, b = r0 − w0 used",

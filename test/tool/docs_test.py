@@ -2,8 +2,8 @@
 """Commands that pages print: they run, and print what the page shows below them.
 
 In a block of code a line that begins with `$ ` is a command of a shell, the lines up to the next one are what it
-prints; `...` stands for any lines. In a block `sh` the lines that begin with `joint_twin` end with 0 where the files
-that they read are there. Each page has a folder of its own.
+prints; `...` stands for any lines. A command that ends with a pipe goes on in the next line. In a block `sh` the lines
+that begin with `joint_twin` end with 0 where the files that they read are there. Each page has a folder of its own.
 """
 import os
 import re
@@ -42,6 +42,8 @@ def transcripts(page):
                 command = COMMAND.match(line)
                 if command:
                     pairs.append((command[1], []))
+                elif pairs[-1][0].endswith("|"):
+                    pairs[-1] = (f"{pairs[-1][0]} {line}", [])
                 else:
                     pairs[-1][1].append(line)
             yield pairs
