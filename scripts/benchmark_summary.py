@@ -23,9 +23,9 @@ and call the twin's own forces. Ours are `joint_twin dynamics --tolerance`: TR-B
 steps.
 """
 READING = """Above 1 ours are faster. *ours only*, *peer only*: the other does not reach that error. A dash: the
-references agree no better than that, or nobody reaches it. Tooth forces below 1e-3 need steps that resolve the
-vibration of single teeth, at a fraction of a microsecond; in those rows the peer is Runge-Kutta 4 with steps of equal
-length.
+references agree no better than that, or nobody reaches it. An error of the tooth forces below
+1e-3 needs steps that resolve the vibration of single teeth, a fraction of a microsecond long; in those rows the peer is
+Runge-Kutta 4 with steps of equal length.
 
 ![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
 """
