@@ -85,7 +85,8 @@ class SimTime(unittest.TestCase):
         self.check_instants(stamps, 100 * SECOND, 100 * SECOND + 480 * MILLISECOND)
         time.sleep(1.5)
         self.assertEqual(self.stamps(self.states), stamps)
-        wait_until(lambda: "The clock has stopped" in self.diagnostics.statuses("Timing")[-1].message, "a standing clock")
+        wait_until(lambda: "The clock has stopped" in self.diagnostics.statuses("Timing")[-1].message,
+                   "a standing clock")
 
     def test_3_a_stamped_command_acts_from_its_instant_on_though_it_came_ahead_of_the_clock(self):
         command_stamp = 101 * SECOND
