@@ -320,7 +320,7 @@ bool CommandLine::knows(int argc, char** argv)
          std::any_of(all.begin(), all.end(), [&](const Subcommand* each) { return each->name_ == first; });
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv, bool aloud)
+std::optional<int> CommandLine::parse(int argc, char** argv)
 {
   try
   {
@@ -330,18 +330,12 @@ std::optional<int> CommandLine::parse(int argc, char** argv, bool aloud)
       run_ = request.command->run;
       return std::nullopt;
     }
-    if (aloud)
-    {
-      std::cout << request.text;
-    }
+    std::cout << request.text;
     return EXIT_DONE;
   }
   catch (const UsageError& error)
   {
-    if (aloud)
-    {
-      std::cerr << error.what() << '\n';
-    }
+    std::cerr << error.what() << '\n';
     return EXIT_USAGE;
   }
 }

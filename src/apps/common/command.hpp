@@ -121,9 +121,9 @@ public:
   /// The subcommand given is one of this program, or only the version is asked for.
   static bool knows(int argc, char** argv);
 
-  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, printed if
-  /// `aloud`.
-  std::optional<int> parse(int argc, char** argv, bool aloud = true);
+  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, which are
+  /// printed.
+  std::optional<int> parse(int argc, char** argv);
 
   /// Runs the subcommand that was chosen. @returns its exit code.
   int run() const { return run_(); }
