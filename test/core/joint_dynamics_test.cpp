@@ -9,10 +9,10 @@
 #include <boost/numeric/odeint/integrate/integrate_n_steps.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 
+#include "energy_ledger.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "solver/joint_stepper.hpp"
-#include "studies/energy_ledger.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -62,6 +62,24 @@ TEST(EnergyLedgerOfTheLeapfrog, ClosesToAMillionthWhereStepsResolveTheTeeth)
 {
   // The only error is the quadrature of the torques over a step: at 60 rad/s and 50 kHz, 26 steps a tooth pitch.
   EXPECT_LT(energyResidual(shippedParameters({ "solver.rate=50000", "motor.speed_limit=60.0" }), 75, true), 1e-6);
+}
+
+TEST(EnergyLedgerOfTheLeapfrog, ResidualFallsWithTheSquareOfTheStep)
+{
+  std::vector<double> residuals;
+  for (const char* const rate : { "solver.rate=10000", "solver.rate=40000" })
+  {
+    RandomDriveSettings drive = randomDrive(2);
+    drive.load = 15.0;
+    const LedgerResult result = runLedger(shippedParameters({ rate, "motor.torque_limit=0.5" }), drive, 0.3);
+    ASSERT_TRUE(result.status.ok());
+    EXPECT_GT(result.travel, 1.0);
+    EXPECT_GT(result.reversals, 0);
+    residuals.push_back(result.residual / result.throughput);
+  }
+  EXPECT_LT(residuals[0], 1e-4);
+  // Sixteen if no tooth touched within a step.
+  EXPECT_LT(residuals[1], residuals[0] / 4.0);
 }
 
 class EnergyLedgerOnBalls : public testing::TestWithParam<const char*>
