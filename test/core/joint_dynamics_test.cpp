@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <boost/numeric/odeint/integrate/integrate_n_steps.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
@@ -116,15 +115,6 @@ TEST(MotorTorques, AreDerivativesOfTheirEnergy)
     const double curvature = (motor.coggingTorque(angle - STEP) - motor.coggingTorque(angle + STEP)) / (2.0 * STEP);
     ASSERT_LE(std::abs(curvature), motor.coggingStiffness() * (1.0 + 1e-8));
   }
-}
-
-TEST(EnergyLedgerOfRungeKutta, ClosesOverAViolentSecond)
-{
-  // Friction is explicit here: it must be regularised as widely as the stepper asks for, and there is no brake.
-  const Parameters parameters =
-      shippedParameters({ "solver.stepper=runge_kutta4", "brake.holding_torque=0.0", "solver.stiction_velocity=0.5" });
-  // Kinks of the contacts and up to a tooth pitch a step leave no order four; measured 2.6e-5.
-  EXPECT_LT(energyResidual(parameters, 72, false), 2e-4);
 }
 
 TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
@@ -488,31 +478,6 @@ TEST(StepLength, ThatTheJointCannotBeMarchedWithIsRefused)
   EXPECT_NO_THROW(make({}));
   EXPECT_NO_THROW(make({ "output.load_inertia=0.0" }));
   EXPECT_THROW(make({ "output.load_inertia=0.0", "solver.rate=5000", "indicators.sample_rate=1000" }), ParameterError);
-  EXPECT_THROW(make({ "solver.stepper=runge_kutta4" }), ParameterError);
-}
-
-/// Both the current's lag and the fading towards the speed limit.
-TEST(StepLength, RungeKuttaRefusesADriveTooQuickForIt)
-{
-  const auto refusal = [](const char* assignment) -> std::string
-  {
-    const Parameters parameters = shippedParameters(
-        { "solver.stepper=runge_kutta4", "brake.holding_torque=0.0", "solver.stiction_velocity=0.5", assignment });
-    const JointModel model(parameters);
-    try
-    {
-      JointStepper(parameters, model);
-    }
-    catch (const ParameterError& error)
-    {
-      return error.what();
-    }
-    return {};
-  };
-  EXPECT_EQ(refusal("motor.current_bandwidth=1500.0"), "");
-  EXPECT_THAT(refusal("motor.current_bandwidth=1600.0"), testing::HasSubstr("takes the drive explicitly"));
-  EXPECT_EQ(refusal("motor.speed_limit=300.0"), "");
-  EXPECT_THAT(refusal("motor.speed_limit=10.0"), testing::HasSubstr("takes the drive explicitly"));
 }
 }  // namespace
 }  // namespace hjt
