@@ -15,7 +15,6 @@ from page import Page, Settings, markdown_table, say
 # Module and title, in the order of the page.
 SECTIONS = {
     "thesis": "The thesis, chapter by chapter",
-    "invariants": "Invariants",
     "catalogue": "Catalogue, size 25",
     "teeth": "Teeth",
     "stress": "Stress and fatigue",

@@ -7,7 +7,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
-#include "params/field_table.hpp"
+#include "params/field_rows.hpp"
 #include "python/configuration.hpp"
 
 namespace hjt
@@ -28,61 +28,20 @@ struct Field
   std::string meaning;
 };
 
-/// Makes a row of each parameter of the field table.
-class FieldLister
-{
-public:
-  void operator()(const std::string& key, const char* unit, double, const Range& range, const Meaning& meaning)
-  {
-    add(key, "float", unit, range, meaning);
-  }
-  void operator()(const std::string& key, const char* unit, int, const Range& range, const Meaning& meaning)
-  {
-    add(key, "int", unit, range, meaning);
-  }
-  template <std::size_t N>
-  void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
-                  const Meaning& meaning)
-  {
-    add(key, std::to_string(N) + " floats", unit, range, meaning);
-  }
-  void operator()(const std::string& key, bool, const Meaning& meaning)
-  {
-    fields_.push_back({ key, "bool", "-", {}, {}, {}, meaning.text });
-  }
-  void operator()(const std::string& key, const std::string&, const Meaning& meaning)
-  {
-    fields_.push_back({ key, "str", "-", {}, {}, {}, meaning.text });
-  }
-  template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
-  {
-    std::vector<std::string> names;
-    for (const auto& [name, choice] : choiceNames(Choice{}))
-    {
-      names.emplace_back(name);
-    }
-    fields_.push_back({ key, "str", "-", {}, {}, names, meaning.text });
-  }
-
-  std::vector<Field> take() { return std::move(fields_); }
-
-private:
-  void add(const std::string& key, const std::string& type, const char* unit, const Range& range,
-           const Meaning& meaning)
-  {
-    fields_.push_back({ key, type, unit, range.min, range.max, {}, meaning.text });
-  }
-
-  std::vector<Field> fields_;
-};
-
 std::vector<Field> allFields()
 {
-  FieldLister lister;
-  const Parameters none;
-  visitFields(none, lister);
-  return lister.take();
+  std::vector<Field> fields;
+  for (FieldRow& row : fieldRows(Parameters()))
+  {
+    Field field{ row.key, row.type == "text" ? "str" : row.type, row.unit, {}, {}, row.choices, row.meaning.text };
+    if (row.range)
+    {
+      field.minimum = row.range->min;
+      field.maximum = row.range->max;
+    }
+    fields.push_back(std::move(field));
+  }
+  return fields;
 }
 
 Field fieldOf(const std::string& key)

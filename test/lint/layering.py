@@ -55,7 +55,7 @@ OWN_LIBRARIES = {
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "python": re.compile(r"<pybind11/\w+\.h>$"),
     "bench": re.compile(r"<(arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
-                        r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
+                        r"[\w/.-]+>$|<klu\.h>$"),
     "test/core": re.compile(r"<(g(mock|test)|kdl|kdl_parser)/[\w/.-]+>$"),
     "test/support": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A user of the installed package: every public header compiles alone, programs in C++ and Python make and step a twin,
-the examples build and run.
+the examples build and run; where libraries are missing, the package is configured without what needs them.
 
 Argument: the package's build directory, everything built.
 """
@@ -24,6 +24,21 @@ def run(*command, **options):
 
 
 class OutsideUser(unittest.TestCase):
+    def test_what_needs_a_missing_library_is_left_out_by_name(self):
+        missing = ["Ceres", "HDF5", "pybind11"]
+        with tempfile.TemporaryDirectory() as folder:
+            environment = dict(os.environ, PATH=f"/usr/bin:/bin:{os.environ.get('PATH', '')}")
+            configured = run("cmake", "-S", os.path.dirname(os.path.dirname(HERE)), "-B", folder,
+                             *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in missing), env=environment)
+            said = [line for line in configured.splitlines() if line.startswith("-- Left out: ")]
+            self.assertEqual(len(said), 1, configured)
+            for name in ["joint_twin identify", "HDF5", "Python module", *missing]:
+                self.assertIn(name, said[0])
+            targets = run("cmake", "--build", folder, "--target", "help")
+            for target in ["joint_twin_node", "joint_twin", "joint_twin_complete"]:
+                self.assertIn(f"... {target}\n", targets)
+            self.assertNotIn("... _hjt\n", targets)
+
     def test_a_program_finds_the_package_and_steps_a_twin(self):
         with tempfile.TemporaryDirectory() as folder:
             prefix = os.path.join(folder, "prefix")

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <random>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
@@ -71,13 +70,11 @@ struct LedgerResult
   double throughput{};  ///< sum of |work| of motor, load and friction [J]
   double residual{};    ///< largest energy in - stored - dissipated on the way [J]
   double travel{};      ///< of the motor, both ways added [rad]
-  double top_speed{};   ///< of the motor [rad/s]
   int reversals{};      ///< of the motor
 };
 
-/// `duration` [s] from rest. `progress` gets the part done.
-inline LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& settings, double duration,
-                              const std::function<void(double)>& progress = {})
+/// `duration` [s] from rest.
+inline LedgerResult runLedger(const Parameters& parameters, const RandomDriveSettings& settings, double duration)
 {
   const JointModel model(parameters);
   JointStepper stepper(parameters, model);
@@ -92,12 +89,7 @@ inline LedgerResult runLedger(const Parameters& parameters, const RandomDriveSet
     converged = stepper.step(drive.next());
     result.residual = std::max(result.residual, std::abs(stepper.energyResidual()));
     result.travel += std::abs(stepper.motorAngle() - angle);
-    result.top_speed = std::max(result.top_speed, std::abs(stepper.speeds()[0]));
     result.reversals += speed * stepper.speeds()[0] < 0.0 ? 1 : 0;
-    if (progress)
-    {
-      progress(static_cast<double>(i + 1) / static_cast<double>(steps));
-    }
   }
   result.status = stepper.status();
   result.throughput = stepper.energyThroughput();
