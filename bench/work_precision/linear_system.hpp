@@ -11,8 +11,8 @@
 namespace hjt
 {
 /// What any implicit solver needs of the ring: (I - gamma J) x = b over the states, J the derivative of the rates. By
-/// SuiteSparse's KLU, refactored in a fixed pattern as SUNDIALS' own interface does. The cup's matrix of rank one is left
-/// out of the pattern and put back by Sherman and Morrison's formula; with it inside, KLU would face a dense block.
+/// SuiteSparse's KLU, refactored in a fixed pattern as SUNDIALS' own interface does. The cup's matrix of rank one is
+/// left out of the pattern and put back by Sherman and Morrison's formula; inside, it would be a dense block to KLU.
 class LinearSystem
 {
 public:

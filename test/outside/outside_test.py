@@ -32,7 +32,7 @@ class OutsideUser(unittest.TestCase):
                              *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in missing), env=environment)
             said = [line for line in configured.splitlines() if line.startswith("-- Left out: ")]
             self.assertEqual(len(said), 1, configured)
-            for name in ["joint_twin identify", "HDF5", "Python module", *missing]:
+            for name in ["joint_twin identify", "HDF5", "the Python module", *missing]:
                 self.assertIn(name, said[0])
             targets = run("cmake", "--build", folder, "--target", "help")
             for target in ["joint_twin_node", "joint_twin", "joint_twin_complete"]:

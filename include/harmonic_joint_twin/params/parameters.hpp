@@ -211,8 +211,8 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the joint is marched: one ring solve a step, staggered; or, on the response surface, steps of their own length by
-/// an error tolerance.
+/// How the joint is marched: one ring solve a step, staggered; or, on the response surface, steps of their own length
+/// by an error tolerance.
 enum class StepperKind
 {
   LEAPFROG,
