@@ -28,7 +28,6 @@ PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "r-cran-des
             "libeigen3-dev", "g++"]
 OPTIONAL = {"RADAU5": "r-cran-desolve"}  # peers that are left out where not installed
 OURS = "ours, "
-FAIR = "our linear solver"
 THESIS = "thesis: "
 # Colour by family, line by member.
 STYLES = {
@@ -118,12 +117,10 @@ def fastest(rows, quantity, level):
 
 
 def family_of(row):
-    """ours, thesis, fair (a peer with our linear solver) or peers."""
+    """ours, thesis or peers."""
     if row["solver"].startswith(OURS):
         return "ours"
-    if row["solver"].startswith(THESIS):
-        return "thesis"
-    return "fair" if FAIR in row["solver"] else "peers"
+    return "thesis" if row["solver"].startswith(THESIS) else "peers"
 
 
 def family(rows, name):
@@ -141,24 +138,20 @@ def envelope(rows, quantity, apart):
     lines = []
     ratios = {}
     for level in LEVELS:
-        best = {name: fastest(family(rows, name), quantity, level) for name in ("ours", "peers", "fair")}
+        best = {name: fastest(family(rows, name), quantity, level) for name in ("ours", "peers")}
         if level < apart or not any(best.values()):
             continue
         cells = [f"{level:.0e}"]
-        for name in ("ours", "peers", "fair"):
+        for name in ("ours", "peers"):
             row = best[name]
             cells.append(f"{1e3 * row['processor_time']:.3g} ms ({row['solver'].replace(OURS, '')}, {row['setting']})"
                          if row else "not reached")
-        for name in ("peers", "fair"):
-            both = best["ours"] and best[name]
-            ratio = best[name]["processor_time"] / best["ours"]["processor_time"] if both else None
-            cells.append(f"{ratio:.2g}" if both else "-")
-            if name == "peers":
-                ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
+        both = best["ours"] and best["peers"]
+        ratio = best["peers"]["processor_time"] / best["ours"]["processor_time"] if both else None
+        cells.append(f"{ratio:.2g}" if both else "-")
+        ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
         lines.append(cells)
-    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "best peer with our linear solver",
-              "peer / ours",
-              "that one / ours"]
+    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "peer / ours"]
     return table(header, lines), ratios
 
 
@@ -324,17 +317,6 @@ def cell(ratio):
     return "-" if ratio is None else ratio if isinstance(ratio, str) else f"{ratio:.2g}"
 
 
-def kinks(references):
-    """Cause of the difference between the references of the exact contact law: the same steps on its C1 ramp."""
-    exact, smooth = (references.get(problem) for problem in ("drive", "drive_smooth"))
-    if not exact or not smooth or exact["apart"]["force"] < 10.0 * smooth["apart"]["force"]:
-        return []
-    return [f"The references of the exact law are {exact['apart']['force']:.1e} apart in the forces where those of the "
-            f"C1 ramp, by the same "
-            f"methods at steps alike, are {smooth['apart']['force']:.1e} apart: the kinks, "
-            "thousands of teeth making and losing contact within steps, limit their agreement.", ""]
-
-
 def ratio_table(sections):
     header = ["best peer's time over ours, at an error of", *(f"{level:.0e}" for level in LEVELS)]
     return table(header, [[f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)]
@@ -426,11 +408,10 @@ def main():
         solvers |= {row["solver"] for row in rows}
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
-    references = {problem: reference for problem, (reference, _) in measured.items()}
     teeth = parts(options.parts)
     machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most "
                f"{options.runs} runs of each, fewer of those that take longer.")
-    lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *teeth, "## Omissions", ""]
+    lines = [INTRODUCTION, "", *verdict(ratios), *body, *teeth, "## Omissions", ""]
     if absent:
         lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
     lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that "

@@ -37,8 +37,8 @@ FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_st
 HEAD = """# Validation
 
 Written by `scripts/validate`; do not edit. Results of the twin beside the thesis it grew from (C. Costantino, *Sviluppo
-di un modello multibody di un harmonic drive a fini diagnostici e prognostici*, Politecnico di Torino, 2021), exact
-invariants, the gear maker's catalogue and recordings of real drives. Each row has a source, an expected value, the
+di un modello multibody di un harmonic drive a fini diagnostici e prognostici*, Politecnico di Torino, 2021), the
+gear maker's catalogue and recordings of real drives. Each row has a source, an expected value, the
 twin's value and a tolerance with its reason.
 
 ```sh

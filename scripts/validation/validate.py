@@ -80,7 +80,7 @@ def report(pages):
 
 def parse(arguments):
     parser = argparse.ArgumentParser(
-        prog="validate", description="Holds the twin against thesis, catalogue, invariants and real drives. Writes all "
+        prog="validate", description="Holds the twin against thesis, catalogue and real drives. Writes all "
         "rows with their figures to out/validation and, where nothing is left out or changed, the summary "
         "docs/validation.md. Exit code 0 only if every row holds, 1 if not or if a run failed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)

@@ -37,7 +37,6 @@ public:
 
 private:
   Configuration() = default;
-  void overlay(const py::handle& what);
   void take(const ParameterMap& map);
 
   std::string directory_;

@@ -9,13 +9,12 @@
 #include "params/configuration_files.hpp"
 #include "params/field_rows.hpp"
 #include "python/configuration.hpp"
+#include "python/overlays.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr const char* ORIGIN = "Python";  // of values, in error texts
-
 /// One parameter, whatever its value.
 struct Field
 {
@@ -109,65 +108,6 @@ void visitValues(const Parameters& parameters, const Take& take)
               });
 }
 
-double numberFrom(const py::handle& value, const std::string& key)
-{
-  const double number = PyFloat_AsDouble(value.ptr());
-  if (number == -1.0 && PyErr_Occurred() != nullptr)
-  {
-    PyErr_Clear();
-    throw ParameterError(std::string(ORIGIN) + ": " + key + " = " + py::cast<std::string>(py::repr(value)) +
-                         " is neither a number, a text, a truth value nor a list of numbers");
-  }
-  return number;
-}
-
-/// Not so an array of no dimension, which is a number.
-bool isList(const py::handle& value)
-{
-  const bool is_list = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) >= 0;
-  PyErr_Clear();
-  return is_list;
-}
-
-ParameterValue parameterValue(const py::handle& value, const std::string& key)
-{
-  const auto is_named = [&](const char* name)
-  { return py::cast<std::string>(value.attr("__class__").attr("__name__")) == name; };
-  if (PyBool_Check(value.ptr()) || is_named("bool_") || is_named("bool"))
-  {
-    return { PyObject_IsTrue(value.ptr()) == 1, ORIGIN };
-  }
-  if (py::isinstance<py::str>(value))
-  {
-    return { py::cast<std::string>(value), ORIGIN };
-  }
-  if (isList(value))
-  {
-    std::vector<double> numbers;
-    for (const auto& item : value)
-    {
-      numbers.push_back(numberFrom(item, key));
-    }
-    return { numbers, ORIGIN };
-  }
-  if (PyIndex_Check(value.ptr()))
-  {
-    // A numpy scalar is no Python int.
-    const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
-    return whole ? ParameterValue{ py::cast<std::int64_t>(whole), ORIGIN } : throw py::error_already_set();
-  }
-  return { numberFrom(value, key), ORIGIN };
-}
-
-void put(const py::dict& values, ParameterMap& map)
-{
-  for (const auto& item : values)
-  {
-    const auto key = py::cast<std::string>(item.first);
-    map[key] = parameterValue(item.second, key);
-  }
-}
-
 void putFaults(const std::vector<Fault>& faults, ParameterMap& map)
 {
   eraseFaults(map);
@@ -243,25 +183,9 @@ Configuration::Configuration(const py::args& overlays, const std::string& direct
   readDefaultConfiguration(directory_, map_);
   for (const auto& what : overlays)
   {
-    overlay(what);
+    readOverlay(what, directory_, map_);
   }
   values_ = parseParameters(map_);
-}
-
-/// Reads one overlay into the map, unchecked.
-void Configuration::overlay(const py::handle& what)
-{
-  if (py::isinstance<py::dict>(what))
-  {
-    put(py::reinterpret_borrow<py::dict>(what), map_);
-    return;
-  }
-  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(what.ptr()));
-  if (!path)
-  {
-    throw py::error_already_set();
-  }
-  readYamlFile(findConfiguration(py::cast<std::string>(path), directory_), map_);
 }
 
 Configuration Configuration::with(const ParameterMap& map) const

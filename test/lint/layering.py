@@ -33,6 +33,7 @@ SEES = {
     "bags": ["messages"],
     "datasets": ["bags", "output"],
     "recordings": ["datasets", "identification"],
+    "python/recordings": ["python", "recordings"],
     "ros_io": ["live", "messages", "arm"],
     "apps/common": ["recordings"],
     "apps/tool": ["apps/common", "studies"],
@@ -43,8 +44,8 @@ SEES = {
     "test/outside": ["twin"],
     "test/support": [],
 }
-WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "ros_io", "apps", "apps/common", "apps/tool",
-            "test/ros"}
+WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "python/recordings", "ros_io", "apps",
+            "apps/common", "apps/tool", "test/ros"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
 LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/stat|time|unistd)\.h|"
                        r"(Eigen|boost|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")

@@ -82,7 +82,8 @@ class SimTime(unittest.TestCase):
         self.run_clock(100 * SECOND, 100 * SECOND + 500 * MILLISECOND)
         stamps = self.stamps(self.states)
         self.check_instants(stamps, 100 * SECOND, 100 * SECOND + 480 * MILLISECOND)
-        wait_until(lambda: "The clock has stopped" in self.diagnostics.statuses("Timing")[-1].message, "a standing clock")
+        wait_until(lambda: "The clock has stopped" in self.diagnostics.statuses("Timing")[-1].message,
+                   "a standing clock")
         self.assertEqual(self.stamps(self.states), stamps)
 
     def test_3_a_stamped_command_acts_from_its_instant_on_though_it_came_ahead_of_the_clock(self):

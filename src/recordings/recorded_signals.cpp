@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/tool/recorded_signals.hpp"
+#include "recordings/recorded_signals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "apps/common/motion_options.hpp"
 #include "datasets/run_file.hpp"
+#include "recordings/recording_options.hpp"
 
 #include "bags/bag_file.hpp"
 #include "bags/checked_message.hpp"
@@ -158,21 +158,13 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
   }
 }
 
-/// A run of a data set.
-void readRun(const std::string& path, const SignalSource& source, const Take& take)
+/// Columns by their names. `place`: whose, for the error text.
+void readColumns(const std::string& place, Columns columns, const SignalSource& source, const Take& take)
 {
-  const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
-  Columns columns =
-      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
-                                                         std::vector<std::string>{ source.motor_torque });
-  if (columns.empty())
-  {
-    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
-  }
   std::vector<std::string> there;
   std::transform(columns.begin(), columns.end(), std::back_inserter(there),
                  [](const auto& item) { return item.first; });
-  const Names names = columnsOf(path, there, source);
+  const Names names = columnsOf(place, there, source);
   if (columns.count(names[MOTOR_VELOCITY]) == 0 && columns.count(names[MOTOR_ANGLE]) > 0)
   {
     columns[names[MOTOR_VELOCITY]] =
@@ -192,6 +184,20 @@ void readRun(const std::string& path, const SignalSource& source, const Take& ta
       return;
     }
   }
+}
+
+/// A run of a data set.
+void readRun(const std::string& path, const SignalSource& source, const Take& take)
+{
+  const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
+  Columns columns =
+      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
+                                                         std::vector<std::string>{ source.motor_torque });
+  if (columns.empty())
+  {
+    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
+  }
+  readColumns(path, std::move(columns), source, take);
 }
 
 double entry(const std::vector<double>& values, std::size_t place)
@@ -260,21 +266,7 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
                      "; it holds:" + listTopics(bag));
   }
 }
-}  // namespace
-
-bool namesColumn(const SignalSource& source)
-{
-  return std::any_of(CHOICES.begin(), CHOICES.end(),
-                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
-}
-
-void readSignals(const std::string& path, const SignalSource& source, const Take& take)
-{
-  const std::string extension = std::filesystem::path(path).extension().string();
-  const auto read = extension == ".bag" ? readBag : extension == ".h5" ? readRun : readTable;
-  read(path, source, take);
-}
-
+/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();
@@ -290,49 +282,31 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
       robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
   return source;
 }
+}  // namespace
+
+bool namesColumn(const SignalSource& source)
+{
+  return std::any_of(CHOICES.begin(), CHOICES.end(),
+                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
+}
+
+void readSignals(const std::string& recording, const SignalOptions& options, const Parameters& parameters,
+                 const Take& take)
+{
+  const SignalSource source = signalSource(options, parameters);
+  if (const auto found = options.at_hand.find(recording); found != options.at_hand.end())
+  {
+    readColumns(recording, found->second, source, take);
+    return;
+  }
+  const std::string extension = std::filesystem::path(recording).extension().string();
+  const auto read = extension == ".bag" ? readBag : extension == ".h5" ? readRun : readTable;
+  read(recording, source, take);
+}
 
 std::string wrongSignalFile(const std::string& path)
 {
   const std::string ending = std::filesystem::path(path).extension().string();
   return ending == ".bag" || ending == ".csv" || ending == ".h5" ? "" : "'" + path + "' must end in .bag, .csv or .h5";
-}
-
-void addSignalOptions(Command& command, SignalOptions& options)
-{
-  command
-      .add("recordings", options.recordings,
-           "one recording, or several of the same joint; a run of a data set (HDF5) is read with the parameters in its "
-           "file, "
-           "over them those of --config and --set")
-      .required()
-      .type("IN.csv|IN.bag|IN.h5")
-      .check(wrongSignalFile);
-  command.add("--joint", options.joint,
-              "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
-              "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
-  SignalSource& source = options.source;
-  const auto column = [&command](const char* name, std::string& field, const char* meaning)
-  { command.add(name, field, meaning).type("COLUMN"); };
-  column("--time", source.time, "CSV, HDF5: time [s]; default: time");
-  column("--motor-torque", source.motor_torque,
-         "CSV, HDF5: motor torque, or current with --torque-scale; default: motor_torque_reading, else "
-         "motor_torque");
-  column("--motor-angle", source.motor_angle, "CSV, HDF5: motor encoder [rad]; default: motor_angle_encoder");
-  column("--output-angle", source.output_angle, "CSV, HDF5: output encoder [rad]; default: output_angle_encoder");
-  column("--motor-velocity", source.motor_velocity,
-         "CSV, HDF5: motor speed [rad/s]; default: motor_velocity_encoder, else differences of the angle");
-  column("--load-torque", source.load_torque,
-         "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]; default: load_torque");
-  column("--temperature", source.temperature,
-         "CSV, HDF5: temperature [degC]; default: housing_temperature, else temperature");
-  command.add("--torque-scale", options.torque_scale,
-              "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
-              "telemetry.torque_per_current / ratio [N.m/A]");
-  command
-      .add("--states-topic", options.states_topic,
-           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
-      .type("TOPIC");
-  command.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
-  addNamespaceOption(command, options.joint_namespace);
 }
 }  // namespace hjt

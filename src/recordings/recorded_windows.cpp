@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/tool/recorded_windows.hpp"
+#include "recordings/recorded_windows.hpp"
 
 #include <array>
 #include <filesystem>
 #include <tuple>
 
-#include "apps/common/configuration.hpp"
 #include "datasets/run_file.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -37,7 +36,7 @@ RecordingParameters recordingParameters(const SignalOptions& options, const std:
 {
   RecordingParameters parameters;
   ParameterMap map = defaultParameterMap(options);
-  const bool changed = !options.configs.empty() || !options.assignments.empty();
+  const bool changed = !options.isDefault();
   parameters.origin = "configuration";
   if (const std::string text = isRun(recording) ? readRunParameters(recording) : std::string(); !text.empty())
   {

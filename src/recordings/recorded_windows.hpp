@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/tool/recorded_signals.hpp"
+#include "recordings/recorded_signals.hpp"
 
 #include "harmonic_joint_twin/health/assessment.hpp"
 
@@ -14,7 +14,7 @@ namespace hjt
 /// Parameters that hold for a recording.
 struct RecordingParameters
 {
-  /// The default configuration, over it those of the run if there is one, over both the options of the command line.
+  /// The default configuration, over it those of the run if there is one, over both those of the options.
   Parameters values;
   std::optional<Parameters> run;  ///< that a run of a data set was made with; none: no run, or it holds none
   const char* origin{};           ///< in words
@@ -23,8 +23,8 @@ struct RecordingParameters
 /// @throws ParameterError naming the file or option, InputError.
 RecordingParameters recordingParameters(const SignalOptions& options, const std::string& recording);
 
-/// The windows that a run of a data set holds itself. None where there are none, and where the command line changes
-/// what they would be made of: its columns, or parameters other than those of reference and assessment.
+/// The windows that a run of a data set holds itself. None where there are none, and where the options change what they
+/// would be made of: its columns, or parameters other than those of reference and assessment.
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters);
 
