@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/configuration.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <regex>
@@ -61,7 +62,11 @@ void addNamespaceOption(Command& command, std::string& joint_namespace)
 
 fs::path configDirectory(const CommonOptions& options)
 {
-  return configurationDirectory(options.config_dir);
+  if (!options.config_dir.empty())
+  {
+    setenv("HJT_CONFIG_DIR", options.config_dir.c_str(), 1);  // files that parameters name lie there too
+  }
+  return configurationDirectory("");
 }
 
 ParameterMap defaultParameterMap(const CommonOptions& options)
