@@ -322,6 +322,8 @@ void visitFields(P& p, Visitor&& visit)
                  "torque of inertia than this is left out"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("windows at one operating point the healthy reference is learned from"));
+  visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
+        ofOthers("classes of operating points the healthy reference is learned of at most, 0.2 MB of memory each"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
@@ -330,6 +332,9 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("windows of an operating point that a verdict is made of the mean of"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         ofOthers("a deviation of this many times the threshold is an error, not a warning"));
+  visit("indicators.signatures", p.indicators.signatures,
+        ofOthers("none, or the file of what faults change in the indicators of this gear: beside the default "
+                 "configuration or a path"));
   visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
         ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
   visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));

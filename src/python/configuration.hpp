@@ -39,6 +39,7 @@ private:
   Configuration() = default;
   void take(const ParameterMap& map);
 
+  bool has_own_directory_{};
   std::string directory_;
   ParameterMap map_;
   Parameters values_;

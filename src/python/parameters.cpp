@@ -178,14 +178,14 @@ void bindFaults(py::module& module)
 }  // namespace
 
 Configuration::Configuration(const py::args& overlays, const std::string& directory)
-  : directory_(configurationDirectory(directory).string())
+  : has_own_directory_(!directory.empty()), directory_(configurationDirectory(directory).string())
 {
   readDefaultConfiguration(directory_, map_);
   for (const auto& what : overlays)
   {
     readOverlay(what, directory_, map_);
   }
-  values_ = parseParameters(map_);
+  take(map_);
 }
 
 Configuration Configuration::with(const ParameterMap& map) const
@@ -198,6 +198,11 @@ Configuration Configuration::with(const ParameterMap& map) const
 void Configuration::take(const ParameterMap& map)
 {
   values_ = parseParameters(map);
+  std::string& signatures = values_.indicators.signatures;
+  if (has_own_directory_ && signatures != NO_FILE)
+  {
+    signatures = findConfiguration(signatures, directory_);
+  }
   map_ = map;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "twin/configuration_options.hpp"
 
+#include <cstdlib>
+
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
 
@@ -10,7 +12,11 @@ namespace fs = std::filesystem;
 
 fs::path configDirectory(const ConfigurationOptions& options)
 {
-  return configurationDirectory(options.config_dir);
+  if (!options.config_dir.empty())
+  {
+    setenv("HJT_CONFIG_DIR", options.config_dir.c_str(), 1);  // files that parameters name lie there too
+  }
+  return configurationDirectory("");
 }
 
 ParameterMap defaultParameterMap(const ConfigurationOptions& options)

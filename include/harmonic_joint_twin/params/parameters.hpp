@@ -266,10 +266,12 @@ struct IndicatorParameters
   double stiffness_torque{};
   double lost_motion_torque{};
   int baseline_windows{};
+  int baseline_classes{};
   double least_spread{};
   double false_alarm_rate{};
   int evidence_windows{};
   double error_factor{};
+  std::string signatures{ NO_FILE };
 };
 
 struct HealthParameters
