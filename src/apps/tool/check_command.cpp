@@ -14,12 +14,13 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "apps/common/arm_recording.hpp"
+#include "apps/common/motion_options.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/json.hpp"
 #include "output/progress.hpp"
 #include "output/text_table.hpp"
+#include "recordings/arm_recording.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "bags/bag_file.hpp"
@@ -289,7 +290,8 @@ Check checkArm(const ArmOptions& options, Check check)
 {
   ArmOptions arm = options;
   arm.arm = check.arms.taken;
-  arm.load = "arm";
+  arm.load = LOAD_OF_ARM;
+  arm.watch = consoleWatch();
   const ArmRecording recording(arm);
   StreamTiming timing;
   RecordingFit fit(recording.parameters());
@@ -513,7 +515,7 @@ void print(const ArmOptions& options, const Check& check, const std::vector<std:
                                check.contents.temperature);
   for (const RecordingFinding& finding : check.findings)
   {
-    printLine(finding.stops ? "WRONG" : "mind", finding.text);
+    printLine(finding.stops ? "ERROR" : "NOTE", finding.text);
   }
   std::cout << std::flush;
   if (!check.joints.empty())
@@ -619,7 +621,7 @@ void declare(Command& command, ArmOptions& options)
 {
   addRecording(command, options);
   addArmOption(command, options);
-  addReadingOptions(command, options);
+  addReadingOptions(command, options, options.json);
 }
 
 const Subcommand CHECK{ Subject::RECORDING, "check",
