@@ -169,7 +169,7 @@ struct ArmDynamics::Solver
   }
 
   /// Of the end of each segment, from the base on, given to `visit`.
-  template<class Visit>
+  template <class Visit>
   KDL::Frame walk(const Visit& visit) const
   {
     KDL::Frame pose = KDL::Frame::Identity();

@@ -56,12 +56,11 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
     }
   };
   require(drive.solver.stepper == StepperKind::LEAPFROG, "solver.stepper must be leapfrog within an arm");
-  require(drive.solver.rate == drives.front().solver.rate,
-          "solver.rate = " + numberText(drive.solver.rate) + " Hz is not that of the first joint, " +
-              numberText(drives.front().solver.rate) + " Hz");
-  require(drive.output.gravity_torque == 0.0,
-          "output.gravity_torque = " + numberText(drive.output.gravity_torque) +
-              " N.m would count the weight twice: 0 within an arm");
+  require(drive.solver.rate == drives.front().solver.rate, "solver.rate = " + numberText(drive.solver.rate) +
+                                                               " Hz is not that of the first joint, " +
+                                                               numberText(drives.front().solver.rate) + " Hz");
+  require(drive.output.gravity_torque == 0.0, "output.gravity_torque = " + numberText(drive.output.gravity_torque) +
+                                                  " N.m would count the weight twice: 0 within an arm");
 }
 }  // namespace
 
@@ -83,8 +82,8 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
   const double rate = drives.front().solver.rate;
   if (!(mass_rate > 0.0 && mass_rate <= rate))
   {
-    throw ParameterError("the mass matrix's rate of " + numberText(mass_rate) + " Hz is not within 0 ... solver.rate = " +
-                         numberText(rate) + " Hz");
+    throw ParameterError("the mass matrix's rate of " + numberText(mass_rate) +
+                         " Hz is not within 0 ... solver.rate = " + numberText(rate) + " Hz");
   }
   mass_steps_ = std::llround(rate / mass_rate);
   const std::vector<double> least = leastInertia(dynamics_, spline_inertia_);
@@ -194,12 +193,12 @@ void ArmTwin::observe() noexcept
   {
     link_torque_[static_cast<Eigen::Index>(i)] = drives_[i].linkTorque();
   }
-  excess_ = inverse_ * (link_torque_ - Eigen::Map<const Eigen::VectorXd>(bias_.data(), link_torque_.size()));
+  excess_ = link_torque_ - Eigen::Map<const Eigen::VectorXd>(bias_.data(), link_torque_.size());
   for (std::size_t i = 0; i < drives_.size(); ++i)
   {
     const JointOutputs outputs = drives_[i].outputs();
-    motion_[i] = { start_[i] + outputs.output_angle, outputs.output_velocity,
-                   excess_[static_cast<Eigen::Index>(i)] };
+    const double acceleration = inverse_.row(static_cast<Eigen::Index>(i)).dot(excess_);
+    motion_[i] = { start_[i] + outputs.output_angle, outputs.output_velocity, acceleration };
   }
 }
 
@@ -211,8 +210,8 @@ double ArmTwin::armEnergy() noexcept
   {
     for (std::size_t k = 0; k < motion_.size(); ++k)
     {
-      const double inertia = mass_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +
-                             (i == k ? spline_inertia_[i] : 0.0);
+      const double inertia =
+          mass_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) + (i == k ? spline_inertia_[i] : 0.0);
       energy += 0.5 * motion_[i].velocity * inertia * motion_[k].velocity;
     }
   }

@@ -81,12 +81,12 @@ private:
   std::int64_t mass_steps_;             // from one mass matrix to the next
   std::int64_t steps_{};
   std::vector<JointMotion> motion_;
-  std::vector<JointMotion> next_;   // predicted
-  std::vector<double> bias_;        // h [N.m]
-  Eigen::MatrixXd mass_;            // M + D [kg.m^2]
+  std::vector<JointMotion> next_;  // predicted
+  std::vector<double> bias_;       // h [N.m]
+  Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd inverse_;         // W [1/(kg.m^2)]
-  Eigen::VectorXd link_torque_;     // tau of the last step [N.m]
+  Eigen::MatrixXd inverse_;      // W [1/(kg.m^2)]
+  Eigen::VectorXd link_torque_;  // tau of the last step [N.m]
   Eigen::VectorXd link_torque_before_;
   Eigen::VectorXd excess_;  // tau - h, extrapolated [N.m]
   double energy_at_start_{};

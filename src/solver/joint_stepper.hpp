@@ -80,7 +80,7 @@ public:
   /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy; of the leapfrog
   /// [J].
   double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
-  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }  ///< see Leapfrog
+  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -61,9 +61,9 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
     return after.time > before.time ? (after.joints[i].*value - before.joints[i].*value) / (after.time - before.time) :
                                       0.0;
   };
-  for (const auto& [missing, of, rate] : { std::tuple(!has_velocity, &JointMotion::position, &JointMotion::velocity),
-                                           std::tuple(!has_acceleration, &JointMotion::velocity,
-                                                      &JointMotion::acceleration) })
+  for (const auto& [missing, of, rate] :
+       { std::tuple(!has_velocity, &JointMotion::position, &JointMotion::velocity),
+         std::tuple(!has_acceleration, &JointMotion::velocity, &JointMotion::acceleration) })
   {
     for (std::size_t k = 0; missing && k < points.size(); ++k)
     {
@@ -109,7 +109,8 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
     const std::optional<double> value = decimalNumber(rows.text(static_cast<std::size_t>(column)));
     if (!value || !std::isfinite(*value))
     {
-      throw InputError(rows.place() + ": column '" + header[static_cast<std::size_t>(column)] + "' is no finite number");
+      throw InputError(rows.place() + ": column '" + header[static_cast<std::size_t>(column)] +
+                       "' is no finite number");
     }
     return *value;
   };
@@ -118,8 +119,8 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
     ArmSetPoint point{ number(time), {} };
     for (const std::array<int, 3>& column : columns)
     {
-      point.joints.push_back({ number(column[0]), has_velocity ? number(column[1]) : 0.0,
-                               has_acceleration ? number(column[2]) : 0.0 });
+      point.joints.push_back(
+          { number(column[0]), has_velocity ? number(column[1]) : 0.0, has_acceleration ? number(column[2]) : 0.0 });
     }
     if (!points.empty() && point.time <= points.back().time)
     {
@@ -144,8 +145,8 @@ std::vector<std::vector<std::string>> faultsOfJoints(const ArmRunOptions& option
   {
     const std::size_t colon = fault.find(':');
     const std::string name = fault.substr(0, colon);
-    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(), [&](const ArmJoint& each)
-                                    { return each.short_name == name || each.name == name; });
+    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
+                                    [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
     if (colon == std::string::npos || joint == arm.joints.end())
     {
       std::string names;
@@ -153,7 +154,8 @@ std::vector<std::vector<std::string>> faultsOfJoints(const ArmRunOptions& option
       {
         names += (names.empty() ? "" : ", ") + each.short_name;
       }
-      throw ParameterError("--fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " + names);
+      throw ParameterError("--fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " +
+                           names);
     }
     faults[static_cast<std::size_t>(joint - arm.joints.begin())].push_back(fault.substr(colon + 1));
   }
@@ -385,8 +387,7 @@ void declare(Command& command, ArmRunOptions& options)
       .required()
       .type("FILE.csv");
   command.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
-  command
-      .add("--identified", options.identified, "overlays of the joints, as `joint_twin identify --arm` writes them")
+  command.add("--identified", options.identified, "overlays of the joints, as `joint_twin identify --arm` writes them")
       .type("DIR")
       .existingDirectory();
   command
@@ -400,7 +401,7 @@ void declare(Command& command, ArmRunOptions& options)
   addCommonOptions(command, options);
 }
 
-const Subcommand ARM{ Subject::JOINT, "arm", "run a whole arm in closed loop: its drives, links and controller", declare,
-                      runArm };
+const Subcommand ARM{ Subject::JOINT, "arm", "run a whole arm in closed loop: its drives, links and controller",
+                      declare, runArm };
 }  // namespace
 }  // namespace hjt
