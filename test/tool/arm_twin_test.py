@@ -7,7 +7,6 @@ Argument: the tool.
 import csv
 import math
 import sys
-import unittest
 
 import tool
 
