@@ -6,7 +6,6 @@ Argument: the tool.
 """
 import csv
 import math
-import sys
 
 import tool
 
