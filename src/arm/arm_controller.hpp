@@ -28,14 +28,13 @@ class ArmController
 {
 public:
   /// For a drive without gains of its own: speed control of 25 Hz on the motor, position of 3 Hz, no friction.
-
   static JointGains defaultGains(const Parameters& drive);
 
   /// `rate`: of the control [Hz], a divisor of solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  /// Commands each drive for the steps up to the next control instant, towards a set point of that instant. To be called
-  /// before every step; acts on the control's instants.
+  /// Before a step that ends at an instant of the control: commands each drive towards the set point of that instant.
+  /// Before another one it does nothing.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
   bool isDue(const ArmTwin& twin) const noexcept;
