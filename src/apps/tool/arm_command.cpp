@@ -171,7 +171,7 @@ std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescript
     ParameterMap map = armJointParameters(arm.joints[i], configDirectory(options), options.identified);
     readAssignment("solver.scene=auto", map);
     addOverlays(options, map);
-    CommonOptions own = options;
+    ConfigurationOptions own;
     own.faults = faults[i];
     Parameters& drive = drives.emplace_back(parseParameters(map));
     addFaults(own, drive);
