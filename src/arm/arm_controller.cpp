@@ -11,11 +11,6 @@ namespace hjt
 {
 namespace
 {
-double ratioOf(const Twin& drive) noexcept
-{
-  return nominalRatio(drive.parameters().gear);
-}
-
 /// Of the motor, seen from the joint [kg.m^2].
 double motorInertia(const Parameters& drive)
 {
@@ -51,17 +46,13 @@ bool ArmController::isDue(const ArmTwin& twin) const noexcept
 
 void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
-  if (!isDue(twin))
-  {
-    return;
-  }
   dynamics_.torques(set_point, rigid_);
   for (std::size_t i = 0; i < twin.joints(); ++i)
   {
     Twin& drive = twin.drive(i);
     const JointGains& gain = gains_[i];
     const JointMotion& wanted = set_point[i];
-    const double ratio = ratioOf(drive);
+    const double ratio = nominalRatio(drive.parameters().gear);
     const EncoderReadings read = drive.encoders();
     const double direction = wanted.velocity == 0.0 ? 0.0 : std::copysign(1.0, wanted.velocity);
     feed_forward_[i] = rigid_[i] + motorInertia(drive.parameters()) * wanted.acceleration + gain.coulomb * direction +

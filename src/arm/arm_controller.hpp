@@ -33,11 +33,10 @@ public:
   /// `rate`: of the control [Hz], a divisor of solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  /// Before a step that ends at an instant of the control: commands each drive towards the set point of that instant.
-  /// Before another one it does nothing.
+  /// To be called before each step that is due: commands each drive towards the set point of the step's end.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
-  bool isDue(const ArmTwin& twin) const noexcept;
+  bool isDue(const ArmTwin& twin) const noexcept;  ///< the next step ends at an instant of the control
 
   /// Torque fed forward for the last set point: rigid-body, and with friction [N.m].
   const std::vector<double>& rigidTorques() const noexcept { return rigid_; }

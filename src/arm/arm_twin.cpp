@@ -129,15 +129,17 @@ bool ArmTwin::reset(Stamp stamp) noexcept
   return good;
 }
 
+/// M + D at a pose.
+void ArmTwin::setMass(const std::vector<JointMotion>& pose) noexcept
+{
+  dynamics_.massMatrix(pose, mass_);
+  mass_.diagonal() += Eigen::Map<const Eigen::VectorXd>(spline_inertia_.data(), mass_.rows());
+}
+
 /// M + D at the predicted pose, and its inverse.
 void ArmTwin::takeMass() noexcept
 {
-  dynamics_.massMatrix(next_, mass_);
-  for (std::size_t i = 0; i < spline_inertia_.size(); ++i)
-  {
-    const auto k = static_cast<Eigen::Index>(i);
-    mass_(k, k) += spline_inertia_[i];
-  }
+  setMass(next_);
   factors_.compute(mass_);
   inverse_.setIdentity();
   factors_.solveInPlace(inverse_);
@@ -204,14 +206,13 @@ void ArmTwin::observe() noexcept
 
 double ArmTwin::armEnergy() noexcept
 {
-  dynamics_.massMatrix(motion_, mass_);
+  setMass(motion_);
   double energy = dynamics_.potentialEnergy(motion_);
   for (std::size_t i = 0; i < motion_.size(); ++i)
   {
     for (std::size_t k = 0; k < motion_.size(); ++k)
     {
-      const double inertia =
-          mass_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) + (i == k ? spline_inertia_[i] : 0.0);
+      const double inertia = mass_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
       energy += 0.5 * motion_[i].velocity * inertia * motion_[k].velocity;
     }
   }

@@ -70,6 +70,7 @@ public:
 
 private:
   double armEnergy() noexcept;
+  void setMass(const std::vector<JointMotion>& pose) noexcept;
   void takeMass() noexcept;
   void couple() noexcept;
   void observe() noexcept;
