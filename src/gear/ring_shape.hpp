@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Where the rigid parts stand: what the ring's shape is a function of.
+/// Angles of the rigid parts and the wave's amplitude: the arguments of the ring's shape.
 struct DrivePosition
 {
   double wave_generator_angle{};  ///< [rad]

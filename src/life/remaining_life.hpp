@@ -82,8 +82,8 @@ struct RemainingHours
   std::array<double, CAUSES.size()> by_cause{};  ///< that it ends so, in the order of CAUSES [-]
 };
 
-/// Whether an assessment counts in place of the one `before`: of a window that was compared, and not nothing found in
-/// one that shows little after nothing found in one that shows more.
+/// Whether an assessment replaces the one `before`. It does if its window was compared. A window without a departure
+/// that does not show play does not replace one that does.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&

@@ -31,7 +31,7 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
   }
 }
 
-/// @returns how fast the joint can swing [rad/s].
+/// @returns the joint's largest natural frequency [rad/s].
 double JointStepper::divideStep(const Parameters& parameters)
 {
   constexpr double AIM = 0.8 * MAX_PHASE_ADVANCE;  // of a substep: under load friction stiffens the joint further [rad]

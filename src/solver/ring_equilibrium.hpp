@@ -36,12 +36,12 @@ public:
   /// unchanged.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After a change of the model: to its equilibrium at the present position, inserted again if there is no way to it.
-  /// `moveTo` does so first if nobody has.
+  /// After a change of the model: solves for its equilibrium at the present position and, if that fails, repeats the
+  /// insertion. `moveTo` calls it if it was not called since the change.
   SolveStatus updateModel() noexcept;
 
-  /// Rates and stiffness of the present shape itself, where one a Newton step away does not do. False: its tangent has
-  /// no inverse; they stay as they are.
+  /// Computes rates and stiffness at the present shape itself; `moveTo` leaves those of one Newton step before it.
+  /// False: the tangent has no inverse; rates and stiffness stay as they are.
   bool refreshSensitivities() noexcept;
 
   /// From the present equilibrium to another position.

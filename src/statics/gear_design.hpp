@@ -42,7 +42,7 @@ struct GearFigures
   double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
 };
 
-/// Those of the family HFUS/CSF; of a size or ratio that it does not have, size 25 scaled.
+/// Catalogue values of the family HFUS/CSF; a size or ratio that it does not have is scaled from size 25.
 GearFigures gearFigures(const GearRequest& request);
 
 /// A parameter of the gear and the rule by which it follows from the configured gear.

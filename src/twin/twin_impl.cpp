@@ -182,7 +182,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   waiting.clear();
   for (const Fault& fault : parameters.faults)
   {
-    if (fault.isThereFromTheStart())
+    if (fault.isActiveAtStart())
     {
       active.set(fault, stamp);
     }

@@ -51,7 +51,7 @@ struct Fault
   double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
 
   /// Whether a twin with this fault in its configuration starts with it.
-  bool isThereFromTheStart() const noexcept { return severity > 0.0 && onset == 0.0; }
+  bool isActiveAtStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
 /// What a place counts.

@@ -219,7 +219,7 @@ enum class StepperKind
   ADAPTIVE
 };
 
-/// By what the ring's equilibrium is found: always all teeth, or a response surface where one holds.
+/// How the ring's equilibrium is computed: always with all teeth, or from a response surface where one holds.
 enum class SceneKind
 {
   FULL_RING,

@@ -43,7 +43,7 @@ inline JointModel startingJoint(const Parameters& parameters)
   FaultList faults;
   for (const Fault& fault : parameters.faults)
   {
-    if (fault.isThereFromTheStart())
+    if (fault.isActiveAtStart())
     {
       faults.set(fault, 0);
     }
