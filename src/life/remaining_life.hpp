@@ -67,7 +67,7 @@ struct RemainingHours
   static constexpr double FIRST_EDGE = 10.0;  // [h]
   static constexpr double BINS_PER_DECADE = 20.0;
 
-  /// Where bin `i` begins: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
+  /// Lower end of bin `i`: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
   static double edge(std::size_t i) noexcept
   {
     return i == 0 ? 0.0 : FIRST_EDGE * std::pow(10.0, (static_cast<double>(i) - 1.0) / BINS_PER_DECADE);

@@ -45,7 +45,7 @@ private:
   }
 };
 
-/// Whose time the loop follows.
+/// Kind of the clock that the loop follows.
 enum class ClockKind : std::uint8_t
 {
   RUNNING,  ///< runs on by itself: every instant is due at a time of its own

@@ -124,7 +124,7 @@ private:
     mutable std::atomic<double> sensed_output{};  // [rad]
   };
 
-  /// That of `back` steps ago, or the first there was.
+  /// The instant `back` steps ago, or the first one.
   const Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);

@@ -36,7 +36,7 @@ public:
   /// Whether it knows all friction that acts: not a cup as one Coulomb element, nor an engaged brake with play.
   bool covers(const JointInputs& inputs) const noexcept;
 
-  /// From here on by the dynamics' inputs. `x`: state, of the ring in place, on the surface; gets what has slipped.
+  /// Starts from state `x`, whose ring is in place, with the dynamics' inputs. `x` gets what has slipped.
   void start(JointState& x) noexcept;
 
   /// State `length` [s] further. The ring is in place there. False: the surface ends, or no step is short enough; `x`

@@ -27,10 +27,10 @@ public:
   /// Inserts the wave generator and lets the output settle under its load, the motor held at angle 0.
   SolveStatus solveAtRest() noexcept;
 
-  /// From now on by this surface where it holds, which must outlive its use; null: by the full ring.
+  /// Uses this surface where it holds, else the full ring; null: the full ring alone. The surface must outlive its use.
   void useSurface(const ResponseSurface* surface) noexcept;
 
-  /// After an edit of the model: the ring in its equilibrium at the present angles, by the full ring.
+  /// After an edit of the model: solves the full ring at the present angles.
   SolveStatus updateModel() noexcept;
 
   /// The present equilibrium is the surface's.
@@ -67,7 +67,8 @@ public:
                                               model_.motor.limited(inputs.motor_torque, x[joint_state::MOTOR_SPEED]);
   }
 
-  /// That the drive does work with at the present angle of the motor [N.m]; over the torque of its current [-].
+  /// Torque that the drive does work with at the present angle of the motor [N.m], and its ratio to the current's
+  /// torque [-].
   double driveTorque() const noexcept { return model_.motor.rippled(shaftTorque(), motor_angle_); }
   double driveGain() const noexcept
   {
@@ -77,7 +78,7 @@ public:
   /// Of friction at the motor shaft that builds up over its presliding angle, at the present ring [N.m].
   double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
 
-  /// By which friction that remembers stiffens the joint at the present ring [N.m/rad].
+  /// Stiffness of the joint by friction with a memory (presliding), at the present ring [N.m/rad].
   Eigen::Matrix2d frictionStiffness() const noexcept
   {
     Eigen::Matrix2d stiffness = now_.cup.stiffness * cup_rates_ * cup_rates_.transpose();

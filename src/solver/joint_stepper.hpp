@@ -16,8 +16,8 @@ namespace hjt
 class JointStepper
 {
 public:
-  /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
-  /// after four swings [rad].
+  /// Largest phase of a swing per step. The leapfrog then runs ahead by phase^2 / 24 = 0.04 %: after four swings its
+  /// error is a hundredth of the swing's height [rad].
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
   static constexpr int MAX_SUBSTEPS = 31;
   /// Of the output, 0.4 seconds of arc a second. Held by the friction of its flanks alone, regularised at the shipped
@@ -30,13 +30,13 @@ public:
   JointStepper(const JointStepper&) = delete;
   JointStepper& operator=(const JointStepper&) = delete;
 
-  /// At rest where the joint has settled under a load [N.m]. @returns false if it has not.
+  /// Puts the joint at rest where it settles under a load [N.m]. @returns false if it does not settle.
   bool reset(double load_torque = 0.0) noexcept;
 
   /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
   /// the ring did not converge; the last good angles stay, at rest.
   ///
-  /// Where it would be too long for the joint's fastest swing it is done in `substeps()` equal ones. Their number is
+  /// A step that is too long for the joint's fastest swing is done in `substeps()` equal ones. Their number is
   /// fixed by the parameters, so that live equals offline, and odd: inputs then act from half a step before their
   /// instant on, as in a step that is not divided.
   ///

@@ -17,7 +17,7 @@ namespace hjt
 {
 /// The ring in equilibrium for a position of wave generator and circular spline.
 ///
-/// From a prediction (RingPrediction) Newton's method (NewtonSolver); a target that is not reached directly is
+/// Starts Newton's method (NewtonSolver) from a prediction (RingPrediction); a target that is not reached directly is
 /// approached over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good
 /// state stays. An insertion that fails so is done once more down the stored energy (EnergyDescent).
 class RingEquilibrium
@@ -29,7 +29,7 @@ public:
   /// converge, without it, and the circular spline is added afterwards.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
-  /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
+  /// Solves from a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
   SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
   /// Repeats the insertion during a run after `moveTo` failed: the teeth are paired again. On failure the state is
@@ -44,7 +44,7 @@ public:
   /// False: the tangent has no inverse; rates and stiffness stay as they are.
   bool refreshSensitivities() noexcept;
 
-  /// From the present equilibrium to another position.
+  /// Solves for the equilibrium at another position, from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
   /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their

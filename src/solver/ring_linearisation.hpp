@@ -16,7 +16,7 @@ class RingLinearisation
 public:
   explicit RingLinearisation(const RingModel& model);
 
-  /// Without the circular spline while `circular_spline_in` is false.
+  /// Forces at `state`; without the circular spline while `circular_spline_in` is false.
   void updateForces(const RingState& state) noexcept;
   void updateTangent(const RingState& state) noexcept;  ///< with the forces of the same state
   void shift(double stiffness) noexcept;                ///< adds to every tooth's own stiffness [N/m]

@@ -22,10 +22,10 @@ class RingPrediction
 public:
   explicit RingPrediction(const RingModel& model);
 
-  /// From the equilibrium that the last prediction has led to.
+  /// Predicts from the equilibrium that the last prediction has led to.
   void predict(const DrivePosition& target, RingState& state) noexcept;
 
-  /// The state has come about otherwise.
+  /// To be called if the state was reached otherwise than by `predict`.
   void forget() noexcept;
 
   /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.

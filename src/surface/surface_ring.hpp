@@ -25,7 +25,7 @@ public:
   SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
   SurfaceRing& operator=(const SurfaceRing&) = delete;
 
-  /// At angle 0 of both, from cold. False: not converged.
+  /// Solves at angle 0 of both, without a guess. False: not converged.
   bool insert();
 
   /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.

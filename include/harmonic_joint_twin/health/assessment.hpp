@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// As in diagnostic_msgs/DiagnosticStatus.
+/// Level with the values of diagnostic_msgs/DiagnosticStatus.
 enum class HealthLevel : std::uint8_t
 {
   OK = 0,

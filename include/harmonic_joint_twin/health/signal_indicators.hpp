@@ -31,7 +31,7 @@ enum class ScalarIndicator : std::size_t
   COUNT
 };
 
-/// In which signal a line stands.
+/// Signal that a line is taken from.
 enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,

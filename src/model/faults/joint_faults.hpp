@@ -18,7 +18,7 @@ public:
     apply(faults);
   }
 
-  /// From now on the joint has these faults, each valid, and no others.
+  /// Gives the joint these faults, each valid, in place of those before.
   void apply(const FaultList& faults) noexcept
   {
     model_ = sound_;  // vectors of equal size: nothing is allocated
