@@ -83,6 +83,7 @@ void addArmOptions(Command& command, ArmOptions& options)
 
 ArmRecording::ArmRecording(const ArmOptions& options)
   : source_(motionSource(options))
+  , affixes_(options.affixes)
   , arm_(readArmDescription(findArm(options.arm, configDirectory(options))))
   , has_load_(recordsLoad(source_))
   , uses_recorded_(options.load == FROM_RECORDING)
@@ -106,7 +107,7 @@ ArmRecording::ArmRecording(const ArmOptions& options)
 MotionSource ArmRecording::source(std::size_t joint) const
 {
   MotionSource source = source_;
-  source.joint = arm_.joints[joint].name;
+  source.joint = affixes_(arm_.joints[joint].name);
   source.csv_joint = static_cast<int>(joint);
   return source;
 }
@@ -115,17 +116,20 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
 {
   RecordingFit fit(parameters_);
   const MotionFindings findings = read(visit, fit);
+  MotionCount reading = findings;
+  reading.misfit.clear();  // of the fit's findings
+  warnOfReading(source_.path, reading);
   warnOf(fit, arm_.joints);
   return findings;
 }
 
-MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit,
-                                  RecordingFit& fit) const
+MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit,
+                                  double end) const
 {
   std::vector<std::string> names;
   for (const ArmJoint& joint : arm_.joints)
   {
-    names.push_back(joint.name);
+    names.push_back(affixes_(joint.name));
   }
   ArmLoad load(arm_);
   std::vector<ArmJointRow> rows(names.size());
@@ -164,11 +168,12 @@ MotionFindings ArmRecording::read(const std::function<void(const std::vector<Arm
         }
         findings.refused += load.push(in_current) ? 0 : 1;
         forward(false);
-        return interruptSignal() == 0;
+        return interruptSignal() == 0 && motion.front().time < end;
       },
       [&](double done) { progress.update(done); });
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
+  fit.refuse(findings.misfit);
   return findings;
 }
 }  // namespace hjt

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -54,11 +55,13 @@ public:
   /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and prints to stderr what does
   /// not fit. @throws InputError.
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const;
-  /// The same without printing; `fit` receives all rows.
-  MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit) const;
+  /// The same without printing, up to `end` [s]; `fit` receives all rows.
+  MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit,
+                      double end = HUGE_VAL) const;
 
 private:
   MotionSource source_;
+  JointAffixes affixes_;
   ArmDescription arm_;
   std::vector<Parameters> parameters_;
   std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]

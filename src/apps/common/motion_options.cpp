@@ -12,6 +12,7 @@
 
 #include "base/number_text.hpp"
 #include "messages/topics.hpp"
+#include "tracking/ratio_fit.hpp"
 
 namespace hjt
 {
@@ -48,7 +49,7 @@ MotionSource motionSource(const MotionOptions& options)
   source.time_scale = options.time_scale;
   if (const std::optional<UrJoint> known = findUrJoint(options.joint))
   {
-    source.joint = known->name;
+    source.joint = options.affixes(known->name);
     source.csv_joint = known->number;
   }
   return source;
@@ -56,10 +57,11 @@ MotionSource motionSource(const MotionOptions& options)
 
 void addRecording(Command& command, MotionOptions& options)
 {
-  command.add("recording", options.recording, "a bag, or a UR controller's CSV recording")
+  command
+      .add("recording", options.recording,
+           "a bag, a .db3 or .mcap file of ROS 2 or their directory, or a UR controller's CSV recording")
       .required()
-      .type("IN.bag|IN.csv")
-      .bagOrCsv();
+      .type("IN.bag|IN.db3|IN.mcap|DIR|IN.csv");
 }
 
 void addReadingOptions(Command& command, MotionOptions& options)
@@ -67,6 +69,9 @@ void addReadingOptions(Command& command, MotionOptions& options)
   options.joint_namespace = DEFAULT_NAMESPACE;
   options.topic = DEFAULT_TOPIC;
   command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  command.add("--prefix", options.affixes.prefix,
+              "before the arm's names of the joints in the messages, as left_; `joint_twin check` finds it");
+  command.add("--suffix", options.affixes.suffix, "behind them");
   command
       .add("--time-scale", options.time_scale,
            "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")
@@ -110,6 +115,18 @@ void warnOfStamps(const MotionCount& count)
   }
 }
 
+void warnOfReading(const std::string& path, const MotionCount& count)
+{
+  for (const std::string& remark : count.remarks)
+  {
+    std::cerr << "joint_twin: " << path << ": " << remark << '\n';
+  }
+  if (!count.misfit.empty())
+  {
+    std::cerr << "joint_twin: " << path << ": " << count.misfit << '\n';
+  }
+}
+
 MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& twin,
                            const std::function<void(const MotionSample&)>& visit)
 {
@@ -118,6 +135,7 @@ MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& tw
   MotionFindings findings;
   findings.has_load = recordsLoad(source);
   MotionDifferentiator smoother;
+  RatioFit ratio(twin.ratio());
   const InterruptScope interrupts;
   Progress progress("reading");
   const auto forward = [&](bool at_end)
@@ -128,6 +146,7 @@ MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& tw
       {
         sample->load = twin.modelledLoad(*sample);
       }
+      ratio.add(*sample);
       visit(*sample);
     }
   };
@@ -143,7 +162,9 @@ MotionFindings visitMotion(const MotionSource& recording, const MotionDriven& tw
   forward(true);
   findings.refused = smoother.refused();
   findings.gaps = smoother.gaps();
+  findings.misfit = findings.misfit.empty() ? ratio.text() : findings.misfit;
   warnOfStamps(findings);
+  warnOfReading(source.path, findings);
   if (findings.corrupt > 0 || findings.refused > 0 || findings.gaps > 0)
   {
     std::cerr << "joint_twin: " << source.path << ": " << findings.corrupt << " messages unreadable or impossible, "

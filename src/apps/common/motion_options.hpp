@@ -6,6 +6,7 @@
 
 #include "apps/common/configuration.hpp"
 
+#include "messages/joint_affixes.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "tracking/motion_driven.hpp"
 
@@ -18,6 +19,7 @@ struct MotionOptions : CommonOptions
   std::string joint;
   std::string joint_namespace;
   std::string topic;
+  JointAffixes affixes;  ///< of an arm's joints in the messages
   double time_scale{ 1.0 };
 };
 
@@ -46,6 +48,9 @@ MotionSource motionSource(const MotionOptions& options);
 
 /// Says on stderr if stamps and angles of a joint disagree with the recorded velocities.
 void warnOfStamps(const MotionCount& count);
+
+/// Says on stderr what was mended or left out in reading, and what stands against judging.
+void warnOfReading(const std::string& path, const MotionCount& count);
 
 /// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.
 /// Where the recording gives no load, it is what the joint is configured to carry.

@@ -206,7 +206,8 @@ int compareJoint(const CompareOptions& options)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const ComparisonRecord record = joint.write(found, 1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
+  const ComparisonRecord record =
+      joint.write(found, 1.0, sentence(found.misfit), options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
