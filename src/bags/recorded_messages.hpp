@@ -31,7 +31,7 @@ struct RecordedMessage
   Stamp stamp() const;
 };
 
-struct RecordedTopic
+struct TopicMessages
 {
   std::string type;  ///< as ROS 1 spells it, "sensor_msgs/JointState"
   std::uint64_t messages{};
@@ -50,7 +50,7 @@ public:
 
   virtual ~RecordedMessages() = default;
 
-  const std::map<std::string, RecordedTopic>& topics() const { return topics_; }
+  const std::map<std::string, TopicMessages>& topics() const { return topics_; }
   std::uint64_t messagesOn(const std::string& topic) const;
   /// One a line, with their types.
   std::string listTopics() const;
@@ -70,7 +70,7 @@ protected:
   explicit RecordedMessages(std::string path) : path_(std::move(path)) {}
 
   const std::string path_;
-  std::map<std::string, RecordedTopic> topics_;
+  std::map<std::string, TopicMessages> topics_;
   std::string remark_;
 };
 }  // namespace hjt
