@@ -210,7 +210,7 @@ SoundJoint readSoundJoint(const std::string& directory, const Parameters& parame
   return sound;
 }
 
-void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record)
 {
   writeCourse(directory + "/course.csv", comparison);
@@ -265,5 +265,6 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                   { "windows_assessed", comparison.evidence().assessedWindows() },
                   { "health", healthJson(comparison) } };
   writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
+  return all;
 }
 }  // namespace hjt

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
@@ -16,10 +15,7 @@ namespace hjt
 using namespace joint_state;
 
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
-  : kind_(parameters.solver.stepper)
-  , step_(1.0 / parameters.solver.rate)
-  , substep_(step_)
-  , dynamics_(model, parameters.solver)
+  : step_(1.0 / parameters.solver.rate), substep_(step_), dynamics_(model, parameters.solver)
 {
   if (!reset())
   {
@@ -29,7 +25,7 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
         roundedText(dynamics_.status.residual, 6) + " N)");
   }
   const double frequency = divideStep(parameters);
-  if (kind_ == StepperKind::ADAPTIVE)
+  if (parameters.solver.stepper == StepperKind::ADAPTIVE)
   {
     adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), frequency);
   }
@@ -71,32 +67,6 @@ double JointStepper::divideStep(const Parameters& parameters)
     const int least = static_cast<int>(std::ceil(wanted * (1.0 - 1e-12)));
     substeps_ = least + (least % 2 == 0 ? 1 : 0);
     substep_ = step_ / substeps_;
-  }
-  if (kind_ == StepperKind::RUNGE_KUTTA4)
-  {
-    constexpr double MARGIN = 0.5;  // friction's slope times the step over the inertia; 2.78 is the stability limit
-    const double needed =
-        substep_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
-    if (parameters.solver.stiction_velocity < needed)
-    {
-      TextStream text;
-      text << "solver.stiction_velocity = " << parameters.solver.stiction_velocity
-           << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least "
-           << needed << " rad/s at this solver.rate (brake.holding_torque counts)";
-      throw ParameterError(text.str());
-    }
-    const Motor& motor = dynamics_.model().motor;
-    const double fading = motor.fadeSlope(parameters.motor.torque_limit) / inertia[0];
-    const double drive = std::max(fading, motor.currentRate()) * substep_;
-    if (drive > 1.0)
-    {
-      TextStream text;
-      text
-          << "solver.stepper = runge_kutta4 takes the drive explicitly: its torque follows motor.current_bandwidth and "
-             "fades towards motor.speed_limit in "
-          << drive << " times less than a step of " << substep_ << " s; solver.rate has to be that much higher";
-      throw ParameterError(text.str());
-    }
   }
   return frequency;
 }
@@ -145,11 +115,8 @@ bool JointStepper::updateModel() noexcept
   const Eigen::Vector2d torque = dynamics_.torque();
   const bool good = dynamics_.updateModel().ok();
   released_ += stored - dynamics_.storedEnergy();
-  if (kind_ != StepperKind::RUNGE_KUTTA4)
-  {
-    // The last kick, half of which belongs after this instant, was still by the old torque.
-    released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
-  }
+  // The last kick, half of which belongs after this instant, was still by the old torque.
+  released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
   return good;
 }
 
@@ -238,43 +205,12 @@ void JointStepper::leaveMarch() noexcept
 bool JointStepper::substep(double length) noexcept
 {
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
-  bool good = true;
-  if (kind_ != StepperKind::RUNGE_KUTTA4)
-  {
-    leapfrog_.do_step(dynamics_, x_, 0.0, length);
-    good = dynamics_.status.ok();
-    speeds_ = leapfrog_.speeds();
-    friction_ = leapfrog_.frictionTorque();
-    balance_ = leapfrog_.balance();
-  }
-  else
-  {
-    good = stepRungeKutta(length);
-  }
+  leapfrog_.do_step(dynamics_, x_, 0.0, length);
+  speeds_ = leapfrog_.speeds();
+  friction_ = leapfrog_.frictionTorque();
+  balance_ = leapfrog_.balance();
   throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
-  return good;
-}
-
-bool JointStepper::stepRungeKutta(double length) noexcept
-{
-  const JointState start = x_;
-  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, length);
-  if (!dynamics_.status.ok() || !dynamics_.place(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]).ok())
-  {
-    x_ = start;
-    x_.segment<2>(MOTOR_SPEED).setZero();
-    speeds_.setZero();
-    return false;
-  }
-  speeds_ = x_.segment<2>(MOTOR_SPEED);
-  dynamics_.updateFriction(speeds_);
-  x_[DISSIPATED] += dynamics_.accept();
-  x_[DRIVE_TORQUE] = dynamics_.drive_torque = dynamics_.explicitDriveTorque(x_);
-  friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
-  friction_[0] += dynamics_.preslidingTorque();
-  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
-  balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - x_[DISSIPATED] - kinetic;
-  return true;
+  return dynamics_.status.ok();
 }
 
 /// Of motor and of output, each with the other held: squares of the angular frequencies [rad^2/s^2].

@@ -3,9 +3,6 @@
 
 #include <optional>
 
-#include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
-
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
@@ -28,7 +25,7 @@ public:
   static constexpr double REST_SPEED = 2e-6;
   static constexpr double REST_TIME = 0.1;  ///< [s]
 
-  /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
+  /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
   JointStepper(const JointStepper&) = delete;
   JointStepper& operator=(const JointStepper&) = delete;
@@ -81,24 +78,19 @@ public:
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 
 private:
-  using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
-                                                           boost::numeric::odeint::vector_space_algebra>;
   Eigen::Vector2d swingSquares() const noexcept;
   bool substep(double length) noexcept;
   bool march(const JointInputs& inputs, double& left) noexcept;
   void leaveMarch() noexcept;
-  bool stepRungeKutta(double length) noexcept;
   bool staysAtRest(const JointInputs& inputs) const noexcept;
   double divideStep(const Parameters& parameters);
 
-  StepperKind kind_;
   int rest_steps_{};  // in a row at whose end the joint was at rest
   int substeps_{ 1 };
   double step_;     // [s]
   double substep_;  // [s]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
-  RungeKutta4 runge_kutta_;
   std::optional<AdaptiveStepper> adaptive_;
   bool marches_{};  // by it at present
   JointState x_{ JointState::Zero() };

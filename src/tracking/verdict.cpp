@@ -46,6 +46,7 @@ struct Ratio
   ScalarIndicator indicator;  ///< that says the same
   double when_larger;         ///< the indicator moves up: +1, down: -1
   const char* besides;        ///< what else moves it
+  const SignatureSet& signatures;
 };
 
 /// Against the joint's own when sound where that is known, else against the twin.
@@ -74,8 +75,10 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
                  " (" + sound + ").";
   if (finding.level != HealthLevel::OK)
   {
-    finding.causes = causesThatMove(ratio.indicator, value > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
-    finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
+    finding.causes = causesThatMove(ratio.signatures, ratio.indicator,
+                                    value > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
+    finding.text += (ratio.signatures.signatures.empty() ? std::string() :
+                     finding.causes.empty()              ? std::string(" No fault in the list has this effect.") :
                                               " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
                     " Other causes: " + ratio.besides + ".";
   }
@@ -203,7 +206,7 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
   }
   judgeRatio({ "Friction", evidence.friction().ratio(), frictionToOwn(evidence, context), context.arm_friction,
                parameters.comparison.friction_tolerance, ScalarIndicator::RUNNING_TORQUE, +1.0,
-               "grease at another temperature, another preload, a wrong gain" },
+               "grease at another temperature, another preload, a wrong gain", evidence.assessor().signatures() },
              parameters, finding);
   finding.text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   finding.text += std::isfinite(context.own.temperature) ?
@@ -237,7 +240,7 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
                               twin;
   judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
                parameters.comparison.compliance_tolerance + eccentricity, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0,
-               "a wrong load, eccentric encoders" },
+               "a wrong load, eccentric encoders", evidence.assessor().signatures() },
              parameters, finding);
   constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
   if (!std::isfinite(own.compliance_ratio) && finding.level != HealthLevel::OK && turn > MIN_TURN)

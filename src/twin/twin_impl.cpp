@@ -37,7 +37,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , assessor(given)
   , steps_per_sample(std::llround(given.solver.rate / given.indicators.sample_rate))
   , searched_per_step(static_cast<std::size_t>(
-        std::ceil(static_cast<double>(CauseSearch::signatures()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
+        std::ceil(static_cast<double>(assessor.searchLength()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))

@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/tool/recording_check.hpp"
+#include "apps/common/motion_options.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/json.hpp"
 #include "output/text_table.hpp"
+#include "recordings/recording_check.hpp"
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
@@ -230,7 +231,7 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
                                contents.temperature);
   for (const RecordingFinding& finding : arm.findings)
   {
-    printLine(finding.stops ? "WRONG" : "mind", finding.text);
+    printLine(finding.stops ? "ERROR" : "NOTE", finding.text);
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
@@ -344,8 +345,10 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "next", nextCommands(options, arm) } };
 }
 
-int check(const ArmOptions& options)
+int check(const ArmOptions& given)
 {
+  ArmOptions options = given;
+  options.watch = consoleWatch();
   const RecordingCheck check = checkRecording(options);
   if (interruptSignal() != 0)
   {
@@ -377,7 +380,7 @@ void declare(Command& command, ArmOptions& options)
 {
   addRecording(command, options);
   addArmOption(command, options);
-  addReadingOptions(command, options);
+  addReadingOptions(command, options, options.json);
 }
 
 const Subcommand CHECK{ Subject::RECORDING, "check",
