@@ -197,7 +197,9 @@ class Check(tool.ToolTest):
         write_driver_bag(self.path("crane.bag"), columns, rate=125.0, names=["slew", "lift"])
         found = self.check("crane.bag")
         self.assertEqual((found["arm"], found["load"], found["arms"]), (None, "unknown", []))
-        self.assertEqual({joint["name"] for joint in found["joints"]}, {"slew", "lift"})
+        self.assertEqual({joint["name"]: joint["judged"] for joint in found["joints"] if not joint["judged"]},
+                         {"finger_joint": False})
+        self.assertEqual({joint["name"] for joint in found["joints"]}, {"slew", "lift", "finger_joint"})
         self.assertEqual(found["next"], ["joint_twin compare crane.bag --joint lift --report report"])
 
         write_driver_bag(self.path("short.bag"), columns, rate=125.0, names=tool.JOINT_NAMES[:5])

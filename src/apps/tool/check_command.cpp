@@ -93,17 +93,18 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
   {
     return "not known; joints: " + joined(contents.named);
   }
-  std::string text = joined(arm.fitting) + " have these joints" + names + "; taken: " + arm.taken;
+  std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
   if (taken != arm.ranked.end() && std::isfinite(taken->share()))
   {
-    text += ", whose load leaves " + roundedText(100.0 * taken->share(), 2) + " % of the currents" +
-            (other == arm.ranked.end() ? "" : " (" + other->arm + " " + roundedText(100.0 * other->share(), 2) + " %)");
+    text +=
+        ": its load leaves " + roundedText(100.0 * taken->share(), 2) + " % of the currents" +
+        (other == arm.ranked.end() ? "" : ", " + other->arm + "'s " + roundedText(100.0 * other->share(), 2) + " %");
   }
-  return text + "; --arm takes another";
+  return text;
 }
 
 std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
@@ -201,7 +202,8 @@ void printJudged(const CheckedArm& arm)
   std::map<std::string, std::vector<std::string>> open;
   for (const CheckedJoint& joint : arm.joints)
   {
-    (joint.is_judged ? judged : open[joint.why_not]).push_back(joint.name);
+    const bool is_said = stops(arm.findings) || stops(joint.findings);
+    (joint.is_judged ? judged : open[is_said ? "as said above" : joint.why_not]).push_back(joint.name);
   }
   printLine("judged", judged.empty() ? "nothing" : "friction and current of " + joined(judged));
   for (const auto& [reason, names] : open)
