@@ -50,11 +50,12 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const CheckedArm& 
     {
       const ArmFit other{ name, fit.loadRest(unit), unit };
       constexpr double CLEARLY = 0.5;
-      best = !unit_is_given && other.share() < CLEARLY * best.share() ? other : best;
+      best = !unit_is_given && other.rest.share() < CLEARLY * best.rest.share() ? other : best;
     }
     fits.push_back(best);
   }
-  std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.share() < b.share(); });
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const ArmFit& a, const ArmFit& b) { return a.rest.share() < b.rest.share(); });
   return fits;
 }
 
@@ -70,7 +71,7 @@ std::string choice(const CheckedArm& arm)
     return arm.ranked.front().arm;
   }
   const ArmFit& best = arm.ranked.front();
-  return best.share() < EXPLAINED && best.share() < CLEARLY * preset->share() ? best.arm : preset->arm;
+  return best.rest.share() < EXPLAINED && best.rest.share() < CLEARLY * preset->rest.share() ? best.arm : preset->arm;
 }
 
 void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters, CheckedArm& arm)
@@ -290,8 +291,8 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   CheckedArm mended = arm;
   mended.joints.clear();
   readArm(changed, mended);
-  remedy.before = arm.rest.left;
-  remedy.after = mended.rest.left;
+  remedy.before = arm.rest.share();
+  remedy.after = mended.rest.share();
   remedy.helps = !hasFinding(mended, kind) && remedy.after < remedy.before;
   arm.tried.push_back(remedy);
 }

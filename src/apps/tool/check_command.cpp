@@ -98,11 +98,12 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
-  if (taken != arm.ranked.end() && std::isfinite(taken->share()))
+  if (taken != arm.ranked.end() && std::isfinite(taken->rest.share()))
   {
     text +=
-        ": its load leaves " + roundedText(100.0 * taken->share(), 2) + " % of the currents" +
-        (other == arm.ranked.end() ? "" : ", " + other->arm + "'s " + roundedText(100.0 * other->share(), 2) + " %");
+        ": its load leaves " + roundedText(100.0 * taken->rest.share(), 2) + " % of the currents" +
+        (other == arm.ranked.end() ? "" :
+                                     ", " + other->arm + "'s " + roundedText(100.0 * other->rest.share(), 2) + " %");
   }
   return text;
 }
@@ -237,9 +238,9 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(remedy.after, 2) +
-                           " A rms instead of " + roundedText(remedy.before, 2) +
-                           (remedy.helps ? " A" : " A: this is not what is wrong"));
+    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
+                           " % of the currents instead of " + roundedText(100.0 * remedy.before, 2) +
+                           (remedy.helps ? " %" : " %: this is not what is wrong"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
