@@ -87,6 +87,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   {
     CheckedJoint& joint = arm.joints[i];
     joint.reach = fit.reach(i);
+    joint.gain = parameters[i].telemetry.torque_per_current;
     joint.has_velocity = fit.hasVelocity(i);
     joint.time_factor = fit.timeFit(i).factor();
     joint.lag = fit.timeFit(i).lag();
@@ -179,6 +180,7 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   for (const ArmJoint& joint : recording.joints())
   {
     addJoint(joint.short_name, arm.affixes(joint.name), arm);
+    arm.joints.back().stated_gain = recording.statedGains()[arm.joints.size() - 1];
   }
   takeFit(fit, recording.parameters(), arm);
   judging.judgeAll(arm.found.duration, arm);
@@ -240,6 +242,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   for (const std::string& name : names)
   {
     addJoint(name, name, arm);
+    arm.joints.back().stated_gain = std::nan("");
   }
   fit.refuse(arm.found.misfit);
   takeFit(fit, parameters, arm);

@@ -26,6 +26,8 @@ struct CheckedJoint
   std::string joint;  ///< in the messages
   JointReach reach;
   bool has_velocity{};
+  double gain{};         ///< telemetry.torque_per_current that counts [N.m/A]
+  double stated_gain{};  ///< that the recording states; NaN: none [N.m/A]
   FittedFactor time_factor;
   FittedFactor lag;
   std::vector<RecordingFinding> findings;

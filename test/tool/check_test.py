@@ -219,6 +219,33 @@ class Check(tool.ToolTest):
         self.assertEqual(found["temperature"], "/elbow/temperature")
         self.assertIsNone(found["stamp_factor"])
 
+    def test_gains_that_the_controller_states_count_unless_set(self):
+        columns = swinging()
+        rows = len(columns["timestamp"])
+        gains = [11.98, 11.98, 9.84, 10.76, 10.76, 10.76]
+        for joint, gain in enumerate(gains):
+            rests = columns["timestamp"] < 2.0
+            speed = columns[f"actual_qd_{joint}"]
+            columns[f"target_qd_{joint}"] = np.where(rests, 0.0, speed)
+            moment = np.full(rows, 0.0 if joint == 5 else 3.0 + joint)
+            columns[f"target_moment_{joint}"] = moment
+            # Moving, the controller adds friction.
+            columns[f"target_current_{joint}"] = moment / gain + np.where(rests, 0.0, 0.5 * np.sign(speed))
+        write_csv(self.path("arm.csv"), columns)
+        joints = self.check("arm.csv", "--arm", "ur5")["joints"]
+        for joint, gain in zip(joints[:5], gains):
+            self.assertAlmostEqual(joint["torque_per_current_stated"], gain, places=6)
+            self.assertEqual(joint["torque_per_current"], joint["torque_per_current_stated"])
+        self.assertEqual((joints[5]["torque_per_current_stated"], joints[5]["torque_per_current"]), (None, GAINS[5]))
+        self.assertTrue(any(line.startswith("gains       base 11.98, ") for line in self.lines("arm.csv")))
+        of_options = self.check("arm.csv", "--arm", "ur5", "--set", "telemetry.torque_per_current=8.5")["joints"]
+        self.assertEqual({joint["torque_per_current"] for joint in of_options}, {8.5})
+
+    @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 at rest")
+    def test_a_ur5_states_the_gains_of_its_file(self):
+        for joint, gain in list(zip(self.check(RECORDINGS["no5"])["joints"], GAINS))[1:5]:
+            self.assertLess(abs(joint["torque_per_current_stated"] / gain - 1.0), 0.005, joint)
+
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_sound_recordings_have_nothing_that_stops_judging(self):
         for name, path in RECORDINGS.items():

@@ -128,6 +128,20 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
              "changes with the load " + factor + " times as " + effortUnitName(arm.configured_effort) + " would";
 }
 
+/// Of the joints whose gains the recording states.
+std::string textOfGains(const CheckedArm& arm)
+{
+  std::string text;
+  for (const CheckedJoint& joint : arm.joints)
+  {
+    if (std::isfinite(joint.stated_gain))
+    {
+      text += (text.empty() ? "" : ", ") + joint.name + " " + roundedText(joint.stated_gain, 4);
+    }
+  }
+  return text + " N.m/A: target_moment over target_current at rest";
+}
+
 std::string textOfStamps(const CheckedArm& arm)
 {
   const std::string rate = arm.timing.period > 0.0 ? roundedText(1.0 / arm.timing.period, 4) + " Hz" :
@@ -226,6 +240,11 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   printLine("velocities", textOfVelocities(arm));
   printLine("effort", textOfEffort(contents, arm));
+  if (std::any_of(arm.joints.begin(), arm.joints.end(),
+                  [](const CheckedJoint& joint) { return std::isfinite(joint.stated_gain); }))
+  {
+    printLine("gains", textOfGains(arm));
+  }
   printLine("load", textOfLoad(arm));
   printLine("temperature", contents.temperature.empty() ?
                                (arm.joints.empty() ? std::string("not recorded") :
@@ -281,6 +300,8 @@ std::vector<Json> jointsOf(const CheckedArm& arm)
                            { "least_current", joint.reach.least_current },
                            { "most_current", joint.reach.most_current },
                            { "has_velocity", joint.has_velocity },
+                           { "torque_per_current", joint.gain },
+                           { "torque_per_current_stated", joint.stated_gain },
                            { "time_factor", joint.time_factor.value },
                            { "velocity_lag", joint.lag.value },
                            { "judged", joint.is_judged },
