@@ -55,12 +55,13 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
   return true;
 }
 
-/// The middle one, if the ratios agree; NaN: they do not, or are too few.
-double agreedRatio(std::vector<double>& ratios)
+/// The middle one, if the ratios agree; NaN: they do not, or are of too few of the rows at rest.
+double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr double AGREE = 0.005;  // a controller computes both with the same numbers [-]
-  if (ratios.size() < LEAST)
+  constexpr std::size_t SHARE = 5;  // a joint with load at rest has it in each; others have one as a motion begins
+  constexpr double AGREE = 0.005;   // a controller computes both with the same numbers [-]
+  if (ratios.size() < std::max(LEAST, rows / SHARE))
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -94,9 +95,15 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
   std::array<double, COLUMNS> row;
   row.fill(std::numeric_limits<double>::quiet_NaN());
   std::array<std::vector<double>, JOINTS> ratios;
+  std::size_t at_rest = 0;
   for (int i = 0; i < ROWS && table.read(row); ++i)
   {
-    for (std::size_t joint = 0; joint < JOINTS && isAtRest(row); ++joint)
+    if (!isAtRest(row))
+    {
+      continue;
+    }
+    ++at_rest;
+    for (std::size_t joint = 0; joint < JOINTS; ++joint)
     {
       const double ratio = row[MOMENT + joint] / row[CURRENT + joint];
       if (std::abs(row[CURRENT + joint]) > LEAST_CURRENT && std::abs(ratio) < WIDEST)
@@ -107,7 +114,7 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
   }
   for (std::size_t joint = 0; joint < JOINTS; ++joint)
   {
-    gains[joint] = agreedRatio(ratios[joint]);
+    gains[joint] = agreedRatio(ratios[joint], at_rest);
   }
   return gains;
 }

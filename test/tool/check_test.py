@@ -232,19 +232,24 @@ class Check(tool.ToolTest):
             # Moving, the controller adds friction.
             columns[f"target_current_{joint}"] = moment / gain + np.where(rests, 0.0, 0.5 * np.sign(speed))
         write_csv(self.path("arm.csv"), columns)
-        joints = self.check("arm.csv", "--arm", "ur5")["joints"]
+        # Currents that hold no load are not judged.
+        joints = self.check("arm.csv", "--arm", "ur5", exit_code=1)["joints"]
         for joint, gain in zip(joints[:5], gains):
             self.assertAlmostEqual(joint["torque_per_current_stated"], gain, places=6)
             self.assertEqual(joint["torque_per_current"], joint["torque_per_current_stated"])
         self.assertEqual((joints[5]["torque_per_current_stated"], joints[5]["torque_per_current"]), (None, GAINS[5]))
         self.assertTrue(any(line.startswith("gains       base 11.98, ") for line in self.lines("arm.csv")))
-        of_options = self.check("arm.csv", "--arm", "ur5", "--set", "telemetry.torque_per_current=8.5")["joints"]
+        of_options = self.check("arm.csv", "--arm", "ur5", "--set", "telemetry.torque_per_current=8.5",
+                                exit_code=1)["joints"]
         self.assertEqual({joint["torque_per_current"] for joint in of_options}, {8.5})
 
     @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 at rest")
     def test_a_ur5_states_the_gains_of_its_file(self):
-        for joint, gain in list(zip(self.check(RECORDINGS["no5"])["joints"], GAINS))[1:5]:
+        joints = self.check(RECORDINGS["no5"])["joints"]
+        for joint, gain in list(zip(joints, GAINS))[1:5]:
             self.assertLess(abs(joint["torque_per_current_stated"] / gain - 1.0), 0.005, joint)
+        # The base of a standing arm bears nothing at rest, the last wrist next to nothing.
+        self.assertEqual([joints[i]["torque_per_current_stated"] for i in (0, 5)], [None, None])
 
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_sound_recordings_have_nothing_that_stops_judging(self):
@@ -287,7 +292,8 @@ class Check(tool.ToolTest):
         follow = ("follow", "torque.csv", "--arm", "ur5", "--set", f"telemetry.effort={unit}")
         mended = self.succeed_json(*follow)["joints"]
         for one, same in zip(self.succeed_json("follow", RECORDINGS[name], "--arm", "ur5")["joints"], mended):
-            self.assertAlmostEqual(one["current_residual_rms"], same["current_residual_rms"], places=5)
+            # To the digits of the gains: those that the controller states are not in the other file.
+            self.assertAlmostEqual(one["current_residual_rms"], same["current_residual_rms"], places=3)
 
     @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 with slow motion")
     def test_a_drivers_bag_at_500_hz_works_as_it_is(self):
