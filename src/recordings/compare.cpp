@@ -303,7 +303,7 @@ ComparedRecording compare(const ComparisonOptions& options)
     return compared;
   }
   const std::vector<std::string> misfits =
-      recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>(joints.size());
+      recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>{ compared.found.misfit };
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
