@@ -6,6 +6,9 @@
 
 namespace hjt
 {
+/// Where the library lies that this function is in.
+std::filesystem::path libraryDirectory();
+
 /// Where config/ and scripts/ lie: in the installation, or in the sources of a development space.
 /// @throws ParameterError if the program lies in neither.
 std::filesystem::path packageDirectory();
