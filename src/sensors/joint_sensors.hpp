@@ -115,6 +115,13 @@ private:
 
   struct Instant
   {
+    Instant() = default;
+    Instant(const Instant& other) noexcept  // a reading of the copy finds the same errors
+      : step(other.step), angles(other.angles), motor_torque(other.motor_torque)
+    {
+    }
+    Instant& operator=(const Instant&) = delete;
+
     std::int64_t step{};
     Angles angles;
     double motor_torque{};  // [N.m]

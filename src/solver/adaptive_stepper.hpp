@@ -33,6 +33,8 @@ public:
   /// `frequency` [rad/s] times those.
   AdaptiveStepper(JointDynamics& dynamics, double tolerance, double ratio, double frequency) noexcept;
 
+  void setDynamics(JointDynamics& copied) noexcept { dynamics_ = &copied; }  ///< of a copy
+
   /// Whether it knows all friction that acts: not a cup as one Coulomb element, nor an engaged brake with play.
   bool covers(const JointInputs& inputs) const noexcept;
 
@@ -82,7 +84,7 @@ private:
   template <class Function>
   double firstZero(Function&& function, double end, double at_start, double at_end) const noexcept;
 
-  JointDynamics& dynamics_;
+  JointDynamics* dynamics_;
   Controlled controlled_;
   double speed_tolerance_;  // of the output [rad/s]
   double first_;            // step after a start [s]

@@ -27,8 +27,17 @@ public:
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
-  JointStepper(const JointStepper&) = delete;
+  JointStepper(const JointStepper&) = default;  ///< to be followed by setModel
   JointStepper& operator=(const JointStepper&) = delete;
+
+  void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium
+  {
+    dynamics_.setModel(copied);
+    if (adaptive_)
+    {
+      adaptive_->setDynamics(dynamics_);
+    }
+  }
 
   /// Puts the joint at rest where it settles under a load [N.m]. @returns false if it does not settle.
   bool reset(double load_torque = 0.0) noexcept;

@@ -54,7 +54,15 @@ public:
   /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  const RingModel& model() const noexcept { return model_; }
+  const RingModel& model() const noexcept { return *model_; }
+  /// A copy refers to the same model, until it gets a copy of that.
+  void setModel(const RingModel& copied) noexcept
+  {
+    model_ = &copied;
+    system_.setModel(copied);
+    prediction_.setModel(copied);
+    descent_.setModel(copied);
+  }
   const RingShape& shape() const noexcept { return now_.shape; }
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return system_.forces(); }
@@ -87,7 +95,7 @@ private:
   SolveStatus solve(const DrivePosition& target) noexcept;
   double measureRounding() noexcept;
 
-  const RingModel& model_;
+  const RingModel* model_;
   std::uint64_t model_version_;  // that the present state is of
   RingState now_;
   RingState start_;    // of the present move; its directions and lengths are not known
