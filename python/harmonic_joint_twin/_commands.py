@@ -115,7 +115,7 @@ def compare(recording: Path, report: Path, *, joint: Optional[str] = None, arm: 
     report: directory that gets report.html, its figures and its data. reference: an earlier report, in sound condition.
     Others as of identify.
 
-    Returns the report's data as a dict: 'level', 'reason', of an arm 'joints'. InputError, ParameterError.
+    Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
     """
     return _run("compare", [recording],
                 {"report": report, "joint": joint, "arm": arm, "reference": reference, "load": load,

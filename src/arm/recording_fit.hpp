@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include "arm/arm_load.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/reason.hpp"
 #include "tracking/time_fit.hpp"
 
 namespace hjt
@@ -20,7 +22,7 @@ struct RecordingFinding
   std::string kind;  ///< for documents: period, stamps, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
                      ///< velocity_sign, velocity_unit, velocity_scale, lag, no_velocity, at_rest
   std::string text;  ///< a clause without a full stop
-  bool stops{};      ///< nothing can be judged with it
+  std::optional<Reason> stops;  ///< nothing can be judged with it
 };
 
 /// What a joint does in a recording; empty ranges before the first row.
@@ -78,8 +80,8 @@ public:
   /// It has seen enough for its findings, or PATIENCE of motion without.
   bool isSettled() const;
 
-  /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
-  std::vector<std::string> whyNotJudged() const;
+  /// For each joint the first finding of arm or joint with which nothing can be judged.
+  std::vector<Misfit> whyNotJudged() const;
 
 private:
   /// Regression of the current on a constant, Coulomb and viscous friction and the load.

@@ -143,7 +143,7 @@ class Check(tool.ToolTest):
         self.assertIn("--time-scale 2", mended["next"][0])
         arm = self.succeed_json("compare", "fast.csv", "--arm", "ur5", "--report", "report")
         self.assertEqual((arm["level"], {joint["level"] for joint in arm["joints"]}), ("NOT JUDGED", {"NOT JUDGED"}))
-        self.assertIn("--time-scale 2", arm["reason"])
+        self.assertIn("--time-scale 2", arm["text"])
         done = self.succeed("follow", "fast.csv", "--arm", "ur5")
         self.assertIn("--time-scale 2", done.stderr)
         self.assertNotIn("--time-scale", self.succeed("follow", "fast.csv", "--arm", "ur5", "--time-scale", 2).stderr)
@@ -166,7 +166,7 @@ class Check(tool.ToolTest):
         arm = self.succeed_json("compare", "arm.csv", "--arm", "ur5", "--report", "report")
         levels = [joint["level"] for joint in arm["joints"]]
         self.assertEqual(levels[:3], ["NOT JUDGED"] * 3)
-        self.assertIn("effort is zero", arm["reason"] + arm["joints"][0]["reason"])
+        self.assertIn("effort is zero", arm["text"] + arm["joints"][0]["text"])
         done = self.succeed("follow", "arm.csv", "--arm", "ur5")
         for part in ("base: effort is zero", "shoulder: angle and velocity of opposite sign", "elbow: velocity 0.1"):
             self.assertIn(part, done.stderr)

@@ -31,26 +31,6 @@ Parameters parametersOf(const ArmJoint& joint, const ArmOptions& options)
   }
   return parameters;
 }
-
-/// Prints to stderr why a joint cannot be judged. Wrong stamps are reported by warnOfStamps.
-void warnOf(const RecordingFit& fit, const std::vector<ArmJoint>& joints)
-{
-  const auto say = [](const std::string& of, const std::vector<RecordingFinding>& findings)
-  {
-    for (const RecordingFinding& finding : findings)
-    {
-      if (finding.stops && finding.kind != "stamps")
-      {
-        std::cerr << "joint_twin: " << of << finding.text << '\n';
-      }
-    }
-  };
-  say("", fit.ofArm());
-  for (std::size_t i = 0; i < joints.size(); ++i)
-  {
-    say(joints[i].short_name + ": ", fit.ofJoint(i));
-  }
-}
 }  // namespace
 
 void addArmOption(Command& command, ArmOptions& options)
@@ -111,11 +91,29 @@ MotionSource ArmRecording::source(std::size_t joint) const
   return source;
 }
 
+void ArmRecording::warnOf(const RecordingFit& fit) const
+{
+  const auto say = [](const std::string& of, const std::vector<RecordingFinding>& findings)
+  {
+    for (const RecordingFinding& finding : findings)
+    {
+      if (finding.stops && finding.kind != "stamps")
+      {
+        std::cerr << "joint_twin: " << of << finding.text << '\n';
+      }
+    }
+  };
+  say("", fit.ofArm());
+  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  {
+    say(arm_.joints[i].short_name + ": ", fit.ofJoint(i));
+  }
+}
 MotionFindings ArmRecording::read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const
 {
   RecordingFit fit(parameters_);
   const MotionFindings findings = read(visit, fit);
-  warnOf(fit, arm_.joints);
+  warnOf(fit);
   return findings;
 }
 

@@ -56,6 +56,8 @@ public:
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit) const;
   /// The same without printing; `fit` receives all rows.
   MotionFindings read(const std::function<void(const std::vector<ArmJointRow>&)>& visit, RecordingFit& fit) const;
+  /// Prints to stderr why a joint cannot be judged. Wrong stamps are reported by warnOfStamps.
+  void warnOf(const RecordingFit& fit) const;
 
 private:
   MotionSource source_;

@@ -272,7 +272,7 @@ void takeFindings(const RecordingFit& fit, const std::vector<Parameters>& parame
   check.configured_effort = parameters.front().telemetry.effort;
   check.temperature = parameters.front().input.temperature;
   check.findings = fit.ofArm();
-  const std::vector<std::string> reasons = fit.whyNotJudged();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
   for (std::size_t i = 0; i < check.joints.size(); ++i)
   {
     CheckedJoint& joint = check.joints[i];
@@ -281,7 +281,7 @@ void takeFindings(const RecordingFit& fit, const std::vector<Parameters>& parame
     joint.time_factor = fit.timeFit(i).factor();
     joint.lag = fit.timeFit(i).lag();
     joint.findings = fit.ofJoint(i);
-    joint.is_judged = reasons[i].empty() && std::max(joint.reach.most_speed, -joint.reach.least_speed) > SLOWEST;
+    joint.is_judged = !misfits[i].exists() && std::max(joint.reach.most_speed, -joint.reach.least_speed) > SLOWEST;
   }
 }
 
@@ -485,7 +485,7 @@ void printJoints(const std::vector<CheckedJoint>& joints)
   {
     const JointReach& reach = joint.reach;
     const auto stops = std::find_if(joint.findings.begin(), joint.findings.end(),
-                                    [](const RecordingFinding& finding) { return finding.stops; });
+                                    [](const RecordingFinding& finding) { return finding.stops.has_value(); });
     const auto first = stops == joint.findings.end() ? joint.findings.begin() : stops;
     const auto number = [](double value) { return fixedText(value, 2); };
     std::printf("%-*s  %6s to %5s  %7s  %6s to %6s  %-8s  %s\n", columns, joint.name.c_str(),
@@ -539,7 +539,7 @@ Json findingsOf(const std::vector<RecordingFinding>& findings)
   std::vector<Json> all;
   for (const RecordingFinding& finding : findings)
   {
-    all.push_back(Json{ { "kind", finding.kind }, { "text", finding.text }, { "stops", finding.stops } });
+    all.push_back(Json{ { "kind", finding.kind }, { "text", finding.text }, { "stops", finding.stops.has_value() } });
   }
   return all;
 }

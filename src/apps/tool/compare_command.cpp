@@ -122,11 +122,12 @@ void print(const ComparisonRecord& record, const JointEvidence& evidence)
   {
     printWrapped((line.found ? "found   " : "missing ") + line.name + " (" + line.gives + ")", 0);
   }
-  std::cout << '\n' << verdictName(verdict) << '\n';
+  std::cout << '\n' << levelName(verdict.level) << '\n';
   for (const Finding& finding : verdict.findings)
   {
-    printWrapped(
-        finding.title + ": " + (finding.judged ? levelName(finding.level) : "not judged") + ". " + finding.text, 0);
+    printWrapped(subjectTitle(finding.subject) + (": " + std::string(levelName(finding.level))) + ". " +
+                     findingText(verdict, finding),
+                 0);
   }
   std::cout << '\n';
   printReport(false, { { "", "rows", evidence.reach().rows },
@@ -158,13 +159,13 @@ public:
   const MotionSource& source() const { return source_; }
   const JointEvidence& evidence() const { return comparison_.evidence(); }
 
-  MeasuredFriction friction(const std::string& misfit) const
+  MeasuredFriction friction(const Misfit& misfit) const
   {
     return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparisonRecord write(const MotionFindings& found, double arm_friction, const std::string& misfit,
+  ComparisonRecord write(const MotionFindings& found, double arm_friction, const Misfit& misfit,
                          const std::string& twin_topic)
   {
     windows_.close();
@@ -206,7 +207,8 @@ int compareJoint(const CompareOptions& options)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const ComparisonRecord record = joint.write(found, 1.0, "", options.joint_namespace + "/" + topics::JOINT_STATES);
+  const ComparisonRecord record =
+      joint.write(found, 1.0, Misfit(), options.joint_namespace + "/" + topics::JOINT_STATES);
   makePage(options.report);
   if (options.json)
   {
@@ -236,8 +238,13 @@ struct ArmLine
 
 const std::vector<Column<ArmLine>> ARM_COLUMNS{
   { "joint", &ArmLine::joint, "joint" },
-  { "level", [](const ArmLine& line) { return verdictName(line.verdict); }, "verdict" },
-  { "reason", [](const ArmLine& line) { return line.verdict.reason; } },
+  { "level", [](const ArmLine& line) { return levelName(line.verdict.level); }, "verdict" },
+  { "reason", [](const ArmLine& line) { return reasonName(line.verdict.reason); } },
+  { "text", [](const ArmLine& line) { return verdictText(line.verdict); } },
+  { "friction_factor", [](const ArmLine& line) { return line.verdict.friction.factor; } },
+  { "friction_lower", [](const ArmLine& line) { return line.verdict.friction.lower; } },
+  { "friction_upper", [](const ArmLine& line) { return line.verdict.friction.upper; } },
+  { "friction_has_interval", [](const ArmLine& line) { return line.verdict.friction.has_interval; } },
   { "friction_ratio", &ArmLine::friction_ratio, "friction [-]" },
   { "temperature", &ArmLine::temperature, "at [degC]" },
   { "temperature_source", [](const ArmLine& line) { return line.temperature_source; }, "which is" },
@@ -246,41 +253,41 @@ const std::vector<Column<ArmLine>> ARM_COLUMNS{
 };
 
 /// Joints of the worst level, and what they have in common.
-std::string reasonOf(const std::vector<ArmLine>& lines, HealthLevel level, const ArmFriction& arm)
+std::string textOf(const std::vector<ArmLine>& lines, HealthLevel level, const ArmFriction& arm)
 {
-  std::string reason;
+  std::string text;
   if (arm.median != 1.0)
   {
-    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-             " times the reference's: another temperature or gain, not a fault of one joint. ";
+    text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
+           " times the reference's: another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
-      reason += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
-                " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
+      text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
+              " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
   std::vector<std::string> unjudged;
   for (const ArmLine& line : lines)
   {
-    if (level != HealthLevel::OK && line.verdict.level == level)
+    if (level != HealthLevel::OK && severityOf(line.verdict.level) == level)
     {
-      reason += line.joint + ": " + line.verdict.reason + " ";
+      text += line.joint + ": " + verdictText(line.verdict) + " ";
     }
-    if (!line.verdict.judged)
+    if (!line.verdict.isJudged())
     {
       unjudged.push_back(line.joint + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
     }
   }
   if (level == HealthLevel::OK && unjudged.size() < lines.size())
   {
-    reason += "No joint departs from a sound one. ";
+    text += "No joint departs from a sound one. ";
   }
   if (!unjudged.empty())
   {
-    reason += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
+    text += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
   }
-  reason.pop_back();
-  return reason;
+  text.pop_back();
+  return text;
 }
 
 int compareArm(const CompareOptions& options)
@@ -323,12 +330,12 @@ int compareArm(const CompareOptions& options)
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   warnOfStamps(found);
-  const std::vector<std::string> misfits = fit.whyNotJudged();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     forward(i, true);
-    frictions.push_back(joints[i]->friction(sentence(misfits[i])));
+    frictions.push_back(joints[i]->friction(misfits[i]));
   }
   const Parameters& parameters = recording.parameters(0);
   const ArmFriction arm = commonFriction(frictions, parameters.comparison.repeat_tolerance);
@@ -340,26 +347,27 @@ int compareArm(const CompareOptions& options)
   {
     const std::string& name = recording.joints()[i].short_name;
     const JointEvidence& evidence = joints[i]->evidence();
-    ComparisonRecord record = joints[i]->write(found, arm.factors[i], sentence(misfits[i]),
+    ComparisonRecord record = joints[i]->write(found, arm.factors[i], misfits[i],
                                                "/" + name + options.joint_namespace + "/" + topics::JOINT_STATES);
-    level = std::max(level, record.verdict.level);
-    judged = judged || record.verdict.judged;
+    level = std::max(level, severityOf(record.verdict.level));
+    judged = judged || record.verdict.isJudged();
     temperatures += evidence.temperature();
     const std::string why_not =
-        misfits[i].empty() && evidence.isTouched() ? contactText(evidence.contact().last()) : misfits[i];
+        !misfits[i].exists() && evidence.isTouched() ? contactText(evidence.contact().last()) : misfits[i].clause;
     lines.push_back({ name, std::move(record.verdict), why_not, frictions[i].ratio, evidence.temperature(),
                       temperatureSource(evidence), evidence.currentRms(), evidence.residualRms() });
   }
-  const std::string level_name = judged ? levelName(level) : NOT_JUDGED;
-  const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
-                                                    static_cast<std::ptrdiff_t>(misfits.size());
-  const std::string reason = same ? sentence(misfits.front()) : reasonOf(lines, level, arm);
+  const std::string level_name = judged ? levelName(level) : levelName(VerdictLevel::NOT_JUDGED);
+  const bool same = misfits.front().exists() &&
+                    std::all_of(misfits.begin(), misfits.end(),
+                                [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
+  const std::string text = same ? sentence(misfits.front().clause) : textOf(lines, level, arm);
   const Table table(ARM_COLUMNS, lines);
   const Json all{ { "recording", options.recording },
                   { "arm", options.arm },
                   { "made_with", MADE_WITH },
                   { "level", level_name },
-                  { "reason", reason },
+                  { "text", text },
                   { "load", options.load },
                   { "temperature", temperatures / static_cast<double>(lines.size()) },
                   { "temperature_estimate", arm.temperature },
@@ -375,7 +383,7 @@ int compareArm(const CompareOptions& options)
     return EXIT_DONE;
   }
   std::cout << level_name << '\n';
-  printWrapped(reason, 0);
+  printWrapped(text, 0);
   std::cout << '\n';
   table.print();
   std::cout << "\nwritten: " << (fs::path(options.report) / PAGE).string() << '\n';

@@ -176,6 +176,7 @@ int followJoint(const FollowOptions& options)
   {
     bag.emplace(options.bag, source,
                 std::vector<TrackedBag::Joint>{ { source.joint, options.joint_namespace, parameters } });
+    bag->judge({ &tracker }, false);
   }
   const InterruptScope interrupts;
   const FollowSummary summary = compare(source, tracker,
@@ -188,6 +189,7 @@ int followJoint(const FollowOptions& options)
                                           if (bag)
                                           {
                                             bag->offer(0, now, tracker);
+                                            bag->offerVerdicts(now.time, nullptr);
                                           }
                                         });
   if (csv)
@@ -359,7 +361,12 @@ int followArm(const FollowOptions& options)
   {
     trackers.push_back(&follower->tracker());
   }
+  if (bag)
+  {
+    bag->judge(trackers, !options.identified.empty());
+  }
   ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
+  RecordingFit fit(recording.parameters());
   const InterruptScope interrupts;
   const MotionFindings found = recording.read(
       [&](const std::vector<ArmJointRow>& rows)
@@ -369,7 +376,13 @@ int followArm(const FollowOptions& options)
           followers[i]->add(rows[i], recording.hasRecordedLoad());
         }
         friction.look(rows.front().row.time);
-      });
+        if (bag)
+        {
+          bag->offerVerdicts(rows.front().row.time, &fit);
+        }
+      },
+      fit);
+  recording.warnOf(fit);
   for (const std::unique_ptr<ArmFollower>& follower : followers)
   {
     follower->finish();
