@@ -163,12 +163,14 @@ def draw_health(axes, recording):
 def draw(recording, title, path):
     """Writes the figure as PNG."""
     plt.rcParams.update(STYLE)
-    figure = plt.figure(figsize=(13.5, 9.0), constrained_layout=True)
-    figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, ha="left")
-    left, right = figure.add_gridspec(1, 2, width_ratios=[1.75, 1.0])
-    rows = left.subgridspec(5, 1, height_ratios=[1, 1, 1, 1, 1.5])
+    # Not by constrained_layout: that of matplotlib 3.3 leaves no room for a title above nested grids.
+    figure = plt.figure(figsize=(13.5, 9.0))
+    figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, y=0.985, ha="left")
+    left, right = figure.add_gridspec(1, 2, width_ratios=[1.75, 1.0], left=0.055, right=0.965, bottom=0.06, top=0.925,
+                                      wspace=0.12)
+    rows = left.subgridspec(6, 1, height_ratios=[1, 1, 1, 1, 0.1, 1.5], hspace=0.34)  # room for the scale of the map
     axes = [figure.add_subplot(rows[0])]
-    axes += [figure.add_subplot(rows[row], sharex=axes[0]) for row in range(1, 5)]
+    axes += [figure.add_subplot(rows[row], sharex=axes[0]) for row in (1, 2, 3, 5)]
     end = recording["health"].time[-1]
     draw_motor_torque(axes[0], recording, end)
     draw_torques(axes[1], recording, end)
@@ -178,9 +180,9 @@ def draw(recording, title, path):
     for one in axes[:-1]:
         one.tick_params(labelbottom=False)
     axes[0].set_xlim(0.0, end)
-    columns = right.subgridspec(3, 1, height_ratios=[2.1, 1.2, 1.0])
+    columns = right.subgridspec(4, 1, height_ratios=[2.1, 0.05, 1.2, 1.0], hspace=0.34)  # room for the ring's legend
     draw_ring(figure.add_subplot(columns[0], projection="polar"), recording)
-    draw_loop(figure.add_subplot(columns[1]), recording)
-    draw_health(figure.add_subplot(columns[2]), recording)
+    draw_loop(figure.add_subplot(columns[2]), recording)
+    draw_health(figure.add_subplot(columns[3]), recording)
     figure.savefig(path)
     plt.close(figure)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run time against error: runs `work_precision` over its problems and writes docs/benchmark.md. Started by
-scripts/benchmark."""
+"""Run time against error: runs `work_precision` over its problems; writes every run to out/benchmark and the summary
+docs/benchmark.md. Started by scripts/benchmark."""
 import argparse
 import concurrent.futures
 import json
@@ -17,21 +17,22 @@ import time
 
 import matplotlib
 
+import benchmark_summary
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
 
-PROBLEMS = ["insertion", "drive", "drive_smooth", "drive_stiff10", "drive_stiff100", "operating", "levels"]
+PROBLEMS = ["insertion", "drive", "operating", "levels"]
 LEVELS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
-PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "libpetsc-real-dev", "r-cran-desolve",
+PACKAGES = ["libsundials-dev", "libsuitesparse-dev", "libboost-dev", "r-cran-desolve",
             "libeigen3-dev", "g++"]
-OPTIONAL = {"PETSc": "libpetsc-real-dev", "RADAU5": "r-cran-desolve"}  # peers that are left out where not installed
+OPTIONAL = {"RADAU5": "r-cran-desolve"}  # peers that are left out where not installed
 OURS = "ours, "
-FAIR = "our linear solver"
 THESIS = "thesis: "
 # Colour by family, line by member.
 STYLES = {
     "ours, ESDIRK4": ("#D55E00", "-", "o", 2.4), "ours, TR-BDF2": ("#D55E00", "--", "s", 2.4),
-    "ours, DOP853": ("#D55E00", ":", "^", 2.4), "ours, leapfrog on the ring": ("#D55E00", "-", "o", 2.4),
+    "ours, leapfrog on the ring": ("#D55E00", "-", "o", 2.4),
     "ours, leapfrog on the table": ("#D55E00", "--", "s", 2.4),
     "ours, adaptive on the table": ("#882255", "-", "D", 2.4),
     "ours, adaptive on the table, angles alone": ("#882255", ":", "d", 2.4),
@@ -42,16 +43,11 @@ STYLES = {
     "CVODE, BDF, dense": ("#0072B2", "-", "o", 1.2), "CVODE, Adams": ("#0072B2", "--", "s", 1.2),
     "IDA, order 5, KLU": ("#009E73", "-", "o", 1.2), "IDA, order 2, KLU": ("#009E73", "--", "s", 1.2),
     "ARKODE, DIRK 3, KLU": ("#E69F00", "-", "o", 1.2), "ARKODE, DIRK 5, KLU": ("#E69F00", "--", "s", 1.2),
-    "CVODE, order 2, our linear solver": ("#0072B2", ":", "x", 1.2),
-    "IDA, order 2, our linear solver": ("#009E73", ":", "x", 1.2),
-    "ARKODE, DIRK 3, our linear solver": ("#E69F00", ":", "x", 1.2),
-    "ARKODE, DIRK 5, our linear solver": ("#E69F00", "-.", "+", 1.2),
-    "PETSc bdf 2, KLU": ("#56B4E9", "-", "o", 1.2), "PETSc rosw ra34pw2, KLU": ("#56B4E9", "--", "s", 1.2),
-    "PETSc arkimex 3, KLU": ("#56B4E9", ":", "x", 1.2), "RADAU5, dense": ("#999999", "-", "D", 1.2),
+    "RADAU5, dense": ("#999999", "-", "D", 1.2),
 }
-INTRODUCTION = """# Run time against error
+INTRODUCTION = """# Run time against error, every run
 
-Written by `scripts/benchmark`; do not edit. One right-hand side, the dynamic ring of [model.md](model.md) (804 states:
+Written by `scripts/benchmark`. One right-hand side, the dynamic ring of docs/model.md (804 states:
 every tooth's mass, wave generator, circular spline), many solvers; at the end the operating model, first against its
 peers and then as the levels of detail to choose from. **Error**: root mean square over the samples, over the standard
 deviation of the reference, over all angles, all tooth positions or all tooth forces. **Time**: of the processor, of
@@ -60,11 +56,11 @@ the left is better.
 
 Peers get the analytic sparse Jacobian with SuiteSparse's KLU, refactored in a fixed pattern; the cup's matrix of rank
 one, which would fill that pattern, is put back by Sherman and Morrison's formula. RADAU5 has no sparse solver and
-factors densely, using the fact that half of the states are the derivatives of the others. *Our linear solver*: the same
-integrators with the twin's own cyclic solver plugged in. All peers call the twin's own forces, vectorised as they are.
+factors densely, using the fact that half of the states are the derivatives of the others. All peers call the twin's own
+forces, vectorised as they are.
 Their tolerances are absolute, in units of 5 um, 0.1 m/s, 1 mrad and 10 rad/s; ours is the error of a tooth's position
 by one step. Teeth and spaces are paired after every step of every solver. Ours are `joint_twin dynamics --tolerance`:
-TR-BDF2, ESDIRK4 and DOP853 with adaptive steps. The thesis' method, implicit Euler at 10 us, is drawn but is neither
+TR-BDF2 and ESDIRK4 with adaptive steps. The thesis' method, implicit Euler at 10 us, is drawn but is neither
 ours nor a peer.
 
 Where the curves of the forces are vertical, the error is the vibration of single teeth excited by start and contact:
@@ -83,9 +79,7 @@ Not measured here:
 - The static twin's points (`joint_twin stiffness` and others): they have no time.
 - Simbody and rosenbrock4 on the operating model: its four states have no structure for the first, and are not stiff.
 - IDA on the operating model as one system of equations: friction acts through the rates at which the ring follows the
-  two angles, and those exist in equilibrium only.
-- The stiffer drives for as long as the drive: their explicit references need steps shorter by the root of the
-  stiffness."""
+  two angles, and those exist in equilibrium only."""
 
 
 CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
@@ -123,12 +117,10 @@ def fastest(rows, quantity, level):
 
 
 def family_of(row):
-    """ours, thesis, fair (a peer with our linear solver) or peers."""
+    """ours, thesis or peers."""
     if row["solver"].startswith(OURS):
         return "ours"
-    if row["solver"].startswith(THESIS):
-        return "thesis"
-    return "fair" if FAIR in row["solver"] else "peers"
+    return "thesis" if row["solver"].startswith(THESIS) else "peers"
 
 
 def family(rows, name):
@@ -146,24 +138,20 @@ def envelope(rows, quantity, apart):
     lines = []
     ratios = {}
     for level in LEVELS:
-        best = {name: fastest(family(rows, name), quantity, level) for name in ("ours", "peers", "fair")}
+        best = {name: fastest(family(rows, name), quantity, level) for name in ("ours", "peers")}
         if level < apart or not any(best.values()):
             continue
         cells = [f"{level:.0e}"]
-        for name in ("ours", "peers", "fair"):
+        for name in ("ours", "peers"):
             row = best[name]
             cells.append(f"{1e3 * row['processor_time']:.3g} ms ({row['solver'].replace(OURS, '')}, {row['setting']})"
                          if row else "not reached")
-        for name in ("peers", "fair"):
-            both = best["ours"] and best[name]
-            ratio = best[name]["processor_time"] / best["ours"]["processor_time"] if both else None
-            cells.append(f"{ratio:.2g}" if both else "-")
-            if name == "peers":
-                ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
+        both = best["ours"] and best["peers"]
+        ratio = best["peers"]["processor_time"] / best["ours"]["processor_time"] if both else None
+        cells.append(f"{ratio:.2g}" if both else "-")
+        ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
         lines.append(cells)
-    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "best peer with our linear solver",
-              "peer / ours",
-              "that one / ours"]
+    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "peer / ours"]
     return table(header, lines), ratios
 
 
@@ -321,32 +309,6 @@ def section(problem, reference, rows, images):
     return lines, [f"**{reference['title']}**", "", *lost, ""] if lost else [], ratios
 
 
-def renewed(page, sections, ratios, remark):
-    """The page with these sections, by title, and the rows of these ratios in the table of all, in place of its own."""
-    def cells(title, quantity, by_level):
-        return table_row([f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)])
-
-    for title, lines in sections.items():
-        body = "\n".join([lines[0], "", remark, *lines[1:]]).rstrip() + "\n\n"
-        own = re.compile(r"^## " + re.escape(title) + r"\n.*?(?=^## )", re.MULTILINE | re.DOTALL)
-        if own.search(page):
-            page = own.sub(lambda _, text=body: text, page, count=1)
-        else:
-            page = page.replace("## Insertion from cold", body + "## Insertion from cold", 1)
-    header = "Below 10 from 1e-2 to 1e-5:\n\n"
-    for title, by_quantity in ratios:
-        for quantity, by_level in by_quantity.items():
-            row = re.compile(r"^\| " + re.escape(f"{title}: {QUANTITIES[quantity]} |") + ".*$", re.MULTILINE)
-            page = row.sub(lambda _, text=cells(title, quantity, by_level): text, page, count=1)
-            page = re.sub(r"^- " + re.escape(f"{title}, {QUANTITIES[quantity]} to ") + r".*\n", "", page,
-                          flags=re.MULTILINE)
-            page = page.replace(header, header + "".join(
-                f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}\n"
-                for level, ratio in by_level.items()
-                if 1e-5 <= level <= 1e-2 and (ratio == "peer only" or (isinstance(ratio, float) and ratio < 10.0))), 1)
-    return page
-
-
 def table_row(cells):
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
@@ -355,25 +317,17 @@ def cell(ratio):
     return "-" if ratio is None else ratio if isinstance(ratio, str) else f"{ratio:.2g}"
 
 
-def kinks(references):
-    """Cause of the difference between the references of the exact contact law: the same steps on its C1 ramp."""
-    exact, smooth = (references.get(problem) for problem in ("drive", "drive_smooth"))
-    if not exact or not smooth or exact["apart"]["force"] < 10.0 * smooth["apart"]["force"]:
-        return []
-    return [f"The references of the exact law are {exact['apart']['force']:.1e} apart in the forces where those of the "
-            f"C1 ramp, by the same "
-            f"methods at steps alike, are {smooth['apart']['force']:.1e} apart: the kinks, "
-            "thousands of teeth making and losing contact within steps, limit their agreement.", ""]
+def ratio_table(sections):
+    header = ["best peer's time over ours, at an error of", *(f"{level:.0e}" for level in LEVELS)]
+    return table(header, [[f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)]
+                          for title, ratios in sections for quantity, by_level in ratios.items()])
 
 
 def verdict(sections):
     """How the best peer's time stands to ours: the targets, level by level."""
-    header = ["best peer's time over ours", *(f"{level:.0e}" for level in LEVELS)]
-    body = []
     below, slower = [], []
     for title, ratios in sections:
         for quantity, by_level in ratios.items():
-            body.append([f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)])
             for level, ratio in by_level.items():
                 behind = ratio == "peer only" or (isinstance(ratio, float) and ratio < 1.0)
                 if 1e-5 <= level <= 1e-2 and (behind or (isinstance(ratio, float) and ratio < 10.0)):
@@ -385,7 +339,7 @@ def verdict(sections):
         return [f"- {title}, {QUANTITIES[quantity]} to {level:.0e}: {cell(ratio)}" for title, quantity, level,
                 ratio in cases]
     lines = ["## All in one table", "", "Wanted: 10 and more at errors from 1e-2 to 1e-5, 1 and more down to 1e-9.", "",
-             *table(header, body)]
+             *ratio_table(sections)]
     if below:
         lines += ["Below 10 from 1e-2 to 1e-5:", "", *named(below), ""]
     if slower:
@@ -419,7 +373,8 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/benchmark", description=__doc__)
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--parts", required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--docs", required=True, help="folder of the page (default: docs)")
+    parser.add_argument("--docs", required=True, help="folder of the summary (default: docs)")
+    parser.add_argument("--out", required=True, help="folder of the complete page (default: out/benchmark)")
     parser.add_argument("--work", required=True, help="folder of references and results (default: build/benchmark)")
     parser.add_argument("--problems", default=",".join(PROBLEMS), help="which, by commas (default: all)")
     parser.add_argument("--runs", type=int, default=10,
@@ -430,52 +385,45 @@ def main():
     parser.add_argument("--limit", type=float, default=4.0,
                         help="processor time after which a run is given up [s] (default: 4)")
     parser.add_argument("--reuse", action="store_true", help="take references and results at hand, however old")
-    parser.add_argument("--into", metavar="REMARK",
-                        help="renew the sections of these problems in the page at hand, each with this remark")
     options = parser.parse_args()
     if options.quick:
         options.runs = min(options.runs, 3)
-    images = os.path.join(options.docs, "images", "benchmark")
+    images = os.path.join(options.out, "images", "benchmark")
     os.makedirs(images, exist_ok=True)
     os.makedirs(options.work, exist_ok=True)
     problems = options.problems.split(",")
     progress = Progress(problems)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         measured = dict(zip(problems, pool.map(lambda problem: measure(problem, options, progress), problems)))
-    body, lost, ratios, solvers, sections = [], [], [], set(), {}
+    body, lost, ratios, solvers, levels = [], [], [], set(), []
     for problem in problems:
         reference, rows = measured[problem]
         lines, missing, by_quantity = section(problem, reference, rows, images)
         body += lines
-        sections[reference["title"]] = lines
+        if problem == "levels":
+            levels = lines[:lines.index("<details><summary>every run</summary>")]
         lost += missing
         if by_quantity:
             ratios.append((reference["title"], by_quantity))
         solvers |= {row["solver"] for row in rows}
-    page = os.path.join(options.docs, "benchmark.md")
-    if options.into:
-        with open(page, encoding="utf-8") as source:
-            text = renewed(source.read(), sections, ratios, options.into)
-        with open(page, "w", encoding="utf-8") as out:
-            out.write(text)
-        print(f"renewed {page}", file=sys.stderr)
-        return
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
-    references = {problem: reference for problem, (reference, _) in measured.items()}
-    lines = [INTRODUCTION, "", *kinks(references), *verdict(ratios), *body, *parts(options.parts), "## Omissions", ""]
+    teeth = parts(options.parts)
+    machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most "
+               f"{options.runs} runs of each, fewer of those that take longer.")
+    lines = [INTRODUCTION, "", *verdict(ratios), *body, *teeth, "## Omissions", ""]
     if absent:
         lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
     lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that "
               f"(tighter "
               "settings of a solver that gave up early or twice with it), or failed:", "", *lost, OMISSIONS.strip(), "",
-              "---", "",
-              f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most {options.runs} "
-              f"runs of each, "
-              "fewer of those that take longer: the tables say how many."]
+              "---", "", machine]
+    page = os.path.join(options.out, "benchmark.md")
     with open(page, "w", encoding="utf-8") as out:
         out.write("\n".join(lines).rstrip() + "\n")
     print(f"wrote {page}", file=sys.stderr)
+    if problems == PROBLEMS:
+        benchmark_summary.write(options.docs, options.out, ratio_table(ratios), levels, teeth, machine)
 
 
 if __name__ == "__main__":

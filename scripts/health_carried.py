@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fits how far a sound drive's reference of the check-up is off in another motion, where the model's indicators are
-subtracted from both. Written as data of the source."""
+subtracted from both. Written into a file of signatures."""
 import collections
 import math
 
 import numpy
 import yaml
 
-import health_source
+import health_file
 from health_runs import CARRIED, CARRIED_MOTIONS, CARRIED_RUNS, CARRIED_SEED, CHECK_UP, COMPARED, DRAWN, MODELS, at_work
 
-UNKNOWN = 1e30  # deviation of what no motion determined, as in the source
 SHARES = numpy.concatenate([[0.0], numpy.geomspace(1e-3, 1e3, 121)])  # tried, of the deviation at the median size
 SIGNALS = ["error_", "torque_", "ripple_"]
 Pair = collections.namedtuple("Pair", "squares sizes")  # of a gear in a motion less a model, by indicator
@@ -66,35 +65,18 @@ def fitted(squares, sizes):
 
 
 def errors(pairs):
-    """As `fitted`, by indicator."""
+    """As `fitted`, by indicator, of those that enough motions determined."""
     found = {}
     for name in pairs[0].squares:
         own = [(pair.squares[name], pair.sizes[name]) for pair in pairs if pair.squares[name] and name in pair.sizes]
-        known = len(own) >= len(CARRIED) * len(MODELS)
-        found[name] = fitted(*numpy.array(own).T) if known else (UNKNOWN, 0.0, 1.0)
+        if len(own) >= len(CARRIED) * len(MODELS):
+            found[name] = fitted(*numpy.array(own).T)
     return found
 
 
-def write(bench, source):
+def write(bench, path):
     pairs = [pair_of(bench, gear, motion, model) for gear in CARRIED for motion in CARRIED_MOTIONS for model in MODELS]
-    lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
-             "#pragma once", "", "#include <array>", "#include <cstddef>", "",
-             '#include "harmonic_joint_twin/health/signal_indicators.hpp"', "", "namespace hjt", "{",
-             "/// What the indicators of a sound drive, less a model's, differ by from one motion to another.",
-             "struct CarriedError", "{",
-             "  double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known",
-             "  double share{};            ///< of what drive and model differ by, of a line all of its signal [-]",
-             "  double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]", "};", "",
-             "struct CarriedRow", "{", "  std::size_t indicator;", "  CarriedError error;", "};", "",
-             "// clang-format off",
-             "inline constexpr CarriedRow CARRIED_ROWS[] = {"]
-    for name, (deviation, share, freedom) in errors(pairs).items():
-        numbers = f"{deviation:.3g}, {share:.3g}, {freedom:.1f}"
-        lines.append(f"{{ {health_source.indicator(name)}, {{ {numbers} }} }},")
-    lines += ["};", "// clang-format on", "",
-              "/// By indicator; without a row it is not known.",
-              "inline constexpr std::array<CarriedError, INDICATOR_COUNT> CARRIED_ERRORS = []", "{",
-              "  std::array<CarriedError, INDICATOR_COUNT> errors{};",
-              "  for (const CarriedRow& row : CARRIED_ROWS)", "  {", "    errors[row.indicator] = row.error;", "  }",
-              "  return errors;", "}();", "}  // namespace hjt"]
-    source.write_text("\n".join(lines) + "\n")
+    content = health_file.read(path)
+    content["carried"] = {name: [float(f"{deviation:.3g}"), float(f"{share:.3g}"), round(freedom, 1)]
+                          for name, (deviation, share, freedom) in errors(pairs).items()}
+    health_file.write(path, content)

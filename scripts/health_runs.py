@@ -56,7 +56,7 @@ def at_work(motion, windows=WORK_WINDOWS):
 
 # `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
 # runs.
-Gear = collections.namedtuple("Gear", "name alike settings")
+Gear = collections.namedtuple("Gear", "name alike settings overlays", defaults=[("joints/shoulder.yaml",)])
 
 
 def even(name, stiffness, clearance, preload, viscosity):
@@ -189,13 +189,14 @@ def speed_rows(moves, end, draw=None):
 class Bench:
     """Makes runs below a folder."""
 
-    def __init__(self, tool, work, jobs):
+    def __init__(self, tool, work, jobs, joint="shoulder"):
         self.tool, self.work, self.jobs = tool, work.resolve(), jobs
+        self.joint = joint  # of a UR5, whose check-up is driven
         self.references = set()  # files of those that are made
         work.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run([tool, "faults", "--json"], check=True, capture_output=True, text=True).stdout
         self.kinds = json.loads(listed)
-        subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", "shoulder", "--force", "--out",
+        subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", joint, "--force", "--out",
                         work / "check_up.csv"], check=True, stdout=subprocess.DEVNULL)
 
     def speeds(self, name, motion, seed, paths):
@@ -203,7 +204,7 @@ class Bench:
         if motion.steady:
             return [f"{{constant: {math.radians(motion.steady):.6f}}}"]
         if not motion.moves:
-            return [f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"]
+            return [f"{{csv: {{file: {motion.tag}.csv, column: {self.joint}_velocity}}}}"]
         end = motion.windows * motion.window
         speeds = []
         for path in range(paths):
@@ -218,7 +219,7 @@ class Bench:
         """Bags of the runs that went well, each with its row of the index."""
         name = name.replace(" ", "_")
         lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.windows * motion.window + 1.3:.3f}",
-                 "overlays: [joints/shoulder.yaml, real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
+                 f"overlays: [{', '.join([*gear.overlays, 'real_sensors.yaml'])}]", "set:", f"  solver.scene: {scene}",
                  f"  input.temperature: {temperature}", "  indicators.window_turns: 100000.0",
                  f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 1.0",
                  *(f"  publish.{topic}_rate: 0.001" for topic in

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fits the signatures of the causes to the model's own faults: how the indicators change with the severity, and how far
-that is to be trusted on another gear. Written as data of the source and as a table."""
+that is to be trusted on another gear. Written into a file of signatures and as a table."""
 import collections
 import itertools
 import math
-import re
 
 import numpy
 
-import health_source
+import health_file
 import page_section
-from health_runs import CALIBRATED, COMPARED, DRAWN, FITTED, once, split_table
+from health_runs import CALIBRATED, CHECK_UP, COMPARED, DRAWN, FITTED, Gear, Trial, once, split_table
 
 SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
 # Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
@@ -93,12 +92,12 @@ def kind_of(window):
     return window["speed"], abs(window["direction"])
 
 
-def changes(bench):
+def changes(bench, trials):
     """(layout, sound values of the scalars of the first gear in the check-up, kinds of motion by gear and motion,
     changes by cause, gear, motion and severity)."""
     found, kinds = collections.defaultdict(list), {}
     layout, values = None, None
-    for trial in FITTED:
+    for trial in trials:
         for motion, sound, faulty in bench.differences(trial):
             windows = windows_of(bench, [*sound, *faulty])
             kinds[trial.gear.name, motion.tag] = numpy.mean([kind_of(windows[str(bag)]) for bag, _ in sound], axis=0)
@@ -114,9 +113,9 @@ def changes(bench):
     return layout, values, kinds, {key: numpy.mean(own, axis=0) for key, own in found.items()}
 
 
-def table_of(layout, faults, kinds, found):
+def table_of(layout, faults, trials, kinds, found):
     rows = []
-    for fault, trial in itertools.product(faults, FITTED):
+    for fault, trial in itertools.product(faults, trials):
         for motion in trial.motions:
             own = {severity: change for (cause, gear, tag, severity), change in found.items()
                    if (cause, gear, tag) == (fault["kind"], trial.gear.name, motion.tag)}
@@ -261,68 +260,47 @@ def severity_error(alarms, errors):
     return numpy.quantile(shares_off, WITHIN)
 
 
-def cause_name(cause):
-    """As the source has it."""
-    if cause == "circular_spline_tooth":
-        return "Cause::CIRCULAR_SPLINE_TOOTH"
-    return f"causeOf(FaultKind::{cause.upper()})"
+def fill(content, layout, sound, table):
+    """Of a file."""
+    content["indicators"] = {name: health_file.unit_of(name, content) for name in layout.names}
+    content["sound"] = {name: float(f"{value:.3g}") for name, value in zip(layout.names, sound)
+                        if name not in layout.lines}
+    content["signatures"] = [
+        [cause, motion, health_file.short(speed, 4), health_file.short(direction, 2), str(severity),
+         *map(health_file.short, change)]
+        for cause, motion, severity, (speed, direction), change in zip(*table)]
 
 
-def numbers_text(numbers):
-    return ", ".join(f"{number:.3g}" for number in numbers)
+def write_own(bench, overlays, basis, path):
+    """Of one gear, in the check-up alone. How far signatures and carried references are off takes many gears: these
+    numbers are those of the file `basis`."""
+    trials = [Trial("own", Gear(path.stem, True, [], overlays), [CHECK_UP], [0.15, 0.4, 1.0], 90, 2)]
+    layout, sound, kinds, found = changes(bench, trials)
+    content = {**health_file.read(basis), "gear": path.stem}
+    fill(content, layout, sound, table_of(layout, bench.kinds, trials, kinds, found))
+    health_file.write(path, content)
 
 
-def write(bench, source, page):
-    layout, sound, kinds, found = changes(bench)
-    table = table_of(layout, bench.kinds, kinds, found)
+def write(bench, path, page):
+    layout, sound, kinds, found = changes(bench, FITTED)
+    table = table_of(layout, bench.kinds, FITTED, kinds, found)
     alarms = alarms_of(layout, calibration_windows(bench), table)
     errors = fitted_errors(alarms)
     report(alarms, errors)
-    scalars = [name for name in layout.names if name not in layout.lines]
-    lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by `scripts/evaluate_health --fit`.",
-             "#pragma once", "", "#include <array>", "#include <cstddef>", "#include <iterator>", "",
-             '#include "harmonic_joint_twin/health/fault_signatures.hpp"', "", "namespace hjt", "{",
-             "// clang-format off",
-             "/// Of each number of a signature, and of its length, on another gear in another motion [-].",
-             f"inline constexpr double SIGNATURE_ERROR = {errors.number};",
-             f"inline constexpr double SIGNATURE_LENGTH_ERROR = {errors.length};",
-             "/// Share of the lines of a sound drive that a fault of severity 1 changes [-].",
-             f"inline constexpr double LINE_ERROR = {errors.line};",
-             "/// Of the logarithm of a likelihood [-].",
-             f"inline constexpr double EVIDENCE_WEIGHT = {errors.weight};",
-             "/// Of the severity by them, as a share of it [-].",
-             f"inline constexpr double SEVERITY_ERROR = {severity_error(alarms, errors):.2f};", "",
-             "/// What the signatures were fitted for, by the numbers of a Signature, in the order of a row.",
-             "inline constexpr std::size_t FITTED_NUMBERS[] = {",
-             *(f"    {health_source.signature_number(name)}," for name in layout.names), "};", "",
-             "/// Of the first of these, the scalars, for the shipped gear in the check-up.",
-             f"inline constexpr double SOUND_VALUES[] = {{ {numbers_text(sound[:len(scalars)])} }};", "",
-             "/// One of these rows.", "template <std::size_t COUNT>",
-             "constexpr Signature fitted(Cause cause, double severity, const MotionKind& motion, "
-             "const double (&row)[COUNT])",
-             "{", "  static_assert(COUNT == std::size(FITTED_NUMBERS), \"a number for each of FITTED_NUMBERS\");",
-             "  Signature signature{ cause, severity, motion, {} };",
-             "  for (std::size_t i = 0; i < COUNT; ++i)", "  {",
-             "    signature.change[FITTED_NUMBERS[i]] = row[i];", "  }", "  return signature;", "}", "",
-             "inline constexpr Signature FITTED_SIGNATURES[] = {"]
-    for cause, motion, severity, (speed, direction), change in zip(*table):
-        numbers = f"{severity}, {{ {speed:.4g}, {direction:.2g} }}, {{ {numbers_text(change)} }}"
-        lines.append(f"fitted({cause_name(cause)}, {numbers}),  // {motion}")
-    source.write_text("\n".join([*lines, "};", "// clang-format on", "}  // namespace hjt"]) + "\n")
+    content = health_file.read(path)
+    content["errors"] = {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)}
+    fill(content, layout, sound, table)
+    health_file.write(path, content)
     write_table(layout, sound, table, page)
 
 
-def read(source):
+def read(path):
     """(table, errors) of what `write` wrote."""
-    text = source.read_text(encoding="utf-8")
-    values = dict(re.findall(r"double (\w+) = ([^;]+);", text))
-    row = r"fitted\((?:Cause::|causeOf\(FaultKind::)(\w+)\)?, (\S+), \{ (\S+, \S+) \}, \{ (.*) \}\),  // (\w+)"
-    rows = re.findall(row, text)
-    causes, severities, kinds, changes, motions = zip(*rows)
-    table = Table([cause.lower() for cause in causes], motions, numpy.array(severities, float),
-                  *(numpy.array([row.split(", ") for row in rows], float) for rows in (kinds, changes)))
-    return table, Errors(*(float(values[name]) for name in ("SIGNATURE_ERROR", "SIGNATURE_LENGTH_ERROR", "LINE_ERROR",
-                                                            "EVIDENCE_WEIGHT")))
+    content = health_file.read(path)
+    causes, motions, *numbers = zip(*((row[0], row[1], row[2:4], row[4], row[5:]) for row in content["signatures"]))
+    kinds, severities, found = (numpy.array(own, float) for own in numbers)
+    return (Table(causes, motions, severities, kinds, found),
+            Errors(*(content["errors"][name] for name in Errors._fields)))
 
 
 def write_table(layout, sound, table, page):

@@ -11,11 +11,11 @@ namespace hjt
 {
 void LinearSystem::linearise(const double* state, double time)
 {
-  rates_.resize(ring_.states());
   ring_.rates(state, time, rates_.data());
 }
 
-KluSystem::KluSystem(DynamicRing& ring) : LinearSystem(ring), both_(ring.teeth())
+LinearSystem::LinearSystem(DynamicRing& ring)
+  : ring_(ring), stiffness_(ring.teeth()), both_(ring.teeth()), rates_(ring.states())
 {
   const int n = ring.states();
   stiffness_.setZero();
@@ -38,7 +38,7 @@ KluSystem::KluSystem(DynamicRing& ring) : LinearSystem(ring), both_(ring.teeth()
   cup_.resize(n);
 }
 
-KluSystem::~KluSystem()
+LinearSystem::~LinearSystem()
 {
   klu_free_numeric(&numeric_, &common_);
   klu_free_symbolic(&symbolic_, &common_);
@@ -46,7 +46,7 @@ KluSystem::~KluSystem()
 
 /// I - gamma J without the cup, entry by entry.
 template <class Sink>
-void KluSystem::visit(double gamma, Sink&& sink) const
+void LinearSystem::visit(double gamma, Sink&& sink) const
 {
   const int n = ring_.coordinates();
   const Eigen::VectorXd& inverse_mass = ring_.inverseMass();
@@ -67,7 +67,7 @@ void KluSystem::visit(double gamma, Sink&& sink) const
       both_, [&](int row, int column, double value) { sink(n + row, n + column, gamma * inverse_mass[row] * value); });
 }
 
-bool KluSystem::factor(double gamma)
+bool LinearSystem::factor(double gamma)
 {
   ring_.tangent(0.0, stiffness_);
   ring_.tangent(1.0, both_);
@@ -93,12 +93,12 @@ bool KluSystem::factor(double gamma)
   return true;
 }
 
-void KluSystem::solveSparse(double* b)
+void LinearSystem::solveSparse(double* b)
 {
   klu_solve(symbolic_, numeric_, ring_.states(), 1, b, &common_);
 }
 
-void KluSystem::solve(double* b)
+void LinearSystem::solve(double* b)
 {
   solveSparse(b);
   const Eigen::VectorXd& d = stiffness_.cup_direction;
@@ -106,47 +106,4 @@ void KluSystem::solve(double* b)
   x -= cup_ * (cup_factor_ * d.dot(x.head(d.size())));
 }
 
-StructuredSystem::StructuredSystem(DynamicRing& ring)
-  : LinearSystem(ring), whole_(ring.teeth()), solver_(ring.teeth()), right_(ring.coordinates())
-{
-}
-
-bool StructuredSystem::factor(double gamma)
-{
-  gamma_ = gamma;
-  ring_.tangent(0.0, stiffness_);
-  ring_.tangent(1.0 / gamma, whole_);
-  const double inverse_square = 1.0 / (gamma * gamma);
-  for (int i = 0; i < whole_.teeth(); ++i)
-  {
-    whole_.addDiagonal(i, Block2((inverse_square * ring_.mass().segment<2>(2 * i)).asDiagonal()));
-  }
-  whole_.wave_generator_stiffness += inverse_square * ring_.mass()[ring_.waveGenerator()];
-  whole_.output_stiffness += inverse_square * ring_.mass()[ring_.output()];
-  return solver_.factor(whole_, { ring_.driven(ring_.waveGenerator()), ring_.driven(ring_.output()) });
-}
-
-/// With x_q = b_q + y: (K + C / gamma + M / gamma^2) y = M b_v / gamma - K b_q and x_v = y / gamma.
-void StructuredSystem::solve(double* b)
-{
-  const int n = ring_.coordinates();
-  Eigen::Map<Eigen::VectorXd> position(b, n);
-  Eigen::Map<Eigen::VectorXd> speed(b + n, n);
-  right_ = ring_.mass().cwiseProduct(speed) / gamma_;
-  visitEntries(stiffness_, [&](int row, int column, double value) { right_[row] -= value * position[column]; });
-  const Eigen::VectorXd& d = stiffness_.cup_direction;
-  right_.head(d.size()) -= d * (stiffness_.cup_stiffness * d.dot(position.head(d.size())));
-  solver_.solve(right_);
-  position += right_;
-  speed = right_ / gamma_;
-}
-
-std::unique_ptr<LinearSystem> makeLinearSystem(LinearKind kind, DynamicRing& ring)
-{
-  if (kind == LinearKind::KLU)
-  {
-    return std::make_unique<KluSystem>(ring);
-  }
-  return std::make_unique<StructuredSystem>(ring);
-}
 }  // namespace hjt

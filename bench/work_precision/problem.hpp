@@ -42,7 +42,7 @@ struct Problem
   Eigen::VectorXd scale() const;  ///< of the states, what a tolerance of 1 means: 5 um of depth is a contact's force
 };
 
-/// insertion, drive, drive_smooth, drive_stiff10, drive_stiff100. Throws std::runtime_error if it has no start.
+/// One of problemNames(). Throws std::runtime_error if it has no start.
 Problem makeProblem(const std::string& name);
 const std::vector<std::string>& problemNames();
 

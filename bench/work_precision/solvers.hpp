@@ -32,11 +32,8 @@ std::vector<Contender> ownContenders(const Problem& problem);
 /// Boost.odeint's explicit methods.
 std::vector<Contender> odeintContenders(const Problem& problem);
 
-/// CVODE, IDA and ARKODE with KLU, and with the package's structured linear solver.
+/// CVODE, IDA and ARKODE with KLU.
 std::vector<Contender> sundialsContenders(const Problem& problem);
-
-/// TS of PETSc with KLU. Only where PETSc was found.
-std::vector<Contender> petscContenders(const Problem& problem);
 
 /// RADAU5 out of R's deSolve; none where that is not installed.
 std::vector<Contender> radauContenders(const Problem& problem);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <memory>
 
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
@@ -116,8 +115,8 @@ enum class Kind
 class Sundials : public Integrator
 {
 public:
-  Sundials(Kind kind, int order, LinearKind linear, double tolerance, const Problem& problem)
-    : kind_(kind), ring_(problem.ring()), linear_(makeLinearSystem(linear, ring_))
+  Sundials(Kind kind, int order, double tolerance, const Problem& problem)
+    : kind_(kind), ring_(problem.ring()), linear_(ring_)
   {
     SUNContext_Create(nullptr, &context_);
     const Eigen::Index n = ring_.states();
@@ -125,7 +124,7 @@ public:
     yp_ = N_VClone(y_);
     between_ = N_VClone(y_);
     map(y_) << problem.q, problem.v;
-    own_ = { &ring_, linear_.get(), 0.0, 0, 0, Eigen::VectorXd(n) };
+    own_ = { &ring_, &linear_, 0.0, 0, 0, Eigen::VectorXd(n) };
     ring_.rates(N_VGetArrayPointer(y_), 0.0, N_VGetArrayPointer(yp_));
     weights_ = N_VClone(y_);
     map(weights_) = tolerance * problem.scale();
@@ -312,7 +311,7 @@ private:
 
   Kind kind_;
   DynamicRing ring_;
-  std::unique_ptr<LinearSystem> linear_;
+  LinearSystem linear_;
   Callbacks own_{};
   SUNContext context_{};
   N_Vector y_{};
@@ -334,18 +333,10 @@ std::vector<Contender> sundialsContenders(const Problem& problem)
     const char* name;
     Kind kind;
     int order;
-    LinearKind linear;
   };
-  const Choice choices[] = { { "CVODE, order 5, KLU", Kind::CVODE, 5, LinearKind::KLU },
-                             { "CVODE, order 2, KLU", Kind::CVODE, 2, LinearKind::KLU },
-                             { "IDA, order 5, KLU", Kind::IDA, 5, LinearKind::KLU },
-                             { "IDA, order 2, KLU", Kind::IDA, 2, LinearKind::KLU },
-                             { "ARKODE, DIRK 3, KLU", Kind::ARKODE, 3, LinearKind::KLU },
-                             { "ARKODE, DIRK 5, KLU", Kind::ARKODE, 5, LinearKind::KLU },
-                             { "CVODE, order 2, our linear solver", Kind::CVODE, 2, LinearKind::STRUCTURED },
-                             { "IDA, order 2, our linear solver", Kind::IDA, 2, LinearKind::STRUCTURED },
-                             { "ARKODE, DIRK 3, our linear solver", Kind::ARKODE, 3, LinearKind::STRUCTURED },
-                             { "ARKODE, DIRK 5, our linear solver", Kind::ARKODE, 5, LinearKind::STRUCTURED } };
+  const Choice choices[] = { { "CVODE, order 5, KLU", Kind::CVODE, 5 },  { "CVODE, order 2, KLU", Kind::CVODE, 2 },
+                             { "IDA, order 5, KLU", Kind::IDA, 5 },      { "IDA, order 2, KLU", Kind::IDA, 2 },
+                             { "ARKODE, DIRK 3, KLU", Kind::ARKODE, 3 }, { "ARKODE, DIRK 5, KLU", Kind::ARKODE, 5 } };
   std::vector<Contender> contenders;
   for (const Choice& choice : choices)
   {
@@ -354,7 +345,7 @@ std::vector<Contender> sundialsContenders(const Problem& problem)
       contenders.push_back({ choice.name, "tol = " + text("%.0e", tolerance),
                              [=, &problem](double limit)
                              {
-                               Sundials integrator(choice.kind, choice.order, choice.linear, tolerance, problem);
+                               Sundials integrator(choice.kind, choice.order, tolerance, problem);
                                return follow(problem, integrator, limit);
                              } });
     }

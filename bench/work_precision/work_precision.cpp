@@ -124,11 +124,8 @@ void compete(const Field& field, const std::string& file, int runs, double limit
 Field ringField(const Problem& problem)
 {
   Field field{ problem.name, problem.title, problem.duration(), hjt::ownContenders(problem), hjt::references(problem) };
-  for (const auto& more : { hjt::odeintContenders(problem), hjt::sundialsContenders(problem),
-#ifdef HJT_WITH_PETSC
-                            hjt::petscContenders(problem),
-#endif
-                            hjt::radauContenders(problem) })
+  for (const auto& more :
+       { hjt::odeintContenders(problem), hjt::sundialsContenders(problem), hjt::radauContenders(problem) })
   {
     field.contenders.insert(field.contenders.end(), more.begin(), more.end());
   }

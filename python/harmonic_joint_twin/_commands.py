@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tool's commands on recordings and data sets, in this process: each returns what the command prints as JSON."""
+"""Functions on recordings and data sets, as the tool's commands: each returns what the command prints as JSON."""
 import json
 import os
 import tempfile
 import warnings
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -17,8 +17,11 @@ Path = Union[str, "os.PathLike[str]"]
 Value = Union[bool, int, float, str, Sequence[float]]
 Overlays = Sequence[Union[Path, Mapping[str, Value]]]
 Document = Dict[str, Any]
+Progress = Callable[[str, float], None]
+Arrays = Union[Mapping[str, "NDArray[Any]"], "NDArray[np.void]"]  # columns by their names
+Recording = Union[Path, Arrays]
 
-__all__ = ["check", "checkup", "compare", "follow", "identify", "lives", "sweep"]
+__all__ = ["check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep"]
 
 _NOISE = "joint_twin: "  # before the tool's messages
 
@@ -85,31 +88,52 @@ def check(recording: Path, arm: Optional[str] = None, *, topic: Optional[str] = 
     return _run("check", [recording], {"arm": arm, "topic": topic, "time_scale": time_scale}, overlays)
 
 
-def identify(recording: Path, *, joint: Optional[str] = None, arm: Optional[str] = None, out: Optional[Path] = None,
-             train: Optional[Tuple[float, float]] = None, judge: Optional[Tuple[float, float]] = None,
-             folds: Optional[int] = None, load: Optional[str] = None, identified: Optional[Path] = None,
-             topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
-             overlays: Overlays = ()) -> Document:
+def _plain(value: Any) -> Any:
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+def _call(function: str, options: Mapping[str, Any], overlays: Overlays) -> Document:
+    """Calls a function of _recordings; options that are None are left out."""
+    from harmonic_joint_twin import _recordings
+    arguments = {name: _plain(value) for name, value in options.items() if value is not None}
+    found, notices = getattr(_recordings, function)({**arguments, "overlays": list(map(_plain, overlays))})
+    for notice in notices:
+        warnings.warn(notice, RuntimeWarning, stacklevel=3)
+    assert isinstance(found, dict)
+    return found
+
+
+def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None,
+             out: Optional[Path] = None, train: Optional[Tuple[float, float]] = None,
+             judge: Optional[Tuple[float, float]] = None, folds: Optional[int] = None, load: Optional[str] = None,
+             identified: Optional[Path] = None, topic: Optional[str] = None, time_scale: Optional[float] = None,
+             force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording: the tool's identify.
 
-    recording: bag, or CSV of a UR controller. joint or arm: one of them. out: the overlay to write, of an arm a
-    directory. train, judge: (from, to), the parts to identify and to judge on [s]; None: the first third and the rest,
-    of an arm all. folds: pieces to leave out in turn. load (arm): 'arm', from the motion of all joints, or
-    'target_moment', as recorded. identified: directory of an arm's overlays. force: overwrite. Others as of check.
+    recording: bag, CSV of a UR controller, or columns: a structured array or a mapping of arrays with 'time' [s], shape
+    (rows,), and, of shape (rows,) or for an arm (rows, joints), 'position' [rad], 'current' [A] and, if recorded,
+    'load' (at the output, > 0 resists positive motion) [N.m], 'velocity' [rad/s], 'temperature' [degC], 'motor_angle'
+    [rad].
+    joint or arm: one of them. out: the overlay to write, of an arm a directory. train, judge: (from, to), the parts to
+    identify and to judge on [s]; None: the first third and the rest, of an arm all. folds: pieces to leave out in turn,
+    2 ... 100. load (arm): 'arm', from the motion of all joints, or 'target_moment', as recorded. identified: directory
+    of an arm's overlays. topic, time_scale, overlays: as of check. force: overwrite. progress: called with the name of
+    the step and 0 ... 1.
 
     Returns a dict: of a joint 'values' (name, key, unit, configured, value, half_width: 95 %, refusal), 'lines' of the
     ripple, 'judged' errors of the current [A]; of an arm 'joints' and 'payload'. What is not identifiable is warned of.
     InputError, ParameterError.
     """
-    return _run("identify", [recording],
-                {"joint": joint, "arm": arm, "out": out, "train": train, "judge": judge, "folds": folds, "load": load,
-                 "identified": identified, "topic": topic, "time_scale": time_scale, "force": force}, overlays)
+    return _call("identify",
+                 {"recording": recording, "joint": joint, "arm": arm, "out": out, "train": train, "judge": judge,
+                  "folds": folds, "load": load, "identified": identified, "topic": topic, "time_scale": time_scale,
+                  "force": force, "progress": progress}, overlays)
 
 
-def compare(recording: Path, report: Path, *, joint: Optional[str] = None, arm: Optional[str] = None,
+def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, arm: Optional[str] = None,
             reference: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
             topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
-            overlays: Overlays = ()) -> Document:
+            overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Verdict on a recorded joint or arm beside its twin, with a page: the tool's compare (docs/compare.md).
 
     report: directory that gets report.html, its figures and its data. reference: an earlier report, in sound condition.
@@ -117,48 +141,91 @@ def compare(recording: Path, report: Path, *, joint: Optional[str] = None, arm: 
 
     Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
     """
-    return _run("compare", [recording],
-                {"report": report, "joint": joint, "arm": arm, "reference": reference, "load": load,
-                 "identified": identified, "topic": topic, "time_scale": time_scale, "force": force}, overlays)
+    return _call("compare",
+                 {"recording": recording, "report": report, "joint": joint, "arm": arm, "reference": reference,
+                  "load": load, "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
+                  "progress": progress}, overlays)
 
 
-def _rows(path: str) -> "NDArray[np.void]":
-    with open(path, encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        columns = np.loadtxt(file, delimiter=",", ndmin=2).reshape(-1, len(names))
-    types = _hjt.COMPARISON_DTYPE.fields
-    assert types is not None
-    rows = np.empty(len(columns), [(name, types[name][0]) for name in names])
-    for name, values in zip(names, columns.T):
-        rows[name] = values
-    return rows
-
-
-def follow(recording: Path, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",
+def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",
            bag: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
            topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
-           overlays: Overlays = ()) -> Document:
-    """A healthy joint, or arm, beside a recording, a bag's as well: the tool's follow.
+           overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """A healthy joint, or arm, beside a recording: the tool's follow.
 
     mode: 'motion' predicts the current of the recorded motion, 'torque' the motion of the recorded current, 'observer'
     corrects the twin towards the recorded angles. bag: bag to write with the node's topics and the forces on every
-    tooth. Others as of identify; for arrays at hand there is Tracker.
+    tooth. Others as of identify. Block by block there is Tracker.
 
-    Returns the tool's summary as a dict, and as its 'comparison' a structured array of shape (compared rows,) with the
-    fields of COMPARISON_DTYPE but 'housing_temperature', of an arm a dict of them by the joint's short name.
-    InputError, ParameterError.
+    Returns the tool's summary as a dict, and as its 'comparison' a structured array of shape (compared rows,) with
+    dtype COMPARISON_DTYPE, of an arm a dict of them by the joint's short name. InputError, ParameterError.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        out = os.path.join(folder, "rows.csv" if arm is None else "rows")
-        found = _run("follow", [recording],
-                     {"joint": joint, "arm": arm, "mode": mode, "out": out, "bag": bag, "load": load,
-                      "identified": identified, "topic": topic, "time_scale": time_scale, "force": force}, overlays)
-        if arm is None:
-            found["comparison"] = _rows(out)
+    return _call("follow",
+                 {"recording": recording, "joint": joint, "arm": arm, "mode": mode, "bag": bag, "load": load,
+                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
+                  "progress": progress}, overlays)
+
+
+def _columns(recording: Any) -> Dict[str, "NDArray[np.float64]"]:
+    names = recording.dtype.names if isinstance(recording, np.ndarray) else list(recording)
+    arrays = {name: np.asarray(recording[name], dtype=np.float64) for name in names}
+    return {name: array for name, array in arrays.items() if array.ndim == 1}
+
+
+def _signals(recordings: Union[Recording, Sequence[Recording]]) -> Dict[str, Any]:
+    """Names of the recordings, and the columns of those at hand."""
+    several = recordings if isinstance(recordings, (list, tuple)) else [recordings]
+    names: List[str] = []
+    at_hand = {}
+    for place, recording in enumerate(several):
+        if isinstance(recording, (str, os.PathLike)):
+            names.append(os.fspath(recording))
         else:
-            found["comparison"] = {line["joint"]: _rows(os.path.join(out, line["joint"] + ".csv"))
-                                   for line in found["joints"]}
-    return found
+            names.append(f"recordings[{place}]")
+            at_hand[names[-1]] = _columns(recording)
+    return {"recordings": names, "at_hand": at_hand}
+
+
+def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Sequence[Path] = (),
+               joint: Optional[str] = None, torque_scale: Optional[float] = None, baseline: Optional[Path] = None,
+               save_baseline: Optional[Path] = None, out: Optional[Path] = None, carry: bool = False,
+               force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """Health indicators of recordings of one joint and their assessment: the tool's indicators (docs/health.md).
+
+    recordings: one or several: bag, CSV, run of a data set (HDF5), or columns: a structured array, as of Twin.run, or a
+    mapping of arrays of shape (rows,): 'time' [s], 'motor_torque' [N.m], or the signal that torque_scale makes one,
+    'motor_angle_encoder' or 'output_angle_encoder' [rad] and, if recorded, 'motor_velocity_encoder' [rad/s],
+    'load_torque' [N.m], 'temperature' [degC]. models: the twin's own recording of each, to be subtracted. joint: of a
+    robot's bag; None: the twin's topics. baseline: the reference; None: learned from the first windows. save_baseline:
+    file for the learned one. out: CSV of the windows. carry: the baseline is of another motion. force, overlays,
+    progress: as of identify.
+
+    Returns a dict: 'windows' (one dict each: 'time', 'indicators', 'scores', 'assessment' ...), 'threshold',
+    'assessment' of the last. Recordings that are not judged are warned of. InputError, ParameterError.
+    """
+    return _call("indicators",
+                 {**_signals(recordings), "models": [os.fspath(model) for model in models], "joint": joint,
+                  "torque_scale": torque_scale, "baseline": baseline, "save_baseline": save_baseline, "out": out,
+                  "carry": carry, "force": force, "progress": progress}, overlays)
+
+
+def remaining(recordings: Union[Recording, Sequence[Recording]], *, hours: Optional[float] = None,
+              joint: Optional[str] = None, torque_scale: Optional[float] = None, baseline: Optional[Path] = None,
+              duty: Optional[Path] = None, use_record: Optional[Path] = None, force: bool = False,
+              overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """Use of a recorded joint, and how long a drive lasts that is used so: the tool's remaining (docs/life.md).
+
+    hours: use that the drive has behind it, all like the recordings, 1e-6 ... 1e7 [h]; None: theirs. baseline:
+    reference of the new drive, the last assessment by it tells of wear. duty: duty cycle (CSV) in place of the
+    recordings' use. use_record: file for the use. Others as of indicators.
+
+    Returns a dict: 'hours' and 'remaining_q10', 'remaining_q50', 'remaining_q90' [h], 'turns', 'nearest' limit and its
+    'used' [%], 'density', 'end_probability', with a baseline 'level', 'cause'. InputError, ParameterError.
+    """
+    return _call("remaining",
+                 {**_signals(recordings), "hours": hours, "joint": joint, "torque_scale": torque_scale,
+                  "baseline": baseline, "duty": duty, "use_record": use_record, "force": force, "progress": progress},
+                 overlays)
 
 
 def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: str = "csv",

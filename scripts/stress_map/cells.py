@@ -186,7 +186,6 @@ def odd():
                load_steps(284.0))
     yield Cell("edge", ("law `absolute`",), {"ring.bending_law": "absolute"})
     yield Cell("edge", ("law `polar`",), {"contact.law": "polar"})
-    yield Cell("edge", ("Runge-Kutta",), {"solver.stepper": "runge_kutta4"}, reversal(2.87))
     yield Cell("edge", ("one Newton iteration",), {"solver.max_iterations": 1, "solver.max_step_cuts": 0},
                load_steps(284.0))
 

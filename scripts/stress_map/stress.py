@@ -11,57 +11,22 @@ import time
 
 import cells
 import judge
+import stability
+from stability import percent
 
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "validation"))
-from page import BLUE, GREY, ORANGE, RED, Page, Settings, say  # noqa: E402  (its folder is known only now)
+from page import BLUE, GREY, ORANGE, RED, Page, Settings, markdown_table, say  # noqa: E402  (its folder is known now)
 
 COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
 
-HEAD = """# Stability
+HEAD = """# Stability, all cells
 
-Behaviour of the twin far from its usual range: one factor at a time, two at a time, all at once at random. Every cell
-below is a run of `joint_twin trial`, compared with converged runs of the same cell. One command repeats them all:
-
-    scripts/stress
-
-It exits 0 only if every cell is one of
-
-- **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
-- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may
-  be good or not;
-- **refused with a reason**: the twin does not start, and a message states the reason.
-
-Never a NaN, never a hang (more than {timeout:.0f} s a run), never silently wrong; one such cell makes the exit code 1.
+Written by `scripts/stress`; docs/stability.md has the terms.
 """
-
-MEANING = """The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the
-output's angle and the motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the cup's first
-slope ends) and the travel (at least the
-{angle:.2f} mrad that belong to it). One per cent is the twin's stated accuracy: the parameters themselves are known no
-better, and the catalogue allows ten times that scatter between gears. The **converged run** is the same cell at a step
-that resolves a period of the joint's fastest natural mode 600 times, at most a tenth of the cell's; the **doubt** is
-its difference from a run with twice the step. A new input acts from half a step before its instant (the leapfrog kicks
-there), so the profile of the converged run is advanced by the difference of half steps: that half step is sampling, not
-error. The **drift** is the largest energy residual over the work of motor and load.
-
-The solver's messages on a step:
-
-| message | condition | reason |
-|---|---|---|
-| steps too long | the joint's fastest natural mode (motor against output on the ring's present stiffness) advances more than 0.1 rad of phase in a substep (the twin divides a step by itself, by its parameters) | the leapfrog's phase error is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
-| with teeth jumping | a tooth changes its space below the tip circle | no tooth can pass a tip unnoticed: ratcheting, or a gear whose teeth do not fit |
-| cut | the ring's equilibrium was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
-| failed | no equilibrium was found | the last good state is held |
-| refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
-"""  # noqa: E501
 
 
 def short(value):
     return value if isinstance(value, str) else f"{value:g}"
-
-
-def percent(value):
-    return "–" if math.isnan(value) else f"{100.0 * value:.2g} %"
 
 
 def table_of(page, judged):
@@ -134,16 +99,8 @@ def file_name(group):
 
 def write_page(settings, judged):
     page = Page("stability", settings)
-    page.text(HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT))
-    counts = collections.Counter(j.verdict for j in judged)
-    page.table(["verdict", "cells"], [[verdict, counts[verdict]] for verdict in judge.VERDICTS])
-    groups = collections.defaultdict(list)
-    for j in judged:
-        groups[j.cell.group].append(j)
-    page.heading("Definitions")
-    page.text(MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE))
-    page.heading("The boundary of what is accurate")
-    page.text(boundary(judged))
+    page.text(HEAD)
+    groups = stability.by_group(judged)
     page.heading("One factor at a time")
     lines = [(name, members) for name, members in groups.items()
              if not name.startswith("map") and name not in ("edge", "random")]
@@ -171,42 +128,18 @@ def write_page(settings, judged):
     return path
 
 
-def boundary(judged):
-    """In words, from the cells: how long a step may be, and what the words of the solver are worth."""
-    def steps(group):
-        good = [j.cell.step for j in judged if j.cell.group == group and j.verdict == judge.ACCURATE]
-        return f"{max(good):g} s" if good else "no step"
-
-    ran = [j for j in judged if not math.isnan(j.error)]
-    quiet = [j for j in ran if j.verdict == judge.ACCURATE]
-    flagged = [j for j in ran if j.verdict == judge.DEGRADED]
-    still = sum(j.error <= judge.ACCURACY for j in flagged)
-    phase = max((j.phase for j in quiet), default=float("nan"))
-    if not quiet:
-        return "No cell is accurate."
-    return (f"With the shipped parameters the longest step that is accurate is {steps('step, load steps of 100 N.m')} "
-            f"under load steps and "
-            f"{steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four times what it can "
-            f"give. "
-            f"Over all {len(quiet)} cells in which the solver reported nothing the largest error is "
-            f"{percent(max(j.error for j in quiet))}, the largest energy drift {percent(max(j.drift for j in quiet))}, "
-            f"and a step took "
-            f"at most {phase:.2f} rad of the swing. Of the {len(flagged)} degraded cells {still} were within the "
-            f"accuracy all the same: the "
-            f"solver warns early rather than late.")
-
-
 def parse(arguments):
     parser = argparse.ArgumentParser(
-        prog="stress", description="Runs the twin far from where it is meant to run, judges each run against converged "
-        "ones and writes "
-        "stability.md with its maps. Exit code 1 if a cell is silently wrong, not finite, hung or crashed.")
+        prog="stress", description="Runs the twin far from where it is meant to run and judges each run against "
+        "converged ones. Writes all cells with their maps to out/stability and, if none was left out, the summary "
+        "docs/stability.md. Exit code 1 if a cell is silently wrong, not finite, hung or crashed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--seeds", type=int, default=30, metavar="N", help="random cells, seeds 1 ... N [30]")
     parser.add_argument("--only", metavar="TEXT",
                         help="only cells whose name has this in it; needs --out to write a page")
-    parser.add_argument("--out", metavar="DIR", help="folder of page and figures (default: docs/ of the checkout)")
+    parser.add_argument("--out", metavar="DIR",
+                        help="folder of all cells and maps (default: out/stability of the checkout)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cells at a time")
     return parser.parse_args(arguments)
 
@@ -230,10 +163,12 @@ def main(arguments):
                     say(f"{j.verdict}: {j.cell.name}: {j.reason or 'error ' + percent(j.error)}")
                 if len(judged) % 20 == 0 or len(judged) == len(chosen):
                     say(f"[{len(judged)}/{len(chosen)}] {time.monotonic() - started:.0f} s")
-    out = options.out or (None if options.only else options.docs)
+    out = options.out or (None if options.only else os.path.join(os.path.dirname(options.docs), "out", "stability"))
     if out:
         os.makedirs(out, exist_ok=True)
         say(f"page: {write_page(Settings(options.tool, os.path.abspath(out), '', '', page='stability'), judged)}")
+        if not options.only:
+            stability.write(options.docs, out, judged, markdown_table)
     counts = collections.Counter(j.verdict for j in judged)
     print(", ".join(f"{counts[verdict]} {verdict}" for verdict in judge.VERDICTS if counts[verdict]))
     return 0 if all(j.verdict in judge.GOOD for j in judged) else 1

@@ -151,6 +151,8 @@ real drive of this size at several amplitudes are public, so the growth itself i
         expected = sum(4.0 * spring * width * max(turned - width, 0.0) for width in widths)
         page.check(f"catalogue.loop.{torque:g}", f"energy of a torsion loop of ± {torque:g} N·m", "closed form",
                    Within(1e6 * expected, relative=0.01), 1e6 * area, "µJ", "integration over 400 points")
+        page.value(f"catalogue.loop_width.{torque:g}", 1e6 * loop["hysteresis"], "µrad")
+        page.value(f"catalogue.loop_loss.{torque:g}", area / (math.pi * load.max() * angle.max()), "")
         rows.append([f"{torque:g} N·m", number(1e6 * loop["hysteresis"]) + " µrad", number(1e6 * area) + " µJ",
                      number(area / (math.pi * load.max() * angle.max()))])
     page.table(["amplitude", "width at no load", "energy of a loop", "loss factor"], rows)

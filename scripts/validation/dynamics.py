@@ -12,10 +12,11 @@ REAL_MASS, THESIS_MASS = 0.038, 1.9  # of the toothed rim [kg]
 FULL_SPEED, HALF_SPEED = 317.0, 60.0  # of the motor [rad/s]
 # Dashpots of rim and contact in proportion to their stiffness, 1 % of critical at 1.2e5 rad/s.
 DAMPED = ("--set", "ring.tension_damping=800.0", "--set", "contact.damping=16.0")
-CLAIM = "model.md §7: the ring is quasi-static to well below 1 %"
+CLAIM = "model.md, *Dynamic ring*: the ring is quasi-static to well below 1 %"
 # On the bearing's balls, a seventeenth as stiff as the springs of Table 6.1, modes of the rim come into reach of the
 # tooth frequency: the forces and places of single teeth ring at full speed under load.
-RINGING = {"317rad_100Nm_contact_force", "317rad_100Nm_mesh_force", "sweep_position"}
+RINGS = {"317rad_100Nm_contact_force", "317rad_100Nm_mesh_force", "sweep_position", "sweep_mesh_force"}
+RINGING = "teeth come into mesh 200 times a turn; where that frequency meets a mode of the ring, it rings"
 LABELS = {"rk4": "Runge-Kutta 4, explicit", "esdirk4": "ESDIRK 4, structured", "tr_bdf2": "TR-BDF2, structured",
           "implicit_euler": "implicit Euler"}
 
@@ -250,7 +251,7 @@ def check_errors(page, name, where, run):
                              ("contact_force", 1.0, "F_WG per tooth"), ("mesh_force", 1.0, "flank force per tooth")):
         page.check(f"dynamics.{name}_{key}", f"{what} {where}: dynamic against quasi-static, rms", CLAIM, AtMost(limit),
                    100.0 * run[key]["relative_rms"], "%", "the claim" if limit == 1.0 else "well below it",
-                   known=f"{name}_{key}" in RINGING)
+                   known=RINGING if f"{name}_{key}" in RINGS else "")
 
 
 def percent(run, key, kind="rms"):
@@ -264,10 +265,12 @@ def sweep(page):
     runs = {load: [turning(page, speed, load, **window) for speed in speeds] for load in (20.0, 100.0)}
     every = runs[20.0] + runs[100.0]
     where = f"worst of {len(speeds)} speeds from 5 to 317 rad/s, 20 and 100 N·m"
-    for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion")):
+    for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion"),
+                             ("mesh_force", 1.0, "flank force per tooth")):
         page.check(f"dynamics.sweep_{key}", f"{what}, {where}, rms", CLAIM, AtMost(limit),
-                   100.0 * max(run[key]["relative_rms"] for run in every), "%", "well below it",
-                   known=f"sweep_{key}" in RINGING)
+                   100.0 * max(run[key]["relative_rms"] for run in every), "%",
+                   "the claim" if limit == 1.0 else "well below it",
+                   known=RINGING if f"sweep_{key}" in RINGS else "")
     page.check("dynamics.sweep_mean_torque", "mean wave generator torque over 5 ms, of the same speeds", CLAIM,
                AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it")
     page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM,

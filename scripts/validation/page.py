@@ -36,7 +36,7 @@ class Row:
     value: float
     unit: str
     reason: str
-    known: bool = False  # that it does not hold; the page says why
+    known: str = ""  # why it does not hold; empty if it should
 
     @property
     def holds(self):
@@ -77,6 +77,7 @@ class Page:
     lines: list = field(default_factory=list)
     commands: list = field(default_factory=list)
     pending: list = field(default_factory=list)  # rows not yet in a table
+    values: list = field(default_factory=list)  # name, value, unit of what is shown and not judged
     results: dict = field(default_factory=dict)
 
     @property
@@ -117,14 +118,18 @@ class Page:
         self._flush()
         self.lines += markdown_table(header, rows) + [""]
 
-    def check(self, name, quantity, source, bound, value, unit, reason, known=False):
-        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: that it
-        does not hold, which the text of the section explains."""
+    def check(self, name, quantity, source, bound, value, unit, reason, known=""):
+        """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: why it does
+        not hold; empty if it should."""
         if any(row.name == name for row in self.rows):
             raise ValueError(f"two rows are called {name}")
         row = Row(name, quantity, source, bound, float(value), unit, reason, known)
         self.rows.append(row)
         self.pending.append(row)
+
+    def value(self, name, value, unit):
+        """A number that other pages show and nothing is judged by."""
+        self.values.append((name, float(value), unit))
 
     def figure(self, name, caption, draw, size=(8.0, 3.2)):
         """`draw` fills a matplotlib figure, which is written beside the page."""
@@ -147,7 +152,8 @@ class Page:
             header = ["row", "quantity", "source", "expected", "twin", "tolerance", "verdict"]
             cells = [[f"`{row.name}`", row.quantity, row.source, with_unit(row.bound.expected(), row.unit),
                       with_unit(number(row.value), row.unit), f"{row.bound.tolerance(row.unit)}: {row.reason}",
-                      row.verdict] for row in self.pending]
+                      f"{row.verdict}: {row.known}" if row.known and not row.holds else row.verdict]
+                     for row in self.pending]
             self.lines += markdown_table(header, cells) + [""]
             self.pending = []
 

@@ -22,11 +22,11 @@ an ideal ring (inextensible, w0 cos 2ψ) the tooth's own path through its space 
 clearance meets the path. All have the same clearance at full engagement. Free dimensions:
 
 - **trapezoid**: straight, {math.degrees(mesh["flank_angle"]):.0f}° (thesis, 3.2.2: smallest angle free of
-  interference); the shipped profile.
+  interference); that of `config/golden.yaml`.
 - **involute**: both gears cut as rigid ones, the same angle at mid-height of the tooth. Nothing is left to choose.
 - **cycloid**: both flanks the path on half the scale, one turned by 180° (Ishikawa's similar curves): as close as
   flanks can be.
-- **double arc**: a common tangent at mid-height ({math.degrees(mesh["tangent_angle"]):.0f}°,
+- **double arc**, the shipped profile: a common tangent at mid-height ({math.degrees(mesh["tangent_angle"]):.0f}°,
   {1e3 * mesh["tangent_length"]:.2f} mm), a convex arc above and a concave one below; their radius follows from the
   demand that the tip has the slope of the path where it enters. The space is cut as the envelope of this tooth, as
   makers do. The figure of the thesis (3.7) has no dimensions; a published set (Liu et al., Machines 13, 535, 2025) has

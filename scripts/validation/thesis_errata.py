@@ -92,6 +92,12 @@ def chapter_3(page):
             "from the volume"
         ],
         [
+            "Table 3.6", "r_m = 32.15 mm",
+            f"tip radius and half the tooth height make "
+            f"{1e3 * (m.circular_spline_tip_radius + 0.5 * m.circular_spline_tooth_height):.2f} mm",
+            "teeth by their positions"
+        ],
+        [
             "Table 3.1, 5.7b", "b = 30.33 mm measured, b = r0 − w0 used",
             f"r0 − w0 = {1e3 * (gear['flexspline_inner_radius'] - gear['wave_amplitude']):.2f} mm", "r0 − w0"
         ],
@@ -124,7 +130,14 @@ def chapter_5(page):
     page.check("thesis.contact_point",
                "eq. 5.11 against the true foot of the normal: largest difference of overlap among teeth in contact",
                "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*")
+    printed_overlap = (ring.a * math.cos(ring.psi[tooth]) - x) * math.cos(ring.normal[tooth]) + (
+        ring.b * math.sin(ring.psi[tooth]) + y) * math.sin(ring.normal[tooth])
     return [
+        [
+            "5.1, 5.2", "one bending force F_F on a tooth",
+            f"{ring.out_of_balance(printed=True):.0f} N are left on a tooth of chapter 6's equilibrium; with the "
+            f"bending forces of the segments on either side {ring.out_of_balance():.1g} N", "both segments"
+        ],
         [
             "5.5", "x = r sin ψ0, y = r cos ψ0",
             f"puts tooth 0 on the minor axis, where the force is {force[50]:.0f} N and not {force[0]:.1f} N", "cos, sin"
@@ -161,7 +174,21 @@ def chapter_5(page):
             f"a product: 0 N at rest, where the rim carries {numbers['tension_max']:.0f} N", "sum"
         ],
         [
-            "5.33, 5.34", "damping on ẋ_i − ẋ_{i+1}",
+            "5.16, 5.21", "tangent at π/2 − α_N",
+            f"tooth 10: {90.0 - math.degrees(ring.normal[tooth]):.1f}°, a mirror image; at right angles to the normal "
+            f"is {90.0 + math.degrees(ring.normal[tooth]):.1f}°", "not used"
+        ],
+        [
+            "5.22", "no parentheses around the displacement of the flexspline",
+            f"tooth 10: as printed an overlap of {1e3 * printed_overlap:.1f} mm, with them "
+            f"{1e6 * float(ring.overlap()[tooth]):.2f} µm", "parentheses"
+        ],
+        [
+            "5.51, Table 6.1", "c_F = 0 in 5.4, 1e-2 in the table; c_T = 1e-2 in 7.2", "two values of one constant",
+            "neither dashpot; the cup has dry friction"
+        ],
+        [
+            "5.33", "damping on ẋ_i − ẋ_{i+1}",
             "is −V_rel of eq. 5.32: with Table 6.1's c two teeth parting at 1 m/s gain "
             f"{1e3 * 1e-2 * 1.0**2:.0f} mW instead of losing them", "c V_rel"
         ],
@@ -264,6 +291,11 @@ def chapter_7(page):
             "7.2", "the cup's stiffness on each tooth's own angle",
             f"{given['cup']['torsion_stiffness'][0] * wave:.0f} N·m on a tooth with no load; {TEETH_FS} K_T in all",
             "mean rotation"
+        ],
+        [
+            "7.1, 7.2", "K_T of the step times the whole angle",
+            "at 14 N·m the torque jumps from 14.0 to "
+            f"{14.0 * 50.0 / 31.0:.1f} N·m with Table 7.1's 31e3 and 50e3 N·m/rad", "slopes integrated"
         ],
         [
             "7.18, 7.19", "F2 − G2 under the root",

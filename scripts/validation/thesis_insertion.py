@@ -68,7 +68,8 @@ def thesis_rows(page, numbers, ring):
          "the digits given"),
         ("gap", "largest gap to the polar estimate of eq. 6.1", "6.1, fig. 6.4", Within(0.15, absolute=0.01),
          1e3 * max(np.max(np.abs(gap_x)), np.max(np.abs(gap_y))), "mm", "*up to about 0.15*"),
-        ("balance", "largest force left on a tooth when eq. 5.1–5.2 are summed from the positions alone", "eq. 5.1–5.2",
+        ("balance", "largest force left on a tooth when eq. 5.1–5.2, with the bending force of either segment, "
+         "are summed from the positions alone", "eq. 5.1–5.2",
          AtMost(1e-4), ring.out_of_balance(), "N", "rounding of the positions times 5e9 N/m"),
         ("contact_law", "largest difference of contact force from eq. 5.23 at these positions", "eq. 5.11–5.23",
          AtMost(1e-4), np.max(np.abs(ring.contact_force() - ring.teeth["wave_generator_force"])), "N", "rounding"),

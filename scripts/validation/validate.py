@@ -9,12 +9,12 @@ import sys
 import tempfile
 import time
 
+import summary
 from page import Page, Settings, markdown_table, say
 
 # Module and title, in the order of the page.
 SECTIONS = {
     "thesis": "The thesis, chapter by chapter",
-    "invariants": "Invariants",
     "catalogue": "Catalogue, size 25",
     "teeth": "Teeth",
     "stress": "Stress and fatigue",
@@ -27,17 +27,10 @@ SECTIONS = {
     "dynamics": "The quasi-static claim",
 }
 
-HEAD = """# Validation
+HEAD = """# Validation, all rows
 
-Results of the twin compared with the thesis it grew from, exact invariants, the gear maker's catalogue and recordings
-of real drives. Every number and figure below comes from runs of `joint_twin`; one command recomputes them all:
-
-    scripts/validate
-
-It exits 0 only if no verdict below is **fails**; otherwise it names the rows that fail and exits 1. A row that is known
-not to hold says *does not hold*, and its section says why. `scripts/validate
---set contact.stiffness=1.1e+8` shows the effect of a wrong parameter (the page is then written to the folder of
-`--out`, never over this one).
+Written by `scripts/validate`. Every number and figure below comes from runs of `joint_twin`. A row that *does not hold*
+is known not to, and says why; one that **fails** should hold.
 """
 
 
@@ -55,24 +48,20 @@ def build_section(name, settings):
 def write_page(path, pages):
     rows = [row for page in pages for row in page.rows]
     failing = [row for row in rows if row.fails]
-    open_rows = sum(row.known and not row.holds for row in rows)
-    summary = [[f"[{SECTIONS[page.section]}](#{anchor(SECTIONS[page.section])})", len(page.rows),
-                sum(row.holds for row in page.rows)] for page in pages]
+    open_rows = sum(bool(row.known) and not row.holds for row in rows)
+    sections = [[f"[{SECTIONS[page.section]}](#{summary.anchor(SECTIONS[page.section])})", len(page.rows),
+                 sum(row.holds for row in page.rows)] for page in pages]
     verdict = f"{len(failing)} fail" if failing else "all hold"
     if open_rows:
         verdict = f"{open_rows} known not to hold, " + (verdict if failing else "all others hold")
     lines = [HEAD, f"**{len(rows)} rows; {verdict}.**", ""]
-    lines += markdown_table(["section", "rows", "hold"], summary) + [""]
+    lines += markdown_table(["section", "rows", "hold"], sections) + [""]
     for page in pages:
         lines += [f"## {SECTIONS[page.section]}", ""] + page.lines
         lines += ["<details><summary>Runs of this section</summary>", "", "```sh"] + page.commands
         lines += ["```", "", "</details>", ""]
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
-
-
-def anchor(title):
-    return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")
 
 
 def report(pages):
@@ -91,8 +80,9 @@ def report(pages):
 
 def parse(arguments):
     parser = argparse.ArgumentParser(
-        prog="validate", description="Holds the twin against thesis, catalogue, invariants and real drives; writes "
-        "validation.md and its figures. Exit code 0 only if every row holds, 1 if not or if a run failed.")
+        prog="validate", description="Holds the twin against thesis, catalogue and real drives. Writes all "
+        "rows with their figures to out/validation and, where nothing is left out or changed, the summary "
+        "docs/validation.md. Exit code 0 only if every row holds, 1 if not or if a run failed.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--telemetry", required=True, help=argparse.SUPPRESS)
@@ -103,8 +93,8 @@ def parse(arguments):
                         help="overlay for every run, after its own: a deliberately wrong parameter, say")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value",
                         help="one parameter for every run, after its own")
-    parser.add_argument("--out", metavar="DIR", help="folder of page and figures (default: docs/ of the checkout; "
-                        "needed to write a page with --section, --fast, --config or --set)")
+    parser.add_argument("--out", metavar="DIR", help="folder of all rows and figures (default: out/validation of the "
+                        "checkout; needed to write them with --section, --fast, --config or --set)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="sections at a time")
     options = parser.parse_args(arguments)
     for path in options.config:
@@ -119,7 +109,7 @@ def main(arguments):
     overlays = [word for path in options.config for word in ("--config", os.path.abspath(path))]
     overlays += [word for assignment in options.set for word in ("--set", assignment)]
     whole = not (options.section or options.fast or overlays)
-    out = options.out or (options.docs if whole else None)
+    out = options.out or (os.path.join(os.path.dirname(options.docs), "out", "validation") if whole else None)
     failed = False
     with tempfile.TemporaryDirectory(prefix="validate.") as work:
         pages = {}
@@ -144,6 +134,9 @@ def main(arguments):
             os.makedirs(out, exist_ok=True)
             write_page(os.path.join(out, "validation.md"), ordered)
             say(f"page: {shlex.quote(os.path.join(out, 'validation.md'))}")
+            if whole:
+                summary.write(options.docs, out, ordered, SECTIONS)
+                say(f"summary: {shlex.quote(os.path.join(options.docs, 'validation.md'))}")
     return 1 if report(ordered) or failed else 0
 
 

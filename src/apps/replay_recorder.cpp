@@ -179,7 +179,7 @@ int main(int argc, char** argv)
   hjt::Command root = line.root();
   root.add("played", played_bag, "the bag being played").required().existingFile();
   root.add("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
-  root.add("--joint-namespace", twin_namespace, "of the twin's topics");
+  root.add("--joint-namespace", twin_namespace, "ROS namespace of the twin's topics");
   root.add("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
       .range(1, 1U << 20U);
   root.flag("--force", force, "overwrite an existing output");

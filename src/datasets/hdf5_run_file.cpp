@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "datasets/file_seal.hpp"
+#include "datasets/hdf5_files.hpp"
 
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -306,72 +307,10 @@ void Hdf5RunFile::finish(OrderedJson record)
   bringToDisk(temporary_, path_);
 }
 
-std::string Hdf5RunFile::readText(const std::string& path, const char* name)
+std::unique_ptr<RunFile> makeHdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
+                                         const std::string& path)
 {
-  const auto lock = lockLibrary();
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.valid())
-  {
-    return {};
-  }
-  const Hdf5Handle dataset(H5Dopen2(file.get(), name, H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid())
-  {
-    return {};
-  }
-  const Hdf5Handle type(H5Dget_type(dataset.get()), H5Tclose);
-  std::string text(H5Tget_size(type.get()), '\0');
-  const bool read = H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
-  return read ? text : std::string();
-}
-
-Columns Hdf5RunFile::readColumns(const std::string& path, const std::vector<std::string>& holding)
-{
-  const auto lock = lockLibrary();
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.valid())
-  {
-    throw InputError(path + " cannot be read as HDF5");
-  }
-  const auto names = [](hid_t group)
-  {
-    std::vector<std::string> found;
-    const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t
-    {
-      static_cast<std::vector<std::string>*>(into)->emplace_back(name);
-      return 0;
-    };
-    H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &found);
-    return found;
-  };
-  for (const std::string& name : names(file.get()))
-  {
-    const Hdf5Handle group(H5Gopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.valid() || std::none_of(holding.begin(), holding.end(),
-                                       [&](const std::string& wanted)
-                                       { return H5Lexists(group.get(), wanted.c_str(), H5P_DEFAULT) > 0; }))
-    {
-      continue;
-    }
-    Columns columns;
-    for (const std::string& column : names(group.get()))
-    {
-      const Hdf5Handle dataset(H5Dopen2(group.get(), column.c_str(), H5P_DEFAULT), H5Dclose);
-      const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-      if (H5Sget_simple_extent_ndims(space.get()) != 1)
-      {
-        continue;  // a number for each tooth
-      }
-      std::vector<double> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
-      if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)
-      {
-        throw InputError(path + ": " + name + "/" + column + " cannot be read");
-      }
-      columns[column] = std::move(rows);
-    }
-    return columns;
-  }
-  return {};
+  return std::make_unique<Hdf5RunFile>(recording, spec, twin, path);
 }
 
 hid_t Hdf5RunFile::check(hid_t result) const

@@ -23,10 +23,6 @@ public:
   void record(Twin& twin, const DutyFeeder& feeder) override;
   void finish(OrderedJson record) override;
 
-  /// Of the data set of this name; empty if there is none.
-  static std::string readText(const std::string& path, const char* name);
-  static Columns readColumns(const std::string& path, const std::vector<std::string>& holding);
-
 private:
   struct ColumnData
   {

@@ -38,18 +38,12 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
   grease_severity_ = values.number(node, "grease_severity", "-", { 0.0, 1.0 }, GREASE_SEVERITY);
   const bool grease_changes = node.find("grease_changes") == nullptr || values.flag(node, "grease_changes");
   RevolutionLoadMap load_map(nominal, POSITIONS);
-  const PlanNode& files = required(node, "duties", PlanNode::Kind::LIST);
-  for (const auto& [key, file] : files.entries)
-  {
-    const std::string name = values.text(files, key);
-    duties_.emplace_back(name, DutyCycle::fromFile((std::filesystem::path(directory) / name).string()));
-    load_map.cover(duties_.back().second, [](double) {});
-  }
-  if (duties_.empty())
-  {
-    files.refuse("must name at least one duty cycle");
-  }
+  readDuties(required(node, "duties", PlanNode::Kind::LIST), directory);
   std::vector<DriveAgeing> ageing;
+  for (const auto& [name, duty] : duties_)
+  {
+    load_map.cover(duty, [](double) {});
+  }
   for (const auto& [name, duty] : duties_)
   {
     ageing.emplace_back(nominal, duty, load_map);
@@ -82,6 +76,20 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
     drive.life = ageing[drive.duty].live(drive.variation, longest, every, grease_changes, visit);
     check_ups_.pop_back();  // the end itself: the drive is out of use
     drives_.push_back(drive);
+  }
+}
+
+void Lives::readDuties(const PlanNode& files, const std::string& directory)
+{
+  const PlanValues values;
+  for (const auto& [key, file] : files.entries)
+  {
+    const std::string name = values.text(files, key);
+    duties_.emplace_back(name, DutyCycle::fromFile((std::filesystem::path(directory) / name).string()));
+  }
+  if (duties_.empty())
+  {
+    files.refuse("must name at least one duty cycle");
   }
 }
 

@@ -57,6 +57,7 @@ private:
     DriveAge age;
     double stress{};  // largest amplitude of the duty cycle, at the notch, without mean [Pa]
   };
+  void readDuties(const PlanNode& files, const std::string& directory);
   double stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const;
 
   Parameters nominal_;

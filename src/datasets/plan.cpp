@@ -190,7 +190,7 @@ void Plan::makeLives()
   {
     if (root_.find(other) != nullptr)
     {
-      root_.find(other)->refuse("has no place in a plan of lives: each check-up has the faults of the drive's wear");
+      root_.find(other)->refuse("is not allowed in a plan of lives: the faults follow from the drive's wear there");
     }
   }
   // The laws of ageing take the drive that is the same in all lives.
@@ -220,7 +220,7 @@ void Plan::makeLives()
     {
       if (variable->gridSize() > 1)
       {
-        variable->node().refuse("has no place in a plan of lives: draw it, or fix it");
+        variable->node().refuse("cannot be a grid in a plan of lives: give a distribution or one value");
       }
     }
   }

@@ -20,6 +20,9 @@ struct RecordingGroup
   std::vector<const RunColumn*> columns;
 };
 
+/// This build writes and reads HDF5 files.
+bool hasHdf5();
+
 enum class RunFormat
 {
   HDF5,
@@ -50,6 +53,10 @@ inline Recording readRecording(const PlanNode& record)
   if (format != "hdf5")
   {
     required(record, "format").refuse("is unknown; allowed: hdf5, bag");
+  }
+  if (!hasHdf5())
+  {
+    record.refuse("needs format: bag; hdf5 is not built: it needs HDF5");
   }
   allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
   recording.indicators = values.flag(record, "indicators");

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "datasets/bag_run_file.hpp"
-#include "datasets/hdf5_run_file.hpp"
+#include "datasets/hdf5_files.hpp"
 
 namespace hjt
 {
@@ -15,7 +15,7 @@ std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& 
   {
     return std::make_unique<BagRunFile>(twin, path);
   }
-  return std::make_unique<Hdf5RunFile>(recording, spec, twin, path);
+  return makeHdf5RunFile(recording, spec, twin, path);
 }
 
 const char* runFileExtension(RunFormat format)
@@ -29,19 +29,18 @@ OrderedJson readRunRecord(RunFormat format, const std::string& path)
   {
     return nullptr;
   }
-  const std::string text =
-      format == RunFormat::BAG ? BagRunFile::readRecord(path) : Hdf5RunFile::readText(path, "record");
+  const std::string text = format == RunFormat::BAG ? BagRunFile::readRecord(path) : readHdf5Text(path, "record");
   return OrderedJson::parse(text, nullptr, false);
 }
 
 std::string readRunParameters(const std::string& path)
 {
-  return Hdf5RunFile::readText(path, "parameters");
+  return readHdf5Text(path, "parameters");
 }
 
 Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding)
 {
-  return Hdf5RunFile::readColumns(path, holding);
+  return readHdf5Columns(path, holding);
 }
 
 double dataSize(const Recording& recording, double duration, int teeth)

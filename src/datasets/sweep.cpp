@@ -35,13 +35,13 @@ public:
   {
   }
 
-  void work(unsigned jobs, bool quiet)
+  void work(unsigned jobs)
   {
     std::vector<std::thread> threads = start(jobs);
     for (Progress progress("sweep"); running_ > 0;)
     {
       std::this_thread::sleep_for(std::chrono::milliseconds(3));
-      if (!quiet && simulated_ > 0)
+      if (simulated_ > 0)
       {
         progress.update(static_cast<double>(simulated_) / static_cast<double>(RunSimulation::WHOLE * todo_.size()));
       }
@@ -166,7 +166,7 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
   if (!todo.empty())
   {
     Workers workers(plan, directory, surface_source, todo);
-    workers.work(static_cast<unsigned>(std::min<std::size_t>(options.jobs, todo.size())), options.quiet);
+    workers.work(static_cast<unsigned>(std::min<std::size_t>(options.jobs, todo.size())));
     result.done = workers.done();
   }
   directory.writeIndex();

@@ -17,7 +17,6 @@ struct SweepOptions
   unsigned jobs{ 1 };
   std::uint64_t shard{};  ///< of `shards`: this process does the runs whose number leaves this remainder
   std::uint64_t shards{ 1 };
-  bool quiet{};  ///< no progress
 };
 
 struct SweepResult

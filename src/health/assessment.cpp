@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "health/signature_file.hpp"
+
 namespace hjt
 {
 namespace
@@ -43,9 +45,11 @@ std::string whyNotJudged(const Assessment& assessment)
 }
 
 Assessor::Assessor(const Parameters& parameters)
-  : least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
+  : signatures_(loadSignatures(parameters.indicators.signatures))
+  , least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
   , error_factor_(parameters.indicators.error_factor)
-  , baseline_(parameters)
+  , baseline_(parameters, signatures_)
+  , cause_search_(signatures_)
 {
 }
 
@@ -62,13 +66,13 @@ void Assessor::reset() noexcept
 const Assessment& Assessor::update(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   begin(indicators, model);
-  advance(CauseSearch::signatures());
+  advance(searchLength());
   return settled_;
 }
 
 void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
-  advance(CauseSearch::signatures());  // of the window before, if it is not done
+  advance(searchLength());  // of the window before, if it is not done
   judge(indicators, model);
   if (!is_searching_)
   {
@@ -103,9 +107,12 @@ void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators*
   else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
   {
     listEvidence(indicators, scores);
-    point_ = indicators.point;
-    cause_search_.start();
-    is_searching_ = true;
+    if (!signatures_->signatures.empty())  // else nothing is known of causes, not even that it is none of the known
+    {
+      point_ = indicators.point;
+      cause_search_.start();
+      is_searching_ = true;
+    }
   }
 }
 

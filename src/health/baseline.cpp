@@ -10,7 +10,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
-#include "health/carried_errors.hpp"
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
 #include "health/indicator_table.hpp"
 #include "health/reference_fit.hpp"
 
@@ -101,9 +101,9 @@ double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
 }
 
 /// What a reference carried to another motion is less sure by, where a mean is of so many windows.
-double carriedVariance(const ReferenceBin& bin, std::size_t indicator, double windows) noexcept
+double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
+                       double windows) noexcept
 {
-  const CarriedError& error = CARRIED_ERRORS[indicator];
   const double off = error.share * sizeOffModel(bin, indicator);
   // Below CARRIED_WINDOWS as if all of it were noise.
   return (error.deviation * error.deviation + off * off) * std::max(CARRIED_WINDOWS / windows, 1.0);
@@ -150,8 +150,9 @@ Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_
            place(INERTIA_ACCELERATION * point.inertia, 0, load_step, FARTHEST) };
 }
 
-Baseline::Baseline(const Parameters& parameters)
-  : windows_(parameters.indicators.baseline_windows)
+Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures)
+  : signatures_(std::move(signatures))
+  , windows_(parameters.indicators.baseline_windows)
   , evidence_windows_(static_cast<std::size_t>(parameters.indicators.evidence_windows))
   , least_spread_(parameters.indicators.least_spread)
   , load_step_(hjt::loadStep(parameters))
@@ -165,15 +166,16 @@ Baseline::Baseline(const Parameters& parameters)
   {
     floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
   }
-  bins_.reserve(MAX_BINS);
-  makeRoom();
+  const auto classes = static_cast<std::size_t>(parameters.indicators.baseline_classes);
+  bins_.reserve(classes);
+  sums_.reserve(classes);
+  makeRoom(classes);
 }
 
-void Baseline::makeRoom()
+void Baseline::makeRoom(std::size_t bins)
 {
-  const std::size_t bins = std::max(bins_.size(), bins_.capacity());
   recent_.assign(bins, {});
-  compared_.resize(bins * evidence_windows_);
+  compared_ = std::vector<Compared>(bins * evidence_windows_);
 }
 
 void Baseline::setReference(std::vector<ReferenceBin> bins, bool carried)
@@ -181,7 +183,8 @@ void Baseline::setReference(std::vector<ReferenceBin> bins, bool carried)
   bins_ = std::move(bins);
   given_ = true;
   carried_ = carried;
-  makeRoom();
+  sums_ = std::vector<LearnedSums>();
+  makeRoom(bins_.size());
 }
 
 void Baseline::reset() noexcept
@@ -190,6 +193,7 @@ void Baseline::reset() noexcept
   if (!given_)
   {
     bins_.clear();
+    sums_.clear();
   }
 }
 
@@ -201,11 +205,12 @@ ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
   {
     return &*found;
   }
-  if (given_ || bins_.size() == MAX_BINS)
+  if (given_ || bins_.size() == recent_.size())
   {
     return nullptr;
   }
   bins_.emplace_back().bin = bin;
+  sums_.emplace_back();
   return &bins_.back();
 }
 
@@ -235,16 +240,16 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   {
     return BaselineState::NO_REFERENCE;
   }
+  const auto index = static_cast<std::size_t>(bin - bins_.data());
   if (!given_ && bin->windows < windows_)
   {
-    learnWindow(*bin, indicators, placeIn(bin->bin, indicators.point, load_step_));
+    learnWindow(*bin, sums_[index], indicators, placeIn(bin->bin, indicators.point, load_step_));
     if (++windows_here_ == windows_)
     {
-      fitReference(*bin, bins_, fit_room_);
+      fitReference(*bin, sums_[index], bins_, sums_, fit_room_);
     }
     return BaselineState::LEARNING;
   }
-  const auto index = static_cast<std::size_t>(bin - bins_.data());
   Recent& recent = recent_[index];
   const std::size_t first = index * evidence_windows_;
   take(*bin, indicators, model, compared_[first + recent.next]);
@@ -376,11 +381,12 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Persistence persistence = persistenceOf(bin, reference);
     const double n = reference.count;
     const double fitted = reference.fitted ? bin.slopes_freedom : 0.0;
-    const double known_with = carried_ ? CARRIED_ERRORS[i].freedom : n;
+    const double known_with = carried_ ? signatures_->carried[i].freedom : n;
     const double freedom = std::clamp(persistence.independent * n - 1.0 - fitted, 1.0, known_with);
     const double h = (1.0 + (reference.fitted ? leverage * bin.windows : 0.0)) / n / persistence.independent;
     const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight,
-                             carried_ ? carriedVariance(bin, i, static_cast<double>(count)) : 0.0 };
+                             carried_ ? carriedVariance(bin, signatures_->carried[i], i, static_cast<double>(count)) :
+                                        0.0 };
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;

@@ -159,11 +159,12 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
       << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
       << "  # whether a model's indicators were subtracted\nbaseline:\n";
   FitRoom room;
-  for (ReferenceBin bin : baseline.bins())
+  for (std::size_t b = 0; b < baseline.bins().size(); ++b)
   {
+    ReferenceBin bin = baseline.bins()[b];
     if (!baseline.given())
     {
-      fitReference(bin, baseline.bins(), room);
+      fitReference(bin, baseline.sums()[b], baseline.bins(), baseline.sums(), room);
     }
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows

@@ -2,14 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Dense>
 
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
-#include "health/fitted_signatures.hpp"
 
 namespace hjt
 {
@@ -22,17 +21,6 @@ constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what 
 constexpr double SPEED_RANGE = 0.2;                                // of the logarithm, in which motions are alike
 constexpr double DIRECTION_RANGE = 0.3;                            // as well
 constexpr double OTHER_MOTION = 1e-3;                              // weight of a signature of no motion alike
-constexpr std::size_t FITTED_COUNT = std::size(FITTED_SIGNATURES);
-/// By the numbers of a signature.
-constexpr std::array<bool, SIGNATURE_SIZE> IS_FITTED = []
-{
-  std::array<bool, SIGNATURE_SIZE> fitted{};
-  for (const std::size_t number : FITTED_NUMBERS)
-  {
-    fitted[number] = true;
-  }
-  return fitted;
-}();
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
@@ -67,7 +55,7 @@ double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_
 class Terms
 {
 public:
-  explicit Terms(const WindowResidual& residual) : freedom_(residual.freedom)
+  Terms(const SignatureSet& set, const WindowResidual& residual) : set_(set), freedom_(residual.freedom)
   {
     for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
     {
@@ -107,8 +95,8 @@ public:
         changes[i] = changeBy(*signature, term);
         square += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
       }
-      widening = 1.0 + SIGNATURE_LENGTH_ERROR * SIGNATURE_LENGTH_ERROR * square;
-      of_lines = LINE_ERROR * LINE_ERROR * signature->severity * signature->severity;
+      widening = 1.0 + set_.length_error * set_.length_error * square;
+      of_lines = set_.line_error * set_.line_error * signature->severity * signature->severity;
     }
     CausesSquare inner = CausesSquare::Identity();
     Causes projected = Causes::Zero();
@@ -120,7 +108,7 @@ public:
       const Term& term = terms_[i];
       const double change = changes[i];
       const double mean = term.has_phase ? 0.0 : change;
-      const double share = term.has_phase ? 0.5 : SIGNATURE_ERROR * SIGNATURE_ERROR;
+      const double share = term.has_phase ? 0.5 : set_.number_error * set_.number_error;
       const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
       const double difference = term.difference - mean;
       const Causes weighted = term.common / variance;
@@ -154,7 +142,7 @@ private:
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
            std::optional<double> line_square = {}) noexcept
   {
-    if (IS_FITTED[number] && residual.own[indicator] > 0.0)
+    if (set_.fitted[number] && residual.own[indicator] > 0.0)
     {
       terms_[count_++] = { residual.difference[indicator],
                            residual.own[indicator],
@@ -166,6 +154,7 @@ private:
     }
   }
 
+  const SignatureSet& set_;
   const double freedom_;
   std::array<Term, INDICATOR_COUNT> terms_;
   std::size_t count_{};
@@ -184,23 +173,19 @@ double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
 }
 }  // namespace
 
-void CauseSearch::Sum::add(double logarithm, double prior, double severity) noexcept
+void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
 {
-  const double weight = prior * std::exp(EVIDENCE_WEIGHT * logarithm);
+  const double weight = prior * std::exp(weighted);
   priors += prior;
   total += weight;
   first += weight * severity;
   second += weight * severity * severity;
 }
 
-CauseSearch::CauseSearch() : likelihoods_(FITTED_COUNT + UNKNOWN_STRENGTHS.size())
+CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
+  : set_(std::move(set)), likelihoods_(set_->signatures.size() + UNKNOWN_STRENGTHS.size())
 {
   start();
-}
-
-std::size_t CauseSearch::signatures() noexcept
-{
-  return 2 * (FITTED_COUNT + UNKNOWN_STRENGTHS.size());
 }
 
 void CauseSearch::start() noexcept
@@ -212,32 +197,33 @@ void CauseSearch::start() noexcept
 
 void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept
 {
+  const std::vector<Signature>& known = set_->signatures;
   const std::size_t rows = likelihoods_.size();
   const std::size_t end = std::min(next_ + count, signatures());
   if (next_ < rows)
   {
-    const Terms terms(residual);
+    const Terms terms(*set_, residual);
     for (; next_ < std::min(end, rows); ++next_)
     {
-      likelihoods_[next_] = next_ < FITTED_COUNT ?
-                                terms.logLikelihood(&FITTED_SIGNATURES[next_], 0.0) :
-                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - FITTED_COUNT]);
+      likelihoods_[next_] = next_ < known.size() ?
+                                terms.logLikelihood(&known[next_], 0.0) :
+                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - known.size()]);
       largest_ = std::max(largest_, likelihoods_[next_]);
     }
   }
   for (; next_ < end; ++next_)
   {
     const std::size_t row = next_ - rows;
-    const double logarithm = likelihoods_[row] - largest_;
-    if (row < FITTED_COUNT)
+    const double weighted = set_->evidence_weight * (likelihoods_[row] - largest_);
+    if (row < known.size())
     {
-      const Signature& signature = FITTED_SIGNATURES[row];
-      sums_[static_cast<std::size_t>(signature.cause)].add(logarithm, likeness(signature.motion, point),
+      const Signature& signature = known[row];
+      sums_[static_cast<std::size_t>(signature.cause)].add(weighted, likeness(signature.motion, point),
                                                            signature.severity);
     }
     else
     {
-      sums_[static_cast<std::size_t>(Cause::NONE)].add(logarithm, 1.0, 0.0);
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(weighted, 1.0, 0.0);
     }
   }
 }
@@ -256,7 +242,8 @@ CausePosterior CauseSearch::posterior() const noexcept
       posterior.severity[cause] = sum.first / sum.total;
       const double mean = posterior.severity[cause];
       const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
-      posterior.severity_deviation[cause] = std::sqrt(square + SEVERITY_ERROR * SEVERITY_ERROR * mean * mean);
+      posterior.severity_deviation[cause] =
+          std::sqrt(square + set_->severity_error * set_->severity_error * mean * mean);
     }
   }
   for (double& probability : posterior.probability)

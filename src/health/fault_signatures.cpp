@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 
-#include "health/fitted_signatures.hpp"
 #include "health/indicator_table.hpp"
 
 namespace hjt
@@ -70,14 +67,6 @@ private:
   const Deviations& deviations_;
   FeatureScores& scores_;
 };
-/// NaN: the signatures were not fitted for it.
-double soundValue(ScalarIndicator indicator) noexcept
-{
-  const auto found = std::find(std::begin(FITTED_NUMBERS), std::end(FITTED_NUMBERS), indexOf(indicator));
-  return found == std::end(FITTED_NUMBERS) ? std::numeric_limits<double>::quiet_NaN() :
-                                             SOUND_VALUES[found - std::begin(FITTED_NUMBERS)];
-}
-
 }  // namespace
 
 const char* causeName(Cause cause) noexcept
@@ -90,17 +79,12 @@ const char* causeName(Cause cause) noexcept
   return describe(static_cast<FaultKind>(kind)).name;
 }
 
-SignatureTable faultSignatures() noexcept
-{
-  return { FITTED_SIGNATURES, std::size(FITTED_SIGNATURES) };
-}
-
-std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double share)
+std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indicator, double sign, double share)
 {
   std::vector<Cause> causes;
-  for (const Signature& signature : faultSignatures())
+  for (const Signature& signature : set.signatures)
   {
-    const double least = share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(soundValue(indicator)));
+    const double least = share * (isShare(signature.cause, indicator) ? 1.0 : std::abs(set.sound[indexOf(indicator)]));
     if (signature.severity == 1.0 && sign * signature.change[indexOf(indicator)] >= least &&
         std::find(causes.begin(), causes.end(), signature.cause) == causes.end())
     {

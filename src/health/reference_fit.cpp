@@ -64,18 +64,19 @@ bool isAlikeButForTemperature(OperatingBin one, const OperatingBin& other) noexc
   return one == other;
 }
 
-void fitLeverage(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexcept
+void fitLeverage(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
+                 const std::vector<LearnedSums>& all_sums) noexcept
 {
   SharedSquares squares = SharedSquares::Zero();
-  for (const ReferenceBin& other : bins)
+  for (std::size_t i = 0; i < bins.size(); ++i)
   {
-    if (isAlikeButForTemperature(other.bin, bin.bin) && other.windows >= MIN_FITTED)
+    if (isAlikeButForTemperature(bins[i].bin, bin.bin) && bins[i].windows >= MIN_FITTED)
     {
-      squares += SharedPlaces(other.sums.places, other.windows).squares;
+      squares += SharedPlaces(all_sums[i].windows.places, bins[i].windows).squares;
     }
   }
   const SharedSquares inverse = squares.inverse();
-  const SharedPlaces own(bin.sums.places, bin.windows);
+  const SharedPlaces own(sums.windows.places, bin.windows);
   Eigen::Map<Squares> leverage = mapped(bin.leverage);
   leverage.bottomRightCorner<SHARED, SHARED>() = inverse;
   leverage.topRightCorner<OWN, SHARED>() = -own.by_own * inverse;
@@ -84,21 +85,22 @@ void fitLeverage(ReferenceBin& bin, const std::vector<ReferenceBin>& bins) noexc
   bin.slopes_freedom = OWN + (inverse * own.squares).trace();
 }
 
-void fitSlopes(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, std::size_t indicator) noexcept
+void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<ReferenceBin>& bins,
+               const std::vector<LearnedSums>& all_sums, std::size_t indicator) noexcept
 {
   Reference& reference = bin.references[indicator];
-  const IndicatorSums& sums = bin.sums.by_indicator[indicator];
-  const IndicatorSums& steps = bin.steps.by_indicator[indicator];
+  const IndicatorSums& sums = learned.windows.by_indicator[indicator];
+  const IndicatorSums& steps = learned.steps.by_indicator[indicator];
   PlaceVector slopes = PlaceVector::Zero();
   reference.fitted = sums.count >= MIN_FITTED && sums.square > 0.0;
   if (reference.fitted)
   {
     SharedSquares squares = SharedSquares::Zero();
     SharedVector mixed = SharedVector::Zero();
-    for (const ReferenceBin& other : bins)
+    for (std::size_t i = 0; i < bins.size(); ++i)
     {
-      const IndicatorSums& others = other.sums.by_indicator[indicator];
-      if (isAlikeButForTemperature(other.bin, bin.bin) && others.count >= MIN_FITTED)
+      const IndicatorSums& others = all_sums[i].windows.by_indicator[indicator];
+      if (isAlikeButForTemperature(bins[i].bin, bin.bin) && others.count >= MIN_FITTED)
       {
         const SharedPlaces places(others.places, others.count);
         squares += places.squares;
@@ -111,8 +113,8 @@ void fitSlopes(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, std::si
     slopes.head<OWN>() = own.own_inverse * mapped(sums.mixed).head<OWN>() - own.by_own * slopes.tail<SHARED>();
     const double freedom = sums.count - 1.0 - OWN - (inverse * own.squares).trace();
     reference.variance = std::max(squareLeft(sums, slopes), 0.0) / freedom;
-    reference.mean =
-        bin.sums.means[indicator] + slopes.dot(mapped(bin.mean_place) - mapped(bin.sums.mean_places[indicator]));
+    reference.mean = learned.windows.means[indicator] +
+                     slopes.dot(mapped(bin.mean_place) - mapped(learned.windows.mean_places[indicator]));
   }
   mapped(reference.slopes) = slopes;
   reference.within = steps.count >= MIN_STEPS && reference.variance > 0.0 ?
@@ -122,7 +124,7 @@ void fitSlopes(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, std::si
 }
 
 /// Of the indicators that every window determined.
-void fitCommonCauses(ReferenceBin& bin, FitRoom& room) noexcept
+void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room) noexcept
 {
   using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;
   using Square = Eigen::Matrix<double, INDICATOR_COUNT, INDICATOR_COUNT, Eigen::RowMajor>;
@@ -139,19 +141,19 @@ void fitCommonCauses(ReferenceBin& bin, FitRoom& room) noexcept
     {
       const auto column = static_cast<Eigen::Index>(i);
       slopes.col(column) = mapped(reference.slopes);
-      mixed.col(column) = mapped(bin.sums.by_indicator[i].mixed);
-      scale[column] = 1.0 / std::sqrt(squareLeft(bin.sums.by_indicator[i], slopes.col(column)));
+      mixed.col(column) = mapped(sums.by_indicator[i].mixed);
+      scale[column] = 1.0 / std::sqrt(squareLeft(sums.by_indicator[i], slopes.col(column)));
       ++used;
     }
   }
-  mixed -= 0.5 * mapped(bin.sums.places) * slopes;
+  mixed -= 0.5 * mapped(sums.places) * slopes;
   Eigen::Map<Square> left(room.correlations.data());
   std::size_t pair = 0;
   for (Eigen::Index i = 0; i < left.rows(); ++i)
   {
     for (Eigen::Index j = 0; j <= i; ++j)
     {
-      left(i, j) = left(j, i) = bin.sums.indicators[pair++];
+      left(i, j) = left(j, i) = sums.indicators[pair++];
     }
   }
   left.noalias() -= slopes.transpose() * mixed;
@@ -184,11 +186,12 @@ void fitCommonCauses(ReferenceBin& bin, FitRoom& room) noexcept
 }
 }  // namespace
 
-void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Place& here) noexcept
+void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators& indicators,
+                 const Place& here) noexcept
 {
   ++bin.windows;
-  ReferenceSums& sums = bin.sums;
-  StepSums& steps = bin.steps;
+  ReferenceSums& sums = learned.windows;
+  StepSums& steps = learned.steps;
   const bool follows = bin.windows > 1 && indicators.windows == steps.last_window + 1;
   bin.runs += follows ? 0 : 1;
   const double weight = (bin.windows - 1.0) / bin.windows;
@@ -230,17 +233,18 @@ void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Pl
   steps.last_place = here;
 }
 
-void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, FitRoom& room) noexcept
+void fitReference(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
+                  const std::vector<LearnedSums>& all_sums, FitRoom& room) noexcept
 {
   if (bin.windows < MIN_FITTED)
   {
     return;
   }
-  fitLeverage(bin, bins);
+  fitLeverage(bin, sums, bins, all_sums);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    fitSlopes(bin, bins, i);
+    fitSlopes(bin, sums, bins, all_sums, i);
   }
-  fitCommonCauses(bin, room);
+  fitCommonCauses(bin, sums.windows, room);
 }
 }  // namespace hjt

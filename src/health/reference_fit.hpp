@@ -32,13 +32,14 @@ inline Eigen::Map<PlaceVector> mapped(Place& place) noexcept
 }
 
 /// Takes a window up into the sums of its class; `here`: its place there. Does not allocate.
-void learnWindow(ReferenceBin& bin, const SignalIndicators& indicators, const Place& here) noexcept;
+void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& indicators, const Place& here) noexcept;
 
 /// Makes of the sums what windows are compared with: the straight line over the place by least squares, and of what it
 /// leaves the first principal components of the correlations, as many as stand out of noise, COMMON_CAUSES at most:
 /// eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967).
 /// Slopes over load and payload are those of all of `bins` that differ from this one, one of them, in temperature at
 /// most: a class sees few payloads. Slopes of indicators that 16 windows determined, components of those that every
-/// window did. Does not allocate.
-void fitReference(ReferenceBin& bin, const std::vector<ReferenceBin>& bins, FitRoom& room) noexcept;
+/// window did. `all_sums`: by `bins`. Does not allocate.
+void fitReference(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
+                  const std::vector<LearnedSums>& all_sums, FitRoom& room) noexcept;
 }  // namespace hjt

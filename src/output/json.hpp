@@ -52,6 +52,14 @@ public:
   /// The member of this name, dots going deeper ("peak.torque"); made where it is missing.
   Json& operator[](const std::string& path);
 
+  /// Calls `visitor` with what it is: nullptr, bool, std::int64_t, double, text, std::vector<Json> or
+  /// std::vector<Member>.
+  template <class Visitor>
+  decltype(auto) visit(const Visitor& visitor) const
+  {
+    return std::visit(visitor, value_);
+  }
+
   std::string dump() const;       ///< indented document
   double number() const;          ///< of a number or a truth value; else NaN
   std::string shortText() const;  ///< for people: numbers with seven digits, truth as yes or no

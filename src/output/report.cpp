@@ -59,23 +59,28 @@ void Table::print() const
   printTable(headings, rows);
 }
 
+Json documentOf(const Report& report)
+{
+  Json document;
+  for (const ReportLine& line : report.lines)
+  {
+    if (!line.key.empty())
+    {
+      document[line.key] = line.value;
+    }
+  }
+  for (const ReportTable& table : report.tables)
+  {
+    document[table.key] = table.table.rows();
+  }
+  return document;
+}
+
 void printReport(bool json, const std::vector<ReportLine>& lines, const std::vector<ReportTable>& tables)
 {
   if (json)
   {
-    Json document;
-    for (const ReportLine& line : lines)
-    {
-      if (!line.key.empty())
-      {
-        document[line.key] = line.value;
-      }
-    }
-    for (const ReportTable& table : tables)
-    {
-      document[table.key] = table.table.rows();
-    }
-    std::cout << document.dump() << '\n';
+    std::cout << documentOf({ lines, tables }).dump() << '\n';
     return;
   }
   std::vector<NamedValue> values;

@@ -123,6 +123,15 @@ struct ReportTable
   Table table;
 };
 
-/// What a command found out: on stdout as lines and tables for people, or as one JSON document.
+/// What a function found out.
+struct Report
+{
+  std::vector<ReportLine> lines;
+  std::vector<ReportTable> tables;
+};
+
+Json documentOf(const Report& report);
+
+/// On stdout as lines and tables for people, or as one JSON document.
 void printReport(bool json, const std::vector<ReportLine>& lines, const std::vector<ReportTable>& tables = {});
 }  // namespace hjt

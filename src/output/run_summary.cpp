@@ -30,7 +30,7 @@ void warnOf(const TwinCounters& counters)
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");
   warn(counters.step_cuts, "steps needed a shorter path to converge");
   warn(counters.jumps, "steps made a tooth jump to another space, through a tip");
-  warn(counters.coarse_steps, "steps were too long for how fast the joint swings; raise solver.rate");
+  warn(counters.coarse_steps, "steps were too long for the joint's fastest natural mode; raise solver.rate");
   warn(counters.solver_failures, "steps did not converge; the last good state was held");
 }
 }  // namespace

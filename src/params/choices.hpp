@@ -47,11 +47,9 @@ constexpr ChoiceNames<SceneKind, 2> choiceNames(SceneKind)
   return { { { "full_ring", SceneKind::FULL_RING }, { "auto", SceneKind::AUTO } } };
 }
 
-constexpr ChoiceNames<StepperKind, 3> choiceNames(StepperKind)
+constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
 {
-  return { { { "leapfrog", StepperKind::LEAPFROG },
-             { "runge_kutta4", StepperKind::RUNGE_KUTTA4 },
-             { "adaptive", StepperKind::ADAPTIVE } } };
+  return { { { "leapfrog", StepperKind::LEAPFROG }, { "adaptive", StepperKind::ADAPTIVE } } };
 }
 
 constexpr ChoiceNames<InputMode, 4> choiceNames(InputMode)

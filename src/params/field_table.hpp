@@ -259,8 +259,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
   visit("solver.stepper", p.solver.stepper,
-        ofOthers("leapfrog: one ring solve a step, exact stiction; runge_kutta4: Boost.odeint's, four solves a step; "
-                 "adaptive: steps of their own length on the response surface (solver.scene: auto), offline"));
+        ofOthers("leapfrog: one ring solve a step, exact stiction; adaptive: steps of their own length on the response "
+                 "surface (solver.scene: auto), offline"));
   visit("solver.tolerance", "rad", p.solver.tolerance, Range{ 1e-13, 1e-5 },
         ofOthers("adaptive: error of a step, of the output's angle"));
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
@@ -322,6 +322,8 @@ void visitFields(P& p, Visitor&& visit)
                  "torque of inertia than this is left out"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("windows at one operating point the healthy reference is learned from"));
+  visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
+        ofOthers("classes of operating points the healthy reference is learned of at most, 0.2 MB of memory each"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
@@ -330,6 +332,9 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("windows of an operating point that a verdict is made of the mean of"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         ofOthers("a deviation of this many times the threshold is an error, not a warning"));
+  visit("indicators.signatures", p.indicators.signatures,
+        ofOthers("none, or the file of what faults change in the indicators of this gear: beside the default "
+                 "configuration or a path"));
   visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
         ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
   visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));

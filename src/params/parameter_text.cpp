@@ -1,162 +1,122 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <functional>
+#include <array>
 #include <utility>
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/choices.hpp"
-#include "params/field_table.hpp"
+#include "params/field_rows.hpp"
 
 namespace hjt
 {
 namespace
 {
-using Fields = std::function<bool(Shapes)>;
-
-/// Writes each requested field as `section.key: value  # [unit] meaning`.
-class FieldWriter
+/// Makes a row of each field.
+class RowMaker
 {
 public:
-  explicit FieldWriter(Fields fields = [](Shapes) { return true; }) : fields_(std::move(fields)) {}
-
-  void operator()(const std::string& key, const char* unit, double value, const Range&, const Meaning& meaning)
+  void operator()(const std::string& key, const char* unit, double value, const Range& range, const Meaning& meaning)
   {
-    write(key, numberText(value), unit, meaning);
+    rows.push_back({ key, "float", unit, range, {}, numberText(value), meaning });
   }
-
-  void operator()(const std::string& key, const char* unit, int value, const Range&, const Meaning& meaning)
+  void operator()(const std::string& key, const char* unit, int value, const Range& range, const Meaning& meaning)
   {
-    write(key, std::to_string(value), unit, meaning);
+    rows.push_back({ key, "int", unit, range, {}, std::to_string(value), meaning });
   }
-
   template <std::size_t N>
-  void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range&,
+  void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range& range,
                   const Meaning& meaning)
   {
-    write(key, "[" + joined(values, ", ", numberText) + "]", unit, meaning);
+    const std::string text = "[" + joined(values, ", ", numberText) + "]";
+    rows.push_back({ key, std::to_string(N) + " floats", unit, range, {}, text, meaning });
   }
-
   void operator()(const std::string& key, bool value, const Meaning& meaning)
   {
-    write(key, value ? "true" : "false", "-", meaning);
+    rows.push_back({ key, "bool", "-", {}, {}, value ? "true" : "false", meaning });
   }
-
   void operator()(const std::string& key, const std::string& value, const Meaning& meaning)
   {
-    write(key, "\"" + value + "\"", "-", meaning);
+    rows.push_back({ key, "text", "-", {}, {}, "\"" + value + "\"", meaning });
   }
-
   template <class Choice>
   std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice value, const Meaning& meaning)
   {
+    FieldRow row{ key, "text", "-", {}, {}, "", meaning };
     for (const auto& [name, choice] : choiceNames(Choice{}))
     {
-      if (choice == value)
-      {
-        write(key, name, "-", meaning);
-      }
+      row.choices.emplace_back(name);
+      row.value = choice == value ? name : row.value;
     }
+    rows.push_back(std::move(row));
   }
 
-  std::string text() const { return text_.str(); }
-
-private:
-  void write(const std::string& key, const std::string& value, const char* unit, const Meaning& meaning)
-  {
-    if (fields_(meaning.shapes))
-    {
-      text_ << key << ": " << value << "  # [" << unit << "] " << meaning.text << '\n';
-    }
-  }
-
-  Fields fields_;
-  TextStream text_;
+  std::vector<FieldRow> rows;
 };
 
-/// Writes each field as a row of a Markdown table.
-class TableWriter
+/// `section.key: value  # [unit] meaning`.
+std::string lineOf(const FieldRow& row)
 {
-public:
-  TableWriter() { table_ << "| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n"; }
+  return row.key + ": " + row.value + "  # [" + row.unit + "] " + row.meaning.text + '\n';
+}
 
-  void operator()(const std::string& key, const char* unit, double, const Range& range, const Meaning& meaning)
+std::string allowedText(const FieldRow& row)
+{
+  if (row.range)
   {
-    row(key, "float", unit, rangeText(range), meaning);
+    return rangeText(*row.range);
   }
-
-  void operator()(const std::string& key, const char* unit, int, const Range& range, const Meaning& meaning)
-  {
-    row(key, "int", unit, rangeText(range), meaning);
-  }
-
-  template <std::size_t N>
-  void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
-                  const Meaning& meaning)
-  {
-    row(key, std::to_string(N) + " floats", unit, rangeText(range), meaning);
-  }
-
-  void operator()(const std::string& key, bool, const Meaning& meaning)
-  {
-    row(key, "bool", "-", "true, false", meaning);
-  }
-
-  void operator()(const std::string& key, const std::string&, const Meaning& meaning)
-  {
-    row(key, "text", "-", "not empty", meaning);
-  }
-
-  template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
-  {
-    const auto name = [](const auto& choice) { return choice.first; };
-    row(key, "text", "-", joined(choiceNames(Choice{}), ", ", name), meaning);
-  }
-
-  std::string text() const { return table_.str(); }
-
-private:
-  void row(const std::string& key, const std::string& type, const std::string& unit, const std::string& range,
-           const Meaning& meaning)
-  {
-    table_ << "| `" << key << "` | " << type << " | " << unit << " | " << range << " | " << meaning.text << " |\n";
-  }
-
-  TextStream table_;
-};
+  return row.type == "bool" ? "true, false" : row.choices.empty() ? "not empty" : joined(row.choices);
+}
 }  // namespace
+
+std::vector<FieldRow> fieldRows(const Parameters& parameters)
+{
+  RowMaker maker;
+  visitFields(parameters, maker);
+  return std::move(maker.rows);
+}
 
 std::string describeParameters(const Parameters& parameters)
 {
-  FieldWriter writer;
-  visitFields(parameters, writer);
+  RowMaker maker;
+  visitFields(parameters, maker);
   int number = 0;
   for (const Fault& fault : parameters.faults)
   {
     const std::string key = faultKey(number++) + '.';
-    writer(key + "kind", std::string(describe(fault.kind).name), "kind of the fault");
-    writer(key + "severity", "-", fault.severity, {}, "severity");
-    writer(key + "place", placeName(describe(fault.kind).place), fault.place, {}, "where; -1: the whole member");
-    writer(key + "onset", "s", fault.onset, {}, "after the start");
+    maker(key + "kind", std::string(describe(fault.kind).name), "kind of the fault");
+    maker(key + "severity", "-", fault.severity, {}, "severity");
+    maker(key + "place", placeName(describe(fault.kind).place), fault.place, {}, "where; -1: the whole member");
+    maker(key + "onset", "s", fault.onset, {}, "after the start");
   }
-  return writer.text();
+  std::string text;
+  for (const FieldRow& row : maker.rows)
+  {
+    text += lineOf(row);
+  }
+  return text;
 }
 
 std::string describeSurfaceParameters(const Parameters& parameters, bool faulty)
 {
-  FieldWriter writer([faulty](Shapes shapes)
-                     { return shapes == Shapes::SURFACE || (faulty && shapes == Shapes::FAULTS); });
-  visitFields(parameters, writer);
-  return writer.text();
+  std::string text;
+  for (const FieldRow& row : fieldRows(parameters))
+  {
+    const Shapes shapes = row.meaning.shapes;
+    text += shapes == Shapes::SURFACE || (faulty && shapes == Shapes::FAULTS) ? lineOf(row) : "";
+  }
+  return text;
 }
 
 std::string parameterTableMarkdown()
 {
-  TableWriter writer;
-  const Parameters parameters;
-  visitFields(parameters, writer);
-  return writer.text();
+  std::string table = "| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n";
+  for (const FieldRow& row : fieldRows(Parameters()))
+  {
+    table += "| `" + row.key + "` | " + row.type + " | " + row.unit + " | " + allowedText(row) + " | " +
+             row.meaning.text + " |\n";
+  }
+  return table;
 }
 }  // namespace hjt

@@ -37,9 +37,9 @@ public:
 
 private:
   Configuration() = default;
-  void overlay(const py::handle& what);
   void take(const ParameterMap& map);
 
+  bool has_own_directory_{};
   std::string directory_;
   ParameterMap map_;
   Parameters values_;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <chrono>
-
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "python/bindings.hpp"
 
@@ -8,12 +6,6 @@ namespace hjt
 {
 namespace
 {
-double now()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-constexpr double INTERRUPT_PERIOD = 0.05;  // [s]
-
 void bindErrors(py::module& module)
 {
   // The one registered last is asked first.
@@ -26,23 +18,6 @@ void bindErrors(py::module& module)
   module.attr("NotConverged").attr("__doc__") = "No equilibrium of the ring was found; the text tells what to do.";
 }
 }  // namespace
-
-InterruptCheck::InterruptCheck() : next_(now() + INTERRUPT_PERIOD) {}
-
-void InterruptCheck::operator()()
-{
-  const double time = now();
-  if (time < next_)
-  {
-    return;
-  }
-  next_ = time + INTERRUPT_PERIOD;
-  const py::gil_scoped_acquire acquire;
-  if (PyErr_CheckSignals() != 0)
-  {
-    throw Interrupted{};
-  }
-}
 
 py::array_t<double> viewOf(const std::vector<double>& values, const py::object& owner)
 {

@@ -7,15 +7,14 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
-#include "params/field_table.hpp"
+#include "params/field_rows.hpp"
 #include "python/configuration.hpp"
+#include "python/overlays.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr const char* ORIGIN = "Python";  // of values, in error texts
-
 /// One parameter, whatever its value.
 struct Field
 {
@@ -28,61 +27,20 @@ struct Field
   std::string meaning;
 };
 
-/// Makes a row of each parameter of the field table.
-class FieldLister
-{
-public:
-  void operator()(const std::string& key, const char* unit, double, const Range& range, const Meaning& meaning)
-  {
-    add(key, "float", unit, range, meaning);
-  }
-  void operator()(const std::string& key, const char* unit, int, const Range& range, const Meaning& meaning)
-  {
-    add(key, "int", unit, range, meaning);
-  }
-  template <std::size_t N>
-  void operator()(const std::string& key, const char* unit, const std::array<double, N>&, const Range& range,
-                  const Meaning& meaning)
-  {
-    add(key, std::to_string(N) + " floats", unit, range, meaning);
-  }
-  void operator()(const std::string& key, bool, const Meaning& meaning)
-  {
-    fields_.push_back({ key, "bool", "-", {}, {}, {}, meaning.text });
-  }
-  void operator()(const std::string& key, const std::string&, const Meaning& meaning)
-  {
-    fields_.push_back({ key, "str", "-", {}, {}, {}, meaning.text });
-  }
-  template <class Choice>
-  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice, const Meaning& meaning)
-  {
-    std::vector<std::string> names;
-    for (const auto& [name, choice] : choiceNames(Choice{}))
-    {
-      names.emplace_back(name);
-    }
-    fields_.push_back({ key, "str", "-", {}, {}, names, meaning.text });
-  }
-
-  std::vector<Field> take() { return std::move(fields_); }
-
-private:
-  void add(const std::string& key, const std::string& type, const char* unit, const Range& range,
-           const Meaning& meaning)
-  {
-    fields_.push_back({ key, type, unit, range.min, range.max, {}, meaning.text });
-  }
-
-  std::vector<Field> fields_;
-};
-
 std::vector<Field> allFields()
 {
-  FieldLister lister;
-  const Parameters none;
-  visitFields(none, lister);
-  return lister.take();
+  std::vector<Field> fields;
+  for (FieldRow& row : fieldRows(Parameters()))
+  {
+    Field field{ row.key, row.type == "text" ? "str" : row.type, row.unit, {}, {}, row.choices, row.meaning.text };
+    if (row.range)
+    {
+      field.minimum = row.range->min;
+      field.maximum = row.range->max;
+    }
+    fields.push_back(std::move(field));
+  }
+  return fields;
 }
 
 Field fieldOf(const std::string& key)
@@ -148,65 +106,6 @@ void visitValues(const Parameters& parameters, const Take& take)
                   take(key, second);
                 }
               });
-}
-
-double numberFrom(const py::handle& value, const std::string& key)
-{
-  const double number = PyFloat_AsDouble(value.ptr());
-  if (number == -1.0 && PyErr_Occurred() != nullptr)
-  {
-    PyErr_Clear();
-    throw ParameterError(std::string(ORIGIN) + ": " + key + " = " + py::cast<std::string>(py::repr(value)) +
-                         " is neither a number, a text, a truth value nor a list of numbers");
-  }
-  return number;
-}
-
-/// Not so an array of no dimension, which is a number.
-bool isList(const py::handle& value)
-{
-  const bool is_list = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) >= 0;
-  PyErr_Clear();
-  return is_list;
-}
-
-ParameterValue parameterValue(const py::handle& value, const std::string& key)
-{
-  const auto is_named = [&](const char* name)
-  { return py::cast<std::string>(value.attr("__class__").attr("__name__")) == name; };
-  if (PyBool_Check(value.ptr()) || is_named("bool_") || is_named("bool"))
-  {
-    return { PyObject_IsTrue(value.ptr()) == 1, ORIGIN };
-  }
-  if (py::isinstance<py::str>(value))
-  {
-    return { py::cast<std::string>(value), ORIGIN };
-  }
-  if (isList(value))
-  {
-    std::vector<double> numbers;
-    for (const auto& item : value)
-    {
-      numbers.push_back(numberFrom(item, key));
-    }
-    return { numbers, ORIGIN };
-  }
-  if (PyIndex_Check(value.ptr()))
-  {
-    // A numpy scalar is no Python int.
-    const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
-    return whole ? ParameterValue{ py::cast<std::int64_t>(whole), ORIGIN } : throw py::error_already_set();
-  }
-  return { numberFrom(value, key), ORIGIN };
-}
-
-void put(const py::dict& values, ParameterMap& map)
-{
-  for (const auto& item : values)
-  {
-    const auto key = py::cast<std::string>(item.first);
-    map[key] = parameterValue(item.second, key);
-  }
 }
 
 void putFaults(const std::vector<Fault>& faults, ParameterMap& map)
@@ -279,30 +178,14 @@ void bindFaults(py::module& module)
 }  // namespace
 
 Configuration::Configuration(const py::args& overlays, const std::string& directory)
-  : directory_(configurationDirectory(directory).string())
+  : has_own_directory_(!directory.empty()), directory_(configurationDirectory(directory).string())
 {
   readDefaultConfiguration(directory_, map_);
   for (const auto& what : overlays)
   {
-    overlay(what);
+    readOverlay(what, directory_, map_);
   }
-  values_ = parseParameters(map_);
-}
-
-/// Reads one overlay into the map, unchecked.
-void Configuration::overlay(const py::handle& what)
-{
-  if (py::isinstance<py::dict>(what))
-  {
-    put(py::reinterpret_borrow<py::dict>(what), map_);
-    return;
-  }
-  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(what.ptr()));
-  if (!path)
-  {
-    throw py::error_already_set();
-  }
-  readYamlFile(findConfiguration(py::cast<std::string>(path), directory_), map_);
+  take(map_);
 }
 
 Configuration Configuration::with(const ParameterMap& map) const
@@ -315,6 +198,11 @@ Configuration Configuration::with(const ParameterMap& map) const
 void Configuration::take(const ParameterMap& map)
 {
   values_ = parseParameters(map);
+  std::string& signatures = values_.indicators.signatures;
+  if (has_own_directory_ && signatures != NO_FILE)
+  {
+    signatures = findConfiguration(signatures, directory_);
+  }
   map_ = map;
 }
 

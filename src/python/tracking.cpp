@@ -6,6 +6,7 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
+#include "python/comparison_row.hpp"
 #include "python/configuration.hpp"
 #include "python/in_use.hpp"
 #include "python/surface_source.hpp"
@@ -13,64 +14,9 @@
 
 namespace hjt
 {
-/// Measured joint and prediction of a healthy one. Names as in Comparison.msg.
-struct ComparisonRow
-{
-  double time;
-  double position_measured;
-  double position_predicted;
-  double position_residual;
-  double position_band;
-  double velocity_measured;
-  double velocity_predicted;
-  double velocity_residual;
-  double current_measured;
-  double current_predicted;
-  double current_residual;
-  double current_band;
-  double residual_torque;
-  double joint_torque;
-  double friction_torque;
-  double load_torque;
-  double temperature;
-  double housing_temperature;
-  bool load_told;
-  bool temperature_received;
-  bool sticking;
-  bool after_gap;
-  bool outside_band;
-};
-
 namespace
 {
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-ComparisonRow rowOf(const Comparison& now) noexcept
-{
-  return { now.time,
-           now.position.measured,
-           now.position.predicted,
-           now.position.residual(),
-           now.position.band,
-           now.velocity.measured,
-           now.velocity.predicted,
-           now.velocity.residual(),
-           now.current.measured,
-           now.current.predicted,
-           now.current.residual(),
-           now.current.band,
-           now.residual_torque,
-           now.joint_torque,
-           now.friction_torque,
-           now.load_torque,
-           now.temperature,
-           now.housing_temperature,
-           now.load_provided,
-           now.temperature_received,
-           now.sticking,
-           now.after_gap,
-           now.isOutside() };
-}
 
 /// A column of a recording; none: not recorded.
 class Recorded

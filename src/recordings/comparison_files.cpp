@@ -167,39 +167,49 @@ Json contentsJson(const RecordingContents& contents)
            { "not_used", contents.other_topics } };
 }
 
-/// The fields of Verdict.msg, and what else a page shows.
+Json namesOf(const std::vector<WeightedCause>& causes)
+{
+  std::vector<std::string> names;
+  for (const WeightedCause& cause : causes)
+  {
+    names.emplace_back(causeName(cause.cause));
+  }
+  return names;
+}
+
+/// With what else a page shows.
 Json verdictJson(const Verdict& verdict)
 {
-  const auto names = [](const std::vector<WeightedCause>& causes)
-  {
-    std::vector<std::string> all;
-    for (const WeightedCause& cause : causes)
-    {
-      all.emplace_back(causeName(cause.cause));
-    }
-    return Json(all);
-  };
   const std::vector<Column<Finding>> columns{
     { "title", [](const Finding& finding) { return subjectTitle(finding.subject); } },
     { "level", [](const Finding& finding) { return levelName(finding.level); } },
     { "reason", [](const Finding& finding) { return reasonName(finding.reason); } },
     { "text", [&](const Finding& finding) { return findingText(verdict, finding); } },
-    { "causes", [&](const Finding& finding) { return names(finding.causes); } }
+    { "causes", [](const Finding& finding) { return namesOf(finding.causes); } }
   };
+  Json all = verdictFields(verdict);
+  all["findings"] = Table(columns, verdict.findings).rows();
+  all["cannot_show"] = hiddenTexts(verdict);
+  return all;
+}
+}  // namespace
+
+Json verdictFields(const Verdict& verdict)
+{
   const std::vector<WeightedCause> causes = causesOf(verdict);
   std::vector<double> weights;
   for (const WeightedCause& cause : causes)
   {
     weights.push_back(cause.weight);
   }
-  std::vector<std::string> figure_names;
-  std::vector<double> figure_values;
-  std::vector<std::string> figure_units;
+  std::vector<std::string> names;
+  std::vector<double> values;
+  std::vector<std::string> units;
   for (const NamedFigure& figure : evidenceOf(verdict))
   {
-    figure_names.push_back(figure.name);
-    figure_values.push_back(figure.value);
-    figure_units.emplace_back(figure.unit);
+    names.push_back(figure.name);
+    values.push_back(figure.value);
+    units.emplace_back(figure.unit);
   }
   return { { "joint", verdict.joint },
            { "level", levelName(verdict.level) },
@@ -209,16 +219,13 @@ Json verdictJson(const Verdict& verdict)
            { "friction_lower", verdict.friction.lower },
            { "friction_upper", verdict.friction.upper },
            { "friction_has_interval", verdict.friction.has_interval },
-           { "causes", names(causes) },
+           { "causes", namesOf(causes) },
            { "cause_weights", weights },
-           { "evidence_names", figure_names },
-           { "evidence_values", figure_values },
-           { "evidence_units", figure_units },
-           { "text", verdictText(verdict) },
-           { "findings", Table(columns, verdict.findings).rows() },
-           { "cannot_show", hiddenTexts(verdict) } };
+           { "evidence_names", names },
+           { "evidence_values", values },
+           { "evidence_units", units },
+           { "text", verdictText(verdict) } };
 }
-}  // namespace
 
 SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
@@ -241,7 +248,7 @@ SoundJoint readSoundJoint(const std::string& directory, const Parameters& parame
   return sound;
 }
 
-void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record)
 {
   writeCourse(directory + "/course.csv", comparison);
@@ -296,5 +303,6 @@ void writeComparison(const std::string& directory, const RecordingComparison& co
                   { "windows_assessed", comparison.evidence().assessedWindows() },
                   { "health", healthJson(comparison) } };
   writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
+  return all;
 }
 }  // namespace hjt

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "output/json.hpp"
 #include "recordings/recording_comparison.hpp"
 #include "recordings/recording_contents.hpp"
 
@@ -26,11 +27,14 @@ struct ComparisonRecord
   Verdict verdict;
 };
 
+/// The fields of Verdict.msg; level and reason by name.
+Json verdictFields(const Verdict& verdict);
+
 /// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
 /// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
-/// of the recording.
+/// of the recording. Gives what COMPARISON_FILE holds.
 /// @throws InputError if a file cannot be written.
-void writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);
 
 /// What an earlier comparison left of the joint when it was sound.

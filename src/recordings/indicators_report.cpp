@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "output/output_file.hpp"
-#include "output/report.hpp"
 #include "output/text_table.hpp"
 
 #include "base/number_text.hpp"
@@ -192,11 +191,12 @@ void writeWindows(const std::string& path, const std::vector<WindowResult>& wind
   writeTable(path, fileColumns(), windows);
 }
 
-void printDocument(const std::vector<WindowResult>& windows, double threshold)
+Report reportOf(const AssessedWindows& found)
 {
-  printReport(true, { { "threshold", "", threshold },
-                      { "windows", "", Table(documentColumns(), windows).rows() },
-                      { "assessment", "", toJson(windows.back().assessment) } });
+  return { { { "threshold", "", found.threshold },
+             { "windows", "", Table(documentColumns(), found.windows).rows() },
+             { "assessment", "", toJson(found.windows.back().assessment) } },
+           {} };
 }
 
 void printSummary(const std::vector<WindowResult>& windows)

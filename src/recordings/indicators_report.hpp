@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/health/assessment.hpp"
+#include "output/report.hpp"
 
 namespace hjt
 {
@@ -20,10 +21,19 @@ struct WindowResult
   Assessment assessment;
 };
 
+/// The windows of all recordings.
+struct AssessedWindows
+{
+  std::vector<WindowResult> windows;  ///< none: stopped before the first
+  double threshold{};                 ///< of the scores
+  bool is_judged{};                   ///< at least one of them
+};
+
 /// A CSV file with a row per window; no path: none.
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows);
 
-void printDocument(const std::vector<WindowResult>& windows, double threshold);
+/// With every window.
+Report reportOf(const AssessedWindows& found);
 
 /// The last window, for people.
 void printSummary(const std::vector<WindowResult>& windows);

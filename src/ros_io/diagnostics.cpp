@@ -63,7 +63,7 @@ void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status
   status.add("Alternatives", alternatives.data());
   status.add("Confidence [-]", assessment.confidence);
   status.add("Severity [-]", assessment.severity);
-  status.add("Its standard deviation [-]", assessment.severity_deviation);
+  status.add("Severity, standard deviation [-]", assessment.severity_deviation);
   status.add("Evidence", evidence.data());
   status.add("Largest score over threshold [-]", assessment.largest_score);
   status.add("Windows", assessment.windows);
@@ -145,15 +145,15 @@ void Diagnostics::logClockJumps()
 DiagnosticVerdict Diagnostics::judgeDrive() const
 {
   using D = DiagnosticStatus;
-  return firstOf(
-      { { !snapshot_.loop.outputs.converged || solver_failures_.areRecent(),
-          { D::ERROR, "The solver did not converge: the last good state is held" } },
-        { step_cuts_.areRecent(), { D::WARN, "Steps had to be cut to converge" } },
-        { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
-        { coarse_steps_.areRecent(), { D::WARN, "Steps too long for how fast the joint swings: raise solver.rate" } },
-        { overloads_.areRecent(), { D::WARN, "Torque at the joint beyond output.torque_limit" } },
-        { speed_limits_.areRecent(), { D::WARN, "Motor at its speed limit" } } },
-      { D::OK, stateText(snapshot_.loop.state) });
+  return firstOf({ { !snapshot_.loop.outputs.converged || solver_failures_.areRecent(),
+                     { D::ERROR, "The solver did not converge: the last good state is held" } },
+                   { step_cuts_.areRecent(), { D::WARN, "Steps had to be cut to converge" } },
+                   { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
+                   { coarse_steps_.areRecent(),
+                     { D::WARN, "Time step too long for the joint's fastest natural mode: raise solver.rate" } },
+                   { overloads_.areRecent(), { D::WARN, "Torque at the joint beyond output.torque_limit" } },
+                   { speed_limits_.areRecent(), { D::WARN, "Motor at its speed limit" } } },
+                 { D::OK, stateText(snapshot_.loop.state) });
 }
 
 DiagnosticVerdict Diagnostics::judgeInput() const
@@ -186,7 +186,7 @@ DiagnosticVerdict Diagnostics::judgeTiming() const
           { D::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" } },
         { missed_deadlines_.areRecent(),
           { D::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" } },
-        { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock stands" } },
+        { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock has stopped" } },
         { !realtime_.refusals.empty(), { D::WARN, "In time, but a request of realtime was refused: see the log" } } },
       { D::OK, "In time" });
 }
@@ -247,7 +247,7 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Stamp far from the clock, refused", loop.far_stamps);
   status.add("Faults without room", counters.faults.no_room);
   status.add("Too late for their stamp", counters.input.late + counters.faults.late);
-  status.add("Lost, too many at once", counters.input.overflow + snapshot_.overflow);
+  status.add("Dropped, queue full", counters.input.overflow + snapshot_.overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);
   status.add("Steps with load torque clamped", counters.load_clamped);
   status.add("Command timeouts", counters.command_timeouts);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
@@ -16,10 +15,7 @@ namespace hjt
 using namespace joint_state;
 
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
-  : kind_(parameters.solver.stepper)
-  , step_(1.0 / parameters.solver.rate)
-  , substep_(step_)
-  , dynamics_(model, parameters.solver)
+  : step_(1.0 / parameters.solver.rate), substep_(step_), dynamics_(model, parameters.solver)
 {
   if (!reset())
   {
@@ -29,7 +25,7 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
         roundedText(dynamics_.status.residual, 6) + " N)");
   }
   const double frequency = divideStep(parameters);
-  if (kind_ == StepperKind::ADAPTIVE)
+  if (parameters.solver.stepper == StepperKind::ADAPTIVE)
   {
     adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), frequency);
   }
@@ -42,7 +38,7 @@ double JointStepper::divideStep(const Parameters& parameters)
   constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
   constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
-  const Eigen::Vector2d inertia = dynamics_.model().inertia();
+  const Eigen::Vector2d inertia = dynamics_.inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
   const double stiffness = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
   const double ratio = nominalRatio(parameters.gear);
@@ -72,32 +68,6 @@ double JointStepper::divideStep(const Parameters& parameters)
     substeps_ = least + (least % 2 == 0 ? 1 : 0);
     substep_ = step_ / substeps_;
   }
-  if (kind_ == StepperKind::RUNGE_KUTTA4)
-  {
-    constexpr double MARGIN = 0.5;  // friction's slope times the step over the inertia; 2.78 is the stability limit
-    const double needed =
-        substep_ * (parameters.motor.coulomb_torque + parameters.brake.holding_torque) / inertia[0] / MARGIN;
-    if (parameters.solver.stiction_velocity < needed)
-    {
-      TextStream text;
-      text << "solver.stiction_velocity = " << parameters.solver.stiction_velocity
-           << " rad/s is too small for solver.stepper = runge_kutta4, which takes friction explicitly: at least "
-           << needed << " rad/s at this solver.rate (brake.holding_torque counts)";
-      throw ParameterError(text.str());
-    }
-    const Motor& motor = dynamics_.model().motor;
-    const double fading = motor.fadeSlope(parameters.motor.torque_limit) / inertia[0];
-    const double drive = std::max(fading, motor.currentRate()) * substep_;
-    if (drive > 1.0)
-    {
-      TextStream text;
-      text
-          << "solver.stepper = runge_kutta4 takes the drive explicitly: its torque follows motor.current_bandwidth and "
-             "fades towards motor.speed_limit in "
-          << drive << " times less than a step of " << substep_ << " s; solver.rate has to be that much higher";
-      throw ParameterError(text.str());
-    }
-  }
   return frequency;
 }
 
@@ -111,10 +81,11 @@ void JointStepper::useSurface(const ResponseSurface* surface) noexcept
   dynamics_.useSurface(surface);
 }
 
-bool JointStepper::reset() noexcept
+bool JointStepper::reset(double load_torque) noexcept
 {
   marches_ = false;
   dynamics_.inputs = {};
+  dynamics_.inputs.load_torque = load_torque;
   dynamics_.drive_torque = 0.0;
   const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
@@ -122,11 +93,20 @@ bool JointStepper::reset() noexcept
   speeds_.setZero();
   friction_.setZero();
   balance_ = 0.0;
+  leapfrog_.reset(load_torque);
   rest_steps_ = 0;
   throughput_ = 0.0;
   released_ = 0.0;
   stored_at_start_ = dynamics_.storedEnergy();
   return settled;
+}
+
+void JointStepper::setOutputInertia(double inertia) noexcept
+{
+  // The speed stays, and with it the energy of the output changes: what the arm does to it.
+  const double speed = x_[OUTPUT_SPEED];
+  x_[LOAD_WORK] -= 0.5 * (inertia - dynamics_.inertia()[1]) * speed * speed;
+  dynamics_.setOutputInertia(inertia);
 }
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
@@ -145,11 +125,8 @@ bool JointStepper::updateModel() noexcept
   const Eigen::Vector2d torque = dynamics_.torque();
   const bool good = dynamics_.updateModel().ok();
   released_ += stored - dynamics_.storedEnergy();
-  if (kind_ != StepperKind::RUNGE_KUTTA4)
-  {
-    // The last kick, half of which belongs after this instant, was still by the old torque.
-    released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
-  }
+  // The last kick, half of which belongs after this instant, was still by the old torque.
+  released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
   return good;
 }
 
@@ -205,7 +182,7 @@ bool JointStepper::march(const JointInputs& inputs, double& left) noexcept
     return false;
   }
   friction_ = adaptive_->frictionTorque();
-  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
+  const double kinetic = 0.5 * speeds_.dot(dynamics_.inertia().cwiseProduct(speeds_));
   balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - dissipatedEnergy() - kinetic;
   const JointInputs& last = dynamics_.inputs;
   if (inputs.motor_torque != last.motor_torque || inputs.load_torque != last.load_torque ||
@@ -238,43 +215,12 @@ void JointStepper::leaveMarch() noexcept
 bool JointStepper::substep(double length) noexcept
 {
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
-  bool good = true;
-  if (kind_ != StepperKind::RUNGE_KUTTA4)
-  {
-    leapfrog_.do_step(dynamics_, x_, 0.0, length);
-    good = dynamics_.status.ok();
-    speeds_ = leapfrog_.speeds();
-    friction_ = leapfrog_.frictionTorque();
-    balance_ = leapfrog_.balance();
-  }
-  else
-  {
-    good = stepRungeKutta(length);
-  }
+  leapfrog_.do_step(dynamics_, x_, 0.0, length);
+  speeds_ = leapfrog_.speeds();
+  friction_ = leapfrog_.frictionTorque();
+  balance_ = leapfrog_.balance();
   throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
-  return good;
-}
-
-bool JointStepper::stepRungeKutta(double length) noexcept
-{
-  const JointState start = x_;
-  runge_kutta_.do_step(std::ref(dynamics_), x_, 0.0, length);
-  if (!dynamics_.status.ok() || !dynamics_.place(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]).ok())
-  {
-    x_ = start;
-    x_.segment<2>(MOTOR_SPEED).setZero();
-    speeds_.setZero();
-    return false;
-  }
-  speeds_ = x_.segment<2>(MOTOR_SPEED);
-  dynamics_.updateFriction(speeds_);
-  x_[DISSIPATED] += dynamics_.accept();
-  x_[DRIVE_TORQUE] = dynamics_.drive_torque = dynamics_.explicitDriveTorque(x_);
-  friction_ = dynamics_.dryFriction().torque(dynamics_.friction(), dynamics_.velocityRatio(), speeds_);
-  friction_[0] += dynamics_.preslidingTorque();
-  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
-  balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - x_[DISSIPATED] - kinetic;
-  return true;
+  return dynamics_.status.ok();
 }
 
 /// Of motor and of output, each with the other held: squares of the angular frequencies [rad^2/s^2].
@@ -284,7 +230,7 @@ Eigen::Vector2d JointStepper::swingSquares() const noexcept
   const Eigen::Vector2d friction = dynamics_.frictionStiffness().diagonal();
   return (Eigen::Vector2d(ring.motor_stiffness + dynamics_.model().motor.coggingStiffness(), ring.output_stiffness) +
           friction)
-      .cwiseQuotient(dynamics_.model().inertia());
+      .cwiseQuotient(dynamics_.inertia());
 }
 
 double JointStepper::phaseAdvance() const noexcept
@@ -297,7 +243,7 @@ double JointStepper::phaseAdvance() const noexcept
   const Eigen::Vector2d squares = swingSquares();
   const double cross = ring.velocity_ratio * ring.output_stiffness - dynamics_.frictionStiffness()(0, 1);
   const double fastest = 0.5 * squares.sum() + std::sqrt(0.25 * (squares[0] - squares[1]) * (squares[0] - squares[1]) +
-                                                         cross * cross / dynamics_.model().inertia().prod());
+                                                         cross * cross / dynamics_.inertia().prod());
   return substep_ * std::sqrt(std::max(fastest, 0.0));
 }
 

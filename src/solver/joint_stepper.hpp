@@ -3,9 +3,6 @@
 
 #include <optional>
 
-#include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
-
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
@@ -28,13 +25,13 @@ public:
   static constexpr double REST_SPEED = 2e-6;
   static constexpr double REST_TIME = 0.1;  ///< [s]
 
-  /// @throws ParameterError if the step is too long for the stiffest motion of the joint or for its friction.
+  /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
   JointStepper(const JointStepper&) = delete;
   JointStepper& operator=(const JointStepper&) = delete;
 
-  /// At rest where the joint has settled. @returns false if it has not.
-  bool reset() noexcept;
+  /// At rest where the joint has settled under a load [N.m]. @returns false if it has not.
+  bool reset(double load_torque = 0.0) noexcept;
 
   /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
   /// the ring did not converge; the last good angles stay, at rest.
@@ -51,6 +48,9 @@ public:
   /// or taken up, by the fault. False: the ring did not converge and is still the old one.
   bool updateModel() noexcept;
   double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
+
+  /// Inertia of the output from the next step on [kg.m^2]; not with the adaptive stepper.
+  void setOutputInertia(double inertia) noexcept;
 
   /// See JointDynamics.
   void useSurface(const ResponseSurface* surface) noexcept;
@@ -77,28 +77,27 @@ public:
   /// their own length, whose error is controlled [rad].
   double phaseAdvance() const noexcept;
   bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
+  /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy; of the leapfrog
+  /// [J].
+  double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
+  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 
 private:
-  using RungeKutta4 = boost::numeric::odeint::runge_kutta4<JointState, double, JointState, double,
-                                                           boost::numeric::odeint::vector_space_algebra>;
   Eigen::Vector2d swingSquares() const noexcept;
   bool substep(double length) noexcept;
   bool march(const JointInputs& inputs, double& left) noexcept;
   void leaveMarch() noexcept;
-  bool stepRungeKutta(double length) noexcept;
   bool staysAtRest(const JointInputs& inputs) const noexcept;
   double divideStep(const Parameters& parameters);
 
-  StepperKind kind_;
   int rest_steps_{};  // in a row at whose end the joint was at rest
   int substeps_{ 1 };
   double step_;     // [s]
   double substep_;  // [s]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
-  RungeKutta4 runge_kutta_;
   std::optional<AdaptiveStepper> adaptive_;
   bool marches_{};  // by it at present
   JointState x_{ JointState::Zero() };

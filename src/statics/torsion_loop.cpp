@@ -35,6 +35,31 @@ double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
   }
   return sweep.back().output_angle;
 }
+/// The cup's springs and sliders: to the first point of the sweep, along it and back. `rotations`: of the rim at each
+/// angle [rad], and its rate by the output's [-].
+void addCupFriction(const CupFriction& friction, double unloaded_rotation,
+                    const std::vector<Eigen::Vector2d>& rotations, std::vector<TorsionPoint>& up,
+                    std::vector<TorsionPoint>& down)
+{
+  if (!friction.hasState())
+  {
+    return;
+  }
+  CupFriction::State cup = friction.relaxed(unloaded_rotation);
+  const auto add = [&](std::size_t i, TorsionPoint& point)
+  {
+    cup = friction.turned(cup, rotations[i][0]);
+    point.torque -= cup.torque * rotations[i][1];
+  };
+  for (std::size_t i = 0; i < up.size(); ++i)
+  {
+    add(i, up[i]);
+  }
+  for (std::size_t i = down.size(); i-- > 0;)
+  {
+    add(i, down[i]);
+  }
+}
 }  // namespace
 
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps)
@@ -54,9 +79,9 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
   const double unloaded_rotation = ring.forces().of<CupTorsion>().rotation;
-  std::vector<TorsionPoint> up;            // load growing, torque ascending
-  std::vector<TorsionPoint> down;          // load falling
-  std::vector<Eigen::Vector2d> rotations;  // of the rim at each angle [rad], and its rate by the output's [-]
+  std::vector<TorsionPoint> up;    // load growing, torque ascending
+  std::vector<TorsionPoint> down;  // load falling
+  std::vector<Eigen::Vector2d> rotations;
   for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {
     const double elastic = amplitude * (2.0 * i / steps - 1.0);
@@ -73,24 +98,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
     down.push_back({ elastic - drag, angle });
     rotations.push_back({ ring.forces().of<CupTorsion>().rotation, rates.meanRotation()[1] });
   }
-  if (model.cup_friction.hasState())
-  {
-    // To the first point, along the sweep and back.
-    CupFriction::State cup = model.cup_friction.relaxed(unloaded_rotation);
-    const auto add = [&](std::size_t i, TorsionPoint& point)
-    {
-      cup = model.cup_friction.turned(cup, rotations[i][0]);
-      point.torque -= cup.torque * rotations[i][1];
-    };
-    for (std::size_t i = 0; i < up.size(); ++i)
-    {
-      add(i, up[i]);
-    }
-    for (std::size_t i = down.size(); i-- > 0;)
-    {
-      add(i, down[i]);
-    }
-  }
+  addCupFriction(model.cup_friction, unloaded_rotation, rotations, up, down);
   if (loop.status.ok())
   {
     loop.points.assign(down.rbegin(), down.rend());

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "studies/ring_stepper.hpp"
+#include "studies/implicit_ring_stepper.hpp"
 
 namespace hjt
 {
@@ -22,9 +21,10 @@ class AdaptiveRingStepper : public RingStepper
 {
 public:
   /// `tolerance` > 0 [m].
-  AdaptiveRingStepper(DynamicRing& ring, std::unique_ptr<EmbeddedRingStepper> method, double tolerance)
+  AdaptiveRingStepper(DynamicRing& ring, const RungeKuttaTableau& tableau, const SolverParameters& solver,
+                      double tolerance)
     : ring_(ring)
-    , method_(std::move(method))
+    , method_(ring, tableau, solver)
     , tolerance_(tolerance)
     , begin_(ring.coordinates())
     , before_(ring.coordinates())
@@ -38,7 +38,7 @@ public:
     constexpr double SHORTEST = 1e-9;  // of the whole length
     const double end = motion.time + length;
     begin_ = motion;
-    method_->restart();
+    method_.restart();
     if (next_ == 0.0)
     {
       next_ = firstStep(motion, length);
@@ -50,27 +50,27 @@ public:
       const double stride = rest / std::max(1.0, std::ceil(rest / next_ - 1e-9));
       before_ = motion;
       ring_.pairTeeth(motion.q, motion.time);
-      const bool good = method_->attempt(motion, stride);
-      counts_.force_evaluations = method_->counts().force_evaluations;
-      counts_.factorisations = method_->counts().factorisations;
+      const bool good = method_.attempt(motion, stride);
+      counts_.force_evaluations = method_.counts().force_evaluations;
+      counts_.factorisations = method_.counts().factorisations;
       if (!good)
       {
         ++counts_.halvings;
         just_rejected_ = true;
         next_ = 0.5 * stride;
       }
-      else if (const double ratio = method_->errorEstimate() / tolerance_; !(ratio <= 1.0))
+      else if (const double ratio = method_.errorEstimate() / tolerance_; !(ratio <= 1.0))
       {
         ++counts_.rejections;
         just_rejected_ = true;
         motion = before_;
-        const double change = SAFETY * std::pow(ratio, -1.0 / method_->errorPower());
+        const double change = SAFETY * std::pow(ratio, -1.0 / method_.errorPower());
         next_ = stride * (change > MIN_CHANGE ? change : MIN_CHANGE);  // also if it is not a number
       }
       else
       {
         ++counts_.steps;
-        method_->accept();
+        method_.accept();
         next_ = stride * growth(ratio);
         rest = stride == rest ? 0.0 : rest - stride;
         continue;
@@ -105,7 +105,7 @@ private:
   /// Of the step after an accepted one.
   double growth(double ratio) noexcept
   {
-    const double power = 1.0 / method_->errorPower();
+    const double power = 1.0 / method_.errorPower();
     const double bounded = std::max(ratio, MIN_RATIO);
     const double change = SAFETY * std::pow(bounded, -0.7 * power) * std::pow(previous_, 0.4 * power);
     const double most = just_rejected_ ? 1.0 : MAX_CHANGE;
@@ -115,7 +115,7 @@ private:
   }
 
   DynamicRing& ring_;
-  std::unique_ptr<EmbeddedRingStepper> method_;
+  ImplicitRingStepper method_;
   double tolerance_;
   double next_{};           // step that the control asks for; 0: none yet [s]
   double previous_{ 1.0 };  // e of the last accepted step

@@ -18,7 +18,7 @@ namespace hjt
 /// by Newton with the matrix K + C / g + M / g^2, which is the cyclic block-tridiagonal one of the equilibrium with a
 /// larger diagonal. Its factors serve all stages of a step while they contract well; line search on the out-of-balance
 /// force; a step that does not converge is done in halves. No allocation after construction.
-class ImplicitRingStepper : public EmbeddedRingStepper
+class ImplicitRingStepper : public RingStepper
 {
 public:
   /// Of `solver` it takes the force tolerance, the bound on iterations and that on halvings.
@@ -26,10 +26,18 @@ public:
 
   bool step(RingMotion& motion, double length) noexcept override;
 
-  bool attempt(RingMotion& motion, double length) noexcept override;
-  void restart() noexcept override { begun_ = false; }
-  void accept() noexcept override;
-  int errorPower() const noexcept override { return tableau_.error_power; }
+  /// One step of just this length, teeth and spaces as they are. False: the motion stays.
+  bool attempt(RingMotion& motion, double length) noexcept;
+  /// To be called before the first attempt from a motion, and whenever motion or drive were changed from outside.
+  void restart() noexcept { begun_ = false; }
+  /// The last attempt stands: the next one goes on from its end. Otherwise the next one starts where that did.
+  void accept() noexcept;
+  /// Of the last attempt in the positions, by the tableau's embedded method: the largest over the teeth [m].
+  double errorEstimate() const noexcept { return error_; }
+  int errorPower() const noexcept
+  {
+    return tableau_.error_power;
+  }  ///< of the step's length that the estimate goes with
 
 private:
   void begin(const Eigen::VectorXd& speeds) noexcept;
@@ -49,6 +57,7 @@ private:
   bool factored_{};      // in this step
   bool begun_{};         // the explicit first stage is at hand
   double largest_{};     // component of the out-of-balance force [N]
+  double error_{};       // [m]
   // Scratch, sized once.
   std::vector<Eigen::VectorXd> speeds_;         // per stage: derivative of q
   std::vector<Eigen::VectorXd> accelerations_;  // per stage: derivative of v

@@ -11,7 +11,6 @@ namespace hjt
 enum class RingMethod
 {
   RUNGE_KUTTA4,
-  DORMAND_PRINCE8,
   IMPLICIT_EULER,
   TR_BDF2,
   ESDIRK4

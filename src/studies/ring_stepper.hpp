@@ -43,24 +43,4 @@ public:
 protected:
   StepCounts counts_;
 };
-
-/// A method that judges the error of each step by a second one embedded in it.
-class EmbeddedRingStepper : public RingStepper
-{
-public:
-  /// One step of just this length, teeth and spaces as they are. False if it does not come about: the motion stays.
-  virtual bool attempt(RingMotion& motion, double length) noexcept = 0;
-
-  /// To be called before the first attempt from a motion, and whenever motion or drive were changed from outside.
-  virtual void restart() noexcept = 0;
-  /// The last attempt stands: the next one goes on from its end. Otherwise the next one starts where that did.
-  virtual void accept() noexcept = 0;
-
-  /// Of the last attempt in the positions: the largest over the teeth [m].
-  double errorEstimate() const noexcept { return error_; }
-  virtual int errorPower() const noexcept = 0;  ///< of the step's length that the estimate goes with
-
-protected:
-  double error_{};
-};
 }  // namespace hjt

@@ -184,15 +184,14 @@ private:
   double ball_pitch_;
   Eigen::VectorXd share_;  // of the drop that the race sags by over each tooth
 };
-}  // namespace
+using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 
-BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
-                         double highest, const std::function<void(double)>& progress, unsigned threads)
+BallTable emptyTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
+                     double highest)
 {
-  BallBuild result;
-  BallTable& table = result.table;
   const bool lobes_alike = sound.ring.of<WaveGeneratorContact>().repeats();
   const SurfaceRing reference(parameters, sound);
+  BallTable table;
   table.pitch = reference.pitch();
   table.ratio = reference.ratio();
   table.deepest = deepest;
@@ -203,8 +202,13 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
   table.step = (std::asinh(highest / SCALE) - table.lowest) / LINES;
   table.columns = COLUMNS;
   table.places = lobes_alike ? PLACES : 2 * PLACES;
+  return table;
+}
 
-  std::array<std::vector<Coefficients>, LINES + 1> lines;
+/// False if a ring finds no equilibrium.
+bool measureLines(const Parameters& parameters, const JointModel& sound, const BallTable& table,
+                  const std::function<void(double)>& progress, unsigned threads, Lines& lines)
+{
   std::atomic<bool> failed{ false };
   runTasks(
       lines.size(), threads,
@@ -213,9 +217,9 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
         if (!failed)
         {
           const double v = SCALE * std::sinh(table.lowest + static_cast<double>(i) * table.step);
-          failed =
-              !BallLine(parameters, sound, deepest, table.turn).measure(v, table.columns, table.places, lines[i]) ||
-              failed;
+          failed = !BallLine(parameters, sound, table.deepest, table.turn)
+                        .measure(v, table.columns, table.places, lines[i]) ||
+                   failed;
         }
       },
       [&](std::size_t done)
@@ -225,38 +229,39 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
           progress(static_cast<double>(done) / static_cast<double>(lines.size()));
         }
       });
-  if (failed)
+  return !failed;
+}
+
+/// Splines along both round directions of a line.
+void makeSplines(std::size_t columns, std::size_t places, std::vector<Coefficients>& line)
+{
+  for (std::size_t j = 0; j < columns; ++j)
   {
-    result.failure_reason = "the ring finds no equilibrium where a ball drops";
-    return result;
+    std::vector<Coefficients> row(line.begin() + static_cast<std::ptrdiff_t>(j * places),
+                                  line.begin() + static_cast<std::ptrdiff_t>((j + 1) * places));
+    makeRoundSpline(row);
+    std::copy(row.begin(), row.end(), line.begin() + static_cast<std::ptrdiff_t>(j * places));
   }
-  const auto columns = static_cast<std::size_t>(table.columns);
-  const auto places = static_cast<std::size_t>(table.places);
-  for (std::vector<Coefficients>& line : lines)
+  for (std::size_t k = 0; k < places; ++k)
   {
+    std::vector<Coefficients> row;
     for (std::size_t j = 0; j < columns; ++j)
     {
-      std::vector<Coefficients> row(line.begin() + static_cast<std::ptrdiff_t>(j * places),
-                                    line.begin() + static_cast<std::ptrdiff_t>((j + 1) * places));
-      makeRoundSpline(row);
-      std::copy(row.begin(), row.end(), line.begin() + static_cast<std::ptrdiff_t>(j * places));
+      row.push_back(line[j * places + k]);
     }
-    for (std::size_t k = 0; k < places; ++k)
+    makeRoundSpline(row);
+    for (std::size_t j = 0; j < columns; ++j)
     {
-      std::vector<Coefficients> row;
-      for (std::size_t j = 0; j < columns; ++j)
-      {
-        row.push_back(line[j * places + k]);
-      }
-      makeRoundSpline(row);
-      for (std::size_t j = 0; j < columns; ++j)
-      {
-        line[j * places + k] = row[j];
-      }
+      line[j * places + k] = row[j];
     }
   }
-  const std::size_t size = columns * places;
-  table.coefficients.resize((lines.size() + 2) * size);
+}
+
+/// Splines from line to line.
+std::vector<Coefficients> acrossLines(const Lines& lines)
+{
+  const std::size_t size = lines.front().size();
+  std::vector<Coefficients> coefficients((lines.size() + 2) * size);
   for (std::size_t k = 0; k < size; ++k)
   {
     std::vector<Coefficients> across;
@@ -267,9 +272,29 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
     const std::vector<Coefficients> spline = naturalSpline(across);
     for (std::size_t i = 0; i < spline.size(); ++i)
     {
-      table.coefficients[i * size + k] = spline[i];
+      coefficients[i * size + k] = spline[i];
     }
   }
+  return coefficients;
+}
+}  // namespace
+
+BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
+                         double highest, const std::function<void(double)>& progress, unsigned threads)
+{
+  BallBuild result;
+  result.table = emptyTable(parameters, sound, deepest, lowest, highest);
+  Lines lines;
+  if (!measureLines(parameters, sound, result.table, progress, threads, lines))
+  {
+    result.failure_reason = "the ring finds no equilibrium where a ball drops";
+    return result;
+  }
+  for (std::vector<Coefficients>& line : lines)
+  {
+    makeSplines(static_cast<std::size_t>(result.table.columns), static_cast<std::size_t>(result.table.places), line);
+  }
+  result.table.coefficients = acrossLines(lines);
   return result;
 }
 }  // namespace hjt

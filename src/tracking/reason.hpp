@@ -36,9 +36,17 @@ enum class Reason : std::uint8_t
   LOAD_CONSTANT = 23,        ///< torsion: the load hardly varies
   TOO_FEW_WINDOWS = 24,      ///< signals: fewer windows than a verdict takes
   NO_REFERENCE = 25,         ///< signals: the reference knows none of the operating points
-  TOO_SHORT = 26             ///< signals: no reference given, and too few windows to learn one
+  TOO_SHORT = 26,            ///< too few rows: to measure the friction, or to learn the signals without a reference
+  TWO_SOURCES = 27,          ///< several sources give the same joints in turn
+  GEAR_RATIO = 28,           ///< motor and joint do not turn by the configured gear's ratio
+  AT_REST = 29,              ///< the joint does not move
+  ONE_SPEED = 30,            ///< it moves at one speed only: how sure its friction is cannot be told
+  NO_FRICTION = 31,          ///< the effort holds no friction: a modelled or commanded torque
+  LESS_THAN_FAULTS = 32,     ///< less friction than any fault leaves: led by hand, held, another gain or ratio
+  FRICTION_SCATTER = 33,     ///< the rows scatter too much to know the friction: the load is another
+  TORSION_NO_DRIVE = 34      ///< torsion: no fault makes it so large or small; load or angles are not this joint's
 };
-constexpr std::size_t REASON_COUNT = 27;
+constexpr std::size_t REASON_COUNT = 35;
 
 const char* reasonName(Reason reason) noexcept;  ///< "ONE_DIRECTION"
 

@@ -38,6 +38,7 @@ struct Ratio
   double of_kind;             ///< share by which sound joints differ from the twin
   ScalarIndicator indicator;  ///< that says the same
   double when_larger;         ///< the indicator moves up: +1, down: -1
+  const SignatureSet& signatures;
 
   bool isOwnKnown() const { return std::isfinite(to_own); }
   double value() const { return (isOwnKnown() ? to_own : to_twin) / of_arm; }
@@ -56,8 +57,8 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Reason departs
   {
     return;
   }
-  const std::vector<Cause> causes =
-      causesThatMove(ratio.indicator, ratio.value() > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
+  const std::vector<Cause> causes = causesThatMove(
+      ratio.signatures, ratio.indicator, ratio.value() > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
   for (const Cause cause : causes)
   {
     finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
@@ -172,7 +173,8 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
                      context.arm_friction,
                      parameters.comparison.friction_tolerance,
                      ScalarIndicator::RUNNING_TORQUE,
-                     +1.0 };
+                     +1.0,
+                     evidence.assessor().signatures() };
   verdict[Figure::FRICTION_OF_TWIN] = ratio.to_twin;
   verdict[Figure::FRICTION_OF_OWN] = ratio.to_own;
   verdict[Figure::FRICTION_TOLERANCE] = ratio.tolerance(parameters);
@@ -208,7 +210,8 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
                      1.0,
                      parameters.comparison.compliance_tolerance + eccentricity,
                      ScalarIndicator::TORSIONAL_STIFFNESS,
-                     -1.0 };
+                     -1.0,
+                     evidence.assessor().signatures() };
   verdict[Figure::TORSION_OF_TWIN] = ratio.to_twin;
   verdict[Figure::TORSION_OF_OWN] = ratio.to_own;
   verdict[Figure::TORSION_TOLERANCE] = ratio.tolerance(parameters);
@@ -352,6 +355,7 @@ void setFigures(const JointEvidence& evidence, const JointContext& context, Verd
   verdict.load = evidence.loadOrigin();
   verdict.is_temperature_received = evidence.isTemperatureReceived();
   verdict.is_reference_given = evidence.baselineGiven();
+  verdict.has_signatures = !evidence.assessor().signatures().signatures.empty();
 }
 
 /// Level and reason of all findings.
@@ -425,7 +429,7 @@ void Verdict::dismiss(const Misfit& why_not)
   level = VerdictLevel::NOT_JUDGED;
   reason = why_not.reason;
   misfit = why_not.clause;
-  friction = FrictionFactor();
+  friction = JudgedFriction();
   evidence.clear();
   for (Finding& finding : findings)
   {

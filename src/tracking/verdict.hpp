@@ -121,7 +121,7 @@ struct Finding
 
 /// Friction of the joint: a multiple of its own when sound where that is known, else of the twin's; in an arm over what
 /// all joints have in common.
-struct FrictionFactor
+struct JudgedFriction
 {
   double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [-]
   double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< of its interval; without one the factor [-]
@@ -158,7 +158,7 @@ struct Verdict
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
   Reason reason{ Reason::NO_STEADY_MOTION };  ///< of the worst finding; if none is judged of the first
   std::string joint;
-  FrictionFactor friction;
+  JudgedFriction friction;
   std::vector<Finding> findings;    ///< none: nothing was looked at
   std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
   std::vector<Hidden> cannot_show;  ///< by these rows
@@ -167,6 +167,7 @@ struct Verdict
   LoadOrigin load{};
   bool is_temperature_received{};
   bool is_reference_given{};  ///< of the signals
+  bool has_signatures{};      ///< of faults: causes can be named
   std::array<double, FIGURE_COUNT> figures{};
 };
 

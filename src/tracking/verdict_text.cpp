@@ -83,7 +83,15 @@ constexpr std::array<const char*, REASON_COUNT> REASONS{ "SOUND",
                                                          "LOAD_CONSTANT",
                                                          "TOO_FEW_WINDOWS",
                                                          "NO_REFERENCE",
-                                                         "TOO_SHORT" };
+                                                         "TOO_SHORT",
+                                                         "TWO_SOURCES",
+                                                         "GEAR_RATIO",
+                                                         "AT_REST",
+                                                         "ONE_SPEED",
+                                                         "NO_FRICTION",
+                                                         "LESS_THAN_FAULTS",
+                                                         "FRICTION_SCATTER",
+                                                         "TORSION_NO_DRIVE" };
 
 std::string rounded(double value, int digits)
 {
@@ -141,6 +149,10 @@ std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject sub
   {
     case Reason::NO_STEADY_MOTION:
       return "The joint never moves steadily for long enough to measure its friction.";
+    case Reason::AT_REST:
+      return "The joint does not move.";
+    case Reason::ONE_SPEED:
+      return "The joint moves at one speed only: how sure its friction is cannot be told.";
     case Reason::ONE_DIRECTION:
       return "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
     case Reason::LOAD_WRONG:
@@ -185,6 +197,12 @@ std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject sub
     case Reason::VELOCITY_SIGN:
     case Reason::VELOCITY_SCALE:
     case Reason::VELOCITY_LAG:
+    case Reason::TWO_SOURCES:
+    case Reason::GEAR_RATIO:
+    case Reason::NO_FRICTION:
+    case Reason::LESS_THAN_FAULTS:
+    case Reason::FRICTION_SCATTER:
+    case Reason::TORSION_NO_DRIVE:
       break;
   }
   return sentence(verdict.misfit);
@@ -206,7 +224,7 @@ struct RatioText
   const char* besides;  // what else moves it
 };
 
-std::string ratioText(const RatioText& ratio, const Finding& finding)
+std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Finding& finding)
 {
   const bool known = std::isfinite(ratio.to_own);
   const double value = (known ? ratio.to_own : ratio.to_twin) / ratio.of_arm;
@@ -229,8 +247,9 @@ std::string ratioText(const RatioText& ratio, const Finding& finding)
       " (" + sound + ").";
   if (finding.level != VerdictLevel::OK)
   {
-    text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
-                                      " Possible faults: " + causeNames(finding, ", ") + ".") +
+    text += (!verdict.has_signatures ? std::string() :
+             finding.causes.empty()  ? std::string(" No fault in the list has this effect.") :
+                                       " Possible faults: " + causeNames(finding, ", ") + ".") +
             " Other causes: " + ratio.besides + ".";
   }
   return text;
@@ -239,7 +258,8 @@ std::string ratioText(const RatioText& ratio, const Finding& finding)
 std::string frictionText(const Verdict& verdict, const Finding& finding)
 {
   const double reference = verdict[Figure::REFERENCE_TEMPERATURE];
-  return ratioText({ "Friction", verdict[Figure::FRICTION_OF_TWIN], verdict[Figure::FRICTION_OF_OWN],
+  return ratioText(verdict,
+                   { "Friction", verdict[Figure::FRICTION_OF_TWIN], verdict[Figure::FRICTION_OF_OWN],
                      verdict[Figure::FRICTION_OF_ARM], verdict[Figure::FRICTION_TOLERANCE],
                      "grease at another temperature, another preload, a wrong gain" },
                    finding) +
@@ -254,7 +274,8 @@ std::string frictionText(const Verdict& verdict, const Finding& finding)
 
 std::string torsionText(const Verdict& verdict, const Finding& finding)
 {
-  std::string text = ratioText({ "Torsion", verdict[Figure::TORSION_OF_TWIN], verdict[Figure::TORSION_OF_OWN], 1.0,
+  std::string text = ratioText(verdict,
+                               { "Torsion", verdict[Figure::TORSION_OF_TWIN], verdict[Figure::TORSION_OF_OWN], 1.0,
                                  verdict[Figure::TORSION_TOLERANCE], "a wrong load, eccentric encoders" },
                                finding);
   const double alike = verdict[Figure::ENCODER_ERROR];

@@ -37,7 +37,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   , assessor(given)
   , steps_per_sample(std::llround(given.solver.rate / given.indicators.sample_rate))
   , searched_per_step(static_cast<std::size_t>(
-        std::ceil(static_cast<double>(CauseSearch::signatures()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
+        std::ceil(static_cast<double>(assessor.searchLength()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
                                             (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
@@ -148,7 +148,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();
-  const bool settled = stepper.reset();
+  const bool settled = stepper.reset(arm_torque);
   observed_ring.restart();
   queue.clear();
   counters = {};
@@ -297,7 +297,7 @@ void Twin::Impl::step() noexcept
   takeSurface();
   const double wanted = commandInForce();
   const double within_limit = model.motor.clamped(wanted);
-  converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  converged = stepper.step({ within_limit, load_torque + arm_torque, brake_engaged, greaseTemperature() }) && followed;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
   counters.torque_clamped += within_limit != wanted ? 1 : 0;
@@ -375,7 +375,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = stepper.dynamics().shaftTorque();
-  outputs.load_torque = load_torque;
+  outputs.load_torque = load_torque + arm_torque;
   outputs.temperature = greaseTemperature();
   outputs.housing_temperature = housingTemperature();
   outputs.wave_generator_torque = -ring.wave_generator_torque;
@@ -418,7 +418,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.output_angle = readings.output_angle;
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
-  sample.load_torque = load_torque;
+  sample.load_torque = load_torque + arm_torque;
   sample.temperature = housingTemperature();
   if (signals.update(sample))
   {

@@ -394,10 +394,9 @@ TEST(RingStepper, ConvergesWithItsOrder)
     double order;
   };
   SoftRing bench;
-  const RingMotion reference = bench.after(RingMethod::DORMAND_PRINCE8, DURATION, 400);
-  for (const Case& test : { Case{ RingMethod::RUNGE_KUTTA4, 50, 4.0 }, Case{ RingMethod::DORMAND_PRINCE8, 14, 8.0 },
-                            Case{ RingMethod::IMPLICIT_EULER, 800, 1.0 }, Case{ RingMethod::TR_BDF2, 200, 2.0 },
-                            Case{ RingMethod::ESDIRK4, 50, 4.0 } })
+  const RingMotion reference = bench.after(RingMethod::RUNGE_KUTTA4, DURATION, 3200);
+  for (const Case& test : { Case{ RingMethod::RUNGE_KUTTA4, 50, 4.0 }, Case{ RingMethod::IMPLICIT_EULER, 800, 1.0 },
+                            Case{ RingMethod::TR_BDF2, 200, 2.0 }, Case{ RingMethod::ESDIRK4, 50, 4.0 } })
   {
     const double coarse = (bench.after(test.method, DURATION, test.steps).q - reference.q).norm();
     const double fine = (bench.after(test.method, DURATION, 2 * test.steps).q - reference.q).norm();
@@ -445,7 +444,6 @@ TEST(RingStepper, EnergyBalancesButForWhatTheMethodDamps)
     return lost(*bench.ring, motion, stored, kinetic) / kinetic;
   };
   EXPECT_LT(std::abs(loss_of(RingMethod::RUNGE_KUTTA4, 4000)), 1e-7);
-  EXPECT_LT(std::abs(loss_of(RingMethod::DORMAND_PRINCE8, 200)), 1e-7);
   EXPECT_LT(std::abs(loss_of(RingMethod::ESDIRK4, 1000)), 1e-5);
   EXPECT_GT(loss_of(RingMethod::IMPLICIT_EULER, 1000), 0.05);  // its own damping
 }
@@ -531,8 +529,7 @@ TEST(RingStepper, AFailedStepLeavesTheMotion)
 {
   SoftRing bench;
   for (const auto& [method, tolerance] :
-       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 0.0 },
-         std::pair{ RingMethod::ESDIRK4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 1e-6 },
+       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::ESDIRK4, 0.0 },
          std::pair{ RingMethod::ESDIRK4, 1e-6 } })
   {
     RingMotion motion = bench.start;
@@ -552,13 +549,13 @@ TEST(AdaptiveRingStepper, ErrorFollowsTheTolerance)
 {
   constexpr double DURATION = 4e-4;
   SoftRing bench;
-  const RingMotion reference = bench.after(RingMethod::DORMAND_PRINCE8, DURATION, 400);
-  for (const auto& [method, loosest] : { std::pair{ RingMethod::TR_BDF2, 1e-6 }, std::pair{ RingMethod::ESDIRK4, 1e-6 },
-                                         std::pair{ RingMethod::DORMAND_PRINCE8, 1e-4 } })
+  const RingMotion reference = bench.after(RingMethod::RUNGE_KUTTA4, DURATION, 3200);
+  constexpr double LOOSEST = 1e-6;
+  for (const RingMethod method : { RingMethod::TR_BDF2, RingMethod::ESDIRK4 })
   {
     long steps = 0;
     double looser = 1.0;
-    for (const double tolerance : { loosest, 1e-2 * loosest, 1e-4 * loosest })
+    for (const double tolerance : { LOOSEST, 1e-2 * LOOSEST, 1e-4 * LOOSEST })
     {
       SCOPED_TRACE(std::to_string(static_cast<int>(method)) + ", tolerance " + std::to_string(1e9 * tolerance) + " nm");
       const auto stepper = makeRingStepper(method, *bench.ring, bench.parameters.solver, tolerance);
@@ -604,9 +601,8 @@ TEST(RingStepper, AllocatesNothing)
   RingDrive drive;
   drive.wave = { 0.0, 0.0, 0.07 };
   for (const auto& [method, tolerance] :
-       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::DORMAND_PRINCE8, 0.0 },
-         std::pair{ RingMethod::TR_BDF2, 0.0 }, std::pair{ RingMethod::ESDIRK4, 0.0 },
-         std::pair{ RingMethod::ESDIRK4, 1e-9 } })
+       { std::pair{ RingMethod::RUNGE_KUTTA4, 0.0 }, std::pair{ RingMethod::TR_BDF2, 0.0 },
+         std::pair{ RingMethod::ESDIRK4, 0.0 }, std::pair{ RingMethod::ESDIRK4, 1e-9 } })
   {
     Bench bench(parameters, drive);
     RingMotion motion(bench.ring->coordinates());

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <string>
@@ -16,7 +17,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/angle_multiples.hpp"
-#include "health/carried_errors.hpp"
+#include "health/signature_file.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
 #include "test/core/test_parameters.hpp"
@@ -28,6 +29,11 @@ namespace
 {
 constexpr double ARCSEC = TWO_PI / 360.0 / 3600.0;
 constexpr double RATIO = 101.0;
+
+std::shared_ptr<const SignatureSet> shippedSignatures()
+{
+  return loadSignatures(shippedParameters().indicators.signatures);
+}
 constexpr std::int64_t SAMPLE = 500000;  // [ns]
 
 /// A joint that moves as told, with a known error of motion and a known torque, read through the twin's encoders.
@@ -677,7 +683,7 @@ TEST_F(Assessed, TheVerdictIsTheSameWhenTheCauseIsSearchedForInParts)
     }
     EXPECT_EQ(allocationCount(), allocations);
     const bool is_searching = whole.level != HealthLevel::OK && whole.largest_score > 1.0;
-    EXPECT_EQ(parts, is_searching ? (CauseSearch::signatures() + 99) / 100 : 0);
+    EXPECT_EQ(parts, is_searching ? (in_parts.searchLength() + 99) / 100 : 0);
     searches += is_searching ? 1 : 0;
     const Assessment& found = in_parts.assessment();
     EXPECT_EQ(found.level, whole.level);
@@ -973,8 +979,8 @@ protected:
   static constexpr std::size_t TORQUE = indexOf(ScalarIndicator::RUNNING_TORQUE);
   static constexpr OperatingPoint OTHER{ 160.0, 0.0, 60.0, 25.0 };
 
-  const double carried_error_ =
-      std::hypot(CARRIED_ERRORS[STIFFNESS].deviation, CARRIED_ERRORS[STIFFNESS].share * 1000.0);
+  const CarriedError error_of_others_ = shippedSignatures()->carried[STIFFNESS];
+  const double carried_error_ = std::hypot(error_of_others_.deviation, error_of_others_.share * 1000.0);
   double model_stiffness_{ 29000.0 };  // the drive's is 30000
   std::mt19937 random_{ 7 };
   std::normal_distribution<double> normal_;
@@ -1020,10 +1026,12 @@ TEST_F(CarriedReference, LeavesOutOfTheCauseWhatTheModelDidNotDetermine)
 class AgainstSignatures : public testing::Test
 {
 protected:
+  const std::shared_ptr<const SignatureSet> signatures_ = shippedSignatures();
+
   AgainstSignatures()
   {
     // A hundredth of the largest change in any signature.
-    for (const Signature& signature : faultSignatures())
+    for (const Signature& signature : signatures_->signatures)
     {
       for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
       {
@@ -1065,7 +1073,7 @@ protected:
     }
     const std::uint64_t before = allocationCount();
     search_.start();
-    search_.advance(window, point, CauseSearch::signatures());
+    search_.advance(window, point, search_.signatures());
     const CausePosterior found = search_.posterior();
     EXPECT_EQ(allocationCount(), before);
     return found;
@@ -1087,7 +1095,7 @@ protected:
     return sum;
   }
 
-  CauseSearch search_;
+  CauseSearch search_{ signatures_ };
   std::array<double, SIGNATURE_SIZE> spread_{};
   std::mt19937 random_{ 5 };
   std::normal_distribution<double> normal_;
@@ -1096,7 +1104,7 @@ protected:
 
 TEST_F(AgainstSignatures, EveryCauseIsAmongTheMostLikelyOfItsOwnSignature)
 {
-  for (const Signature& signature : faultSignatures())
+  for (const Signature& signature : signatures_->signatures)
   {
     if (signature.severity < 0.4 || strength(signature) < 10.0)
     {
@@ -1132,7 +1140,7 @@ TEST_F(AgainstSignatures, OfAMotionLikeTheWindowsCountMore)
 {
   double alike = 0.0;
   double other = 0.0;
-  for (const Signature& signature : faultSignatures())
+  for (const Signature& signature : signatures_->signatures)
   {
     if (signature.motion.speed > 0.0 && strength(signature) > 10.0)
     {

@@ -383,7 +383,6 @@ TEST(TwinConstruction, RefusesWhatItCannotRun)
   EXPECT_THROW(Twin(shippedParameters({ "solver.rate=100", "publish.joint_states_rate=100", "publish.encoders_rate=100",
                                         "indicators.sample_rate=100", "output.load_inertia=0.0" })),
                ParameterError);
-  EXPECT_THROW(Twin(shippedParameters({ "solver.stepper=runge_kutta4" })), ParameterError);
   // A light motor on the gear swings as fast as a light output.
   EXPECT_THROW(Twin(shippedParameters({ "motor.rotor_inertia=1.0e-9", "motor.wave_generator_inertia=0.0" })),
                ParameterError);

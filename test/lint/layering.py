@@ -33,6 +33,7 @@ SEES = {
     "bags": ["messages"],
     "datasets": ["bags", "output"],
     "recordings": ["datasets", "identification"],
+    "python/recordings": ["python", "recordings"],
     "ros_io": ["live", "messages", "arm"],
     "apps/common": ["recordings"],
     "apps/tool": ["apps/common", "studies"],
@@ -43,8 +44,8 @@ SEES = {
     "test/outside": ["twin"],
     "test/support": [],
 }
-WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "ros_io", "apps", "apps/common", "apps/tool",
-            "test/ros"}
+WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "python/recordings", "ros_io", "apps",
+            "apps/common", "apps/tool", "test/ros"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
 LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/stat|time|unistd)\.h|"
                        r"(Eigen|boost|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")
@@ -55,7 +56,7 @@ OWN_LIBRARIES = {
     "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "python": re.compile(r"<pybind11/\w+\.h>$"),
     "bench": re.compile(r"<(arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
-                        r"[\w/.-]+>$|<(klu|petsc\w*|mpi)\.h>$"),
+                        r"[\w/.-]+>$|<klu\.h>$"),
     "test/core": re.compile(r"<(g(mock|test)|kdl|kdl_parser)/[\w/.-]+>$"),
     "test/support": re.compile(r"<g(mock|test)/[\w/.-]+>$"),
 }

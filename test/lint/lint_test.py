@@ -14,6 +14,7 @@ import catkin_lint
 import clang_tidy
 import config_files
 import doc_tables
+import doc_values
 import examples
 import launch_docs
 import layering
@@ -243,6 +244,24 @@ class DocTables(Tree):
         self.assertEqual(doc_tables.names_and_types(page, "Services"), {"~reset": "std_srvs/Trigger"})
         with self.assertRaises(ValueError):
             doc_tables.names_and_types(page, "Topics")
+
+
+class DocValues(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("docs/validation.csv", "row,value,unit,expected,holds\na.b,0.156,%,,\n")
+
+    def test_numbers_as_the_validation_has_them(self):
+        self.write("README.md",
+                   "0.16<!-- value: a.b --> and 156<!-- value: a.b * 1000 --> | 0.2<!-- value: a.b --> |\n")
+        self.assert_clean(doc_values.check)
+
+    def test_other_numbers_and_unknown_rows(self):
+        for text in ["0.15<!-- value: a.b -->", "0.156<!-- value: a.b * 100 -->", "0.16<!-- value: a.c -->",
+                     "so<!-- value: a.b -->", "0.16<!-- value a.b -->"]:
+            with self.subTest(text=text):
+                self.write("README.md", f"\n{text}\n")
+                self.assertTrue(doc_values.check(self.root))
 
 
 class Links(Tree):

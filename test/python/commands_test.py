@@ -99,8 +99,8 @@ class Commands(Recordings):
         with open("rows.csv", newline="", encoding="utf-8") as file:
             written = list(csv.DictReader(file))
         self.assertEqual(len(rows), len(written))
-        for name in rows.dtype.names:
-            self.assertEqual(rows.dtype[name], hjt.COMPARISON_DTYPE[name])
+        self.assertEqual(rows.dtype, hjt.COMPARISON_DTYPE)
+        for name in written[0]:
             np.testing.assert_array_equal(rows[name], [float(row[name]) for row in written], name)
 
     def test_a_bag_is_followed_and_one_is_written(self):
@@ -125,6 +125,52 @@ class Commands(Recordings):
         self.assertIn(verdict["level"], ("OK", "WARN", "not judged"))
         with open("report/report.html", encoding="utf-8") as file:
             self.assertIn(verdict["level"], file.read())
+
+    def test_arrays_at_hand_give_what_their_file_gives(self):
+        self.record()
+        table = np.genfromtxt("arm.csv", delimiter=",", names=True)
+        columns = {"time": table["timestamp"],
+                   **{name: np.column_stack([table[f"actual_{part}_{i}"] for i in range(6)])
+                      for name, part in (("position", "q"), ("current", "current"))}}
+        of_file, of_arrays = (hjt.follow(recording, arm="ur5") for recording in ("arm.csv", columns))
+        for joint, rows in of_file.pop("comparison").items():
+            np.testing.assert_array_equal(of_arrays["comparison"][joint], rows, joint)
+        self.assertEqual(of_arrays["joints"], of_file["joints"])
+        elbow = {"time": columns["time"], **{name: columns[name][:, 2] for name in ("position", "current")}}
+        of_file, of_arrays = (hjt.identify(recording, joint="elbow", overlays=ELBOW[:1])
+                              for recording in ("arm.csv", elbow))
+        self.assertEqual(of_arrays, of_file)
+
+    def test_indicators_and_remaining_answer_as_the_tool_of_files_and_arrays(self):
+        twin = hjt.Twin(hjt.Parameters())
+        rows = twin.run(60000, motor_torque=0.4, load_torque=5.0, every=10)
+        names = [name for name in rows.dtype.names if rows[name].ndim == 1]
+        np.savetxt("run.csv", np.column_stack([rows[name] for name in names]), "%.17g", ",",
+                   header=",".join(names), comments="")
+        expected = self.tool("indicators", "run.csv")
+        found = hjt.indicators("run.csv")
+        self.assertEqual(found, expected)
+        self.assertGreater(len(found["windows"]), 1)
+        of_arrays = hjt.indicators(rows, save_baseline="new.yaml")
+        for window in (*found["windows"], *of_arrays["windows"]):
+            window.pop("recording")
+        self.assertEqual(of_arrays, found)
+        expected = self.tool("remaining", "run.csv", "--hours", "100")
+        self.assertEqual(hjt.remaining("run.csv", hours=100.0), expected)
+        self.assertEqual(hjt.remaining(rows, hours=100.0), expected)
+
+    def test_progress_is_told_and_its_error_ends_the_function(self):
+        self.record()
+        told = []
+        hjt.follow("arm.csv", arm="ur5", progress=lambda step, done: told.append((step, done)))
+        self.assertIn("reading", {step for step, _ in told})
+        self.assertTrue(all(0.0 <= done <= 1.0 for _, done in told), told)
+
+        def fail(step, done):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            hjt.follow("arm.csv", arm="ur5", progress=fail)
 
     def test_numbers_of_the_command_line_do_not_depend_on_the_locale(self):
         from harmonic_joint_twin import _tool
@@ -164,14 +210,18 @@ class Errors(Recordings):
     def test_have_the_words_of_the_tool(self):
         for call, error, words in (
                 (lambda: hjt.check("none.csv"), hjt.InputError, "none.csv"),
-                (lambda: hjt.follow("none.csv"), hjt.InputError, "--joint"),
-                (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "--mode"),
+                (lambda: hjt.follow("none.csv"), hjt.InputError, "joint"),
+                (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "mode = 'backwards'"),
+                (lambda: hjt.follow({"time": [0.0], "current": [0.0]}, joint="elbow"), hjt.InputError, "'position'"),
+                (lambda: hjt.indicators("a.txt"), hjt.InputError, "'a.txt' must end in"),
+                (lambda: hjt.remaining({"time": [0.0]}), hjt.InputError, "recordings[0]: column 'motor_torque'"),
+                (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),
                 (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),
                 (lambda: hjt.checkup("ur6", "a.csv"), hjt.ParameterError, "neither a file nor an arm"),
                 (lambda: hjt.sweep("no_plan.yaml", "data"), hjt.InputError, "no_plan.yaml"),
                 (lambda: hjt.identify("none.csv", joint="elbow", overlays=[{"mesh.stifness": 1.0}]),
                  hjt.ParameterError, "did you mean mesh.stiffness"),
-                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "--folds")):
+                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "folds = 1")):
             with self.assertRaises(error) as caught:
                 call()
             self.assertIn(words, str(caught.exception))
@@ -211,6 +261,14 @@ class Interrupts(Recordings):
         with self.assertRaises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1.0)
+
+    def test_ctrl_c_ends_a_reading(self):
+        times, angles = motion(2000.0)
+        columns = {"time": times, "position": angles, "current": np.zeros_like(angles)}
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(100):
+                hjt.follow(columns, arm="ur5")
 
     def test_other_threads_run_meanwhile(self):
         self.plan()

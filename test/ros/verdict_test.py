@@ -82,7 +82,7 @@ class Verdict(unittest.TestCase):
                 self.assertEqual(live(), expected, joint)  # shows both
             self.assertEqual(self.diagnostics[joint].values("Drive")["Verdict"], verdict["level"])
             reported = {(status.level, status.message) for status in self.diagnostics[joint].statuses("Drive")
-                        if "Last: " not in status.message}
+                        if status.level != STALE}
             if joint == SICK:
                 self.assertIn((LEVELS[verdict["level"]], verdict["text"].rstrip(".")), reported)
             else:
@@ -90,6 +90,8 @@ class Verdict(unittest.TestCase):
             self.check_message(self.verdicts[joint].messages()[-1], verdict)
             wait_until(lambda joint=joint: self.diagnostics[joint].level("Drive") == STALE, f"{joint} stopped")
             self.assertIn("Last: " + verdict["level"], self.diagnostics[joint].statuses("Drive")[-1].message)
+            late = rospy.wait_for_message(f"/{joint}/joint_twin/verdict", VerdictMessage, timeout=10.0)
+            self.assertEqual(late.header, self.verdicts[joint].messages()[-1].header, "latched")
 
     def check_message(self, message, offline):
         """Every field of the message is that of the JSON document."""

@@ -110,6 +110,10 @@ class Arm(tool.ToolTest):
                 np.testing.assert_allclose([abs(sum(m.mesh_force)) for m in forces],
                                            [(31.6 if name in SHORT_NAMES[:3] else 57.0) * abs(torques[m.header.stamp])
                                             for m in forces], rtol=0.015, atol=5.0)
+                verdicts = [m.message for m in bag.read_messages(f"/{name}/joint_twin/verdict")]
+                self.assertEqual({m.joint for m in verdicts}, {tool.JOINT_NAMES[SHORT_NAMES.index(name)]})
+                self.assertEqual([m.level for m in verdicts], [m.NOT_JUDGED for m in verdicts])
+                self.assertEqual([m.reason for m in verdicts[1:]], [verdicts[0].EFFORT_CONSTANT] * 4)
                 for topic in ("encoders", "health", "stress"):
                     self.assertEqual(bag.get_message_count(f"/{name}/joint_twin/{topic}"), 50)
         self.succeed("follow", "arm.bag", "--joint", "elbow", "--bag", "elbow.bag")

@@ -160,7 +160,7 @@ record:
 
     def test_the_assessment_has_the_law_that_its_errors_are_fitted_with(self):
         table, errors = health_signatures.read(
-            pathlib.Path(tool.CHECKOUT) / "src" / "health" / "fitted_signatures.hpp")
+            pathlib.Path(tool.CHECKOUT) / "config" / "signatures" / "size_25.yaml")
         self.write("healthy.csv", recording())
         self.succeed("indicators", "healthy.csv", *COLUMNS, *SMALL_WINDOWS, "--save-baseline", "b.yaml")
         for line in (1.0, 4.0):

@@ -155,8 +155,8 @@ class Lives(tool.ToolTest):
                 ("every: 15000.0", "every: 0.005",
                  ["bad.yaml:10: lives.every = 0.005 [h] makes more than 1000000 check-ups in the first 1 of 5 drives"]),
                 ("[rated.csv]", "[none.csv]", ["none.csv cannot be read"]),
-                ("duty:\n", "classes: {a: []}\nduty:\n", ["classes has no place in a plan of lives"]),
-                ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["draw it, or fix it"])]:
+                ("duty:\n", "classes: {a: []}\nduty:\n", ["classes is not allowed in a plan of lives"]),
+                ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["give a distribution or one value"])]:
             with self.subTest(new):
                 self.assertIn(old, PLAN)
                 self.write("bad.yaml", PLAN.replace(old, new, 1))

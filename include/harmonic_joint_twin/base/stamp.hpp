@@ -9,7 +9,7 @@ namespace hjt
 /// Time of a message or of a simulated instant [ns since the epoch of the messages].
 using Stamp = std::int64_t;
 
-/// Of a stamp difference made of a duration [ns]: it can still be added to any time that a message can have.
+/// Longest stamp difference [ns]: it can still be added to any time that a message can have.
 constexpr Stamp MAX_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
 
 /// Largest magnitude of a stamp that a MAX_STAMP_LENGTH is added to [ns]; messages stay below.
@@ -18,6 +18,7 @@ constexpr Stamp MAX_STAMP = std::numeric_limits<Stamp>::max() / 2;
 /// A stamp further from the clock than this is damaged, or of a clock that was never set [ns]: a day.
 constexpr Stamp FAR_STAMP = 86'400'000'000'000;
 
+/// Whether a stamp is within +-MAX_STAMP.
 constexpr bool isStamp(Stamp stamp)
 {
   return stamp >= -MAX_STAMP && stamp <= MAX_STAMP;

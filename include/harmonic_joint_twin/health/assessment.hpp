@@ -86,6 +86,7 @@ std::string whyNotJudged(const Assessment& assessment);
 class Assessor
 {
 public:
+  /// @throws ParameterError if the file of indicators.signatures cannot be used (loadSignatures).
   explicit Assessor(const Parameters& parameters);
 
   void reset() noexcept;
@@ -110,7 +111,9 @@ public:
 
   const Assessment& assessment() const noexcept { return settled_; }
   const Baseline& baseline() const noexcept { return baseline_; }
-  const Deviations& deviations() const noexcept { return deviations_; }  ///< of the last window
+  const SignatureSet& signatures() const noexcept { return *signatures_; }
+  std::size_t searchLength() const noexcept { return cause_search_.signatures(); }  ///< of a search, for `advance`
+  const Deviations& deviations() const noexcept { return deviations_; }             ///< of the last window
 
 private:
   void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
@@ -121,6 +124,7 @@ private:
   void explain(const CausePosterior& posterior) noexcept;
   void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
 
+  std::shared_ptr<const SignatureSet> signatures_;
   const int least_windows_;
   const double error_factor_;
   Baseline baseline_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
@@ -11,6 +12,16 @@
 
 namespace hjt
 {
+struct SignatureSet;
+
+/// What an indicator of a sound drive, less a model's, differs by from one motion to another.
+struct CarriedError
+{
+  double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
+  double share{};            ///< of what drive and model differ by, of a line all of its signal [-]
+  double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]
+};
+
 /// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1
 /// forward), steps of three eighths of the gear's rated torque and of 10 K. What is not measured counts as 0.
 struct OperatingBin
@@ -98,7 +109,12 @@ struct ReferenceBin
   PlaceSquares leverage{};  // covariance of the slopes, of unit variance; from fitReference
   double slopes_freedom{};  // degrees of freedom that the slopes take; from fitReference
   std::array<Reference, INDICATOR_COUNT> references;
-  ReferenceSums sums;
+};
+
+/// What a class is learned from, beside its ReferenceBin.
+struct LearnedSums
+{
+  ReferenceSums windows;
   StepSums steps;
 };
 
@@ -172,15 +188,18 @@ enum class BaselineState : std::uint8_t
 /// its signal together), both times 10/windows below ten windows, v is CarriedError::freedom at most, and F is 0.
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
 /// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
+///
+/// Learning opens indicators.baseline_classes classes at most, whose memory the constructor takes: 0.2 MB each. A
+/// reference that is given needs 14 kB a class, and its memory takes the place of the other.
 class Baseline
 {
 public:
-  static constexpr std::size_t MAX_BINS = 64;
   static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
   /// Before a spread means anything; as least of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
-  explicit Baseline(const Parameters& parameters);
+  /// `signatures`: its CarriedErrors are used.
+  Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
   /// Uses the reference of a file; learning stops. `carried`: to another motion.
   void setReference(std::vector<ReferenceBin> bins, bool carried = false);
@@ -195,6 +214,10 @@ public:
   const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
   const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
+  const std::vector<LearnedSums>& sums() const noexcept
+  {
+    return sums_;
+  }                                                           ///< by bin; empty of a reference that was given
   int windowsHere() const noexcept { return windows_here_; }  ///< of it: in the reference, or compared since reset
   /// Of a class, for its reference.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
@@ -236,7 +259,7 @@ private:
 
   ReferenceBin* find(const OperatingBin& bin) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
-  void makeRoom();
+  void makeRoom(std::size_t bins);
   void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
             Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
@@ -246,6 +269,7 @@ private:
   Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
   void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
 
+  std::shared_ptr<const SignatureSet> signatures_;
   const int windows_;
   const std::size_t evidence_windows_;
   const double least_spread_;
@@ -259,6 +283,7 @@ private:
   bool given_{};
   bool carried_{};
   std::vector<ReferenceBin> bins_;  // never beyond its first capacity
+  std::vector<LearnedSums> sums_;   // likewise
   FitRoom fit_room_;
   std::vector<Recent> recent_;      // by bin
   std::vector<Compared> compared_;  // evidence_windows_ by bin

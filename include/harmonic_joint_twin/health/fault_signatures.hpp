@@ -4,6 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "harmonic_joint_twin/health/baseline.hpp"
@@ -117,19 +120,28 @@ struct Signature
   std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
 };
 
-/// Of the twin's own runs, written by `scripts/evaluate_health --fit`.
-struct SignatureTable
+/// The signatures of a gear and how far they hold: what a file says that parameter indicators.signatures names. Without
+/// a file: no signatures, and nothing is known of a carried reference.
+struct SignatureSet
 {
-  const Signature* begin() const noexcept { return first; }
-  const Signature* end() const noexcept { return first + count; }
+  SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
-  const Signature* first;
-  std::size_t count;
+  std::string gear;          ///< whose, for people
+  double number_error{};     ///< r of CauseSearch [-]
+  double length_error{};     ///< e [-]
+  double line_error{};       ///< l [-]
+  double evidence_weight{};  ///< b [-]
+  double severity_error{};   ///< of the severity by the signatures, as a share of it [-]
+  std::vector<Signature> signatures;
+  std::array<bool, SIGNATURE_SIZE>
+      fitted{};  ///< numbers that the signatures are known for; the others count for nothing
+  std::array<double, SCALAR_COUNT>
+      sound{};  ///< of the sound drive in the check-up, units of the indicators; NaN: not known
+  std::array<CarriedError, INDICATOR_COUNT> carried{};
 };
-SignatureTable faultSignatures() noexcept;
 
 /// Causes that move an indicator at severity 1 by `share` of its sound value or more; `sign`: +1 up, -1 down.
-std::vector<Cause> causesThatMove(ScalarIndicator indicator, double sign, double share);
+std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indicator, double sign, double share);
 
 /// What a window says of the causes.
 struct CausePosterior
@@ -161,9 +173,12 @@ struct CausePosterior
 class CauseSearch
 {
 public:
-  CauseSearch();
+  explicit CauseSearch(std::shared_ptr<const SignatureSet> set);
 
-  static std::size_t signatures() noexcept;  ///< that a search goes through, both passes
+  std::size_t signatures() const noexcept
+  {
+    return 2 * likelihoods_.size();
+  }  ///< that a search goes through, both passes
 
   void start() noexcept;  ///< with the next window
   bool isDone() const noexcept { return next_ == signatures(); }
@@ -177,7 +192,8 @@ private:
   /// Over the signatures of one cause.
   struct Sum
   {
-    void add(double logarithm, double prior, double severity) noexcept;
+    /// `weighted`: logarithm of the likelihood, times the weight of the evidence.
+    void add(double weighted, double prior, double severity) noexcept;
 
     double priors{};
     double total{};   // by prior and weight of the evidence
@@ -185,7 +201,8 @@ private:
     double second{};  // of its square
   };
 
-  std::vector<double> likelihoods_;  // logarithms; of the table, then of what is in none
+  std::shared_ptr<const SignatureSet> set_;
+  std::vector<double> likelihoods_;  // logarithms; of the set, then of what is in none
   double largest_{};
   std::array<Sum, CAUSE_COUNT> sums_{};
   std::size_t next_{};

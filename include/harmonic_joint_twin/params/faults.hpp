@@ -30,14 +30,14 @@ enum class FaultKind : std::uint8_t
   BEARING_OUTER_RACE,
   BEARING_BALL,
   BEARING_CAGE,
-  COUNT  ///< no kind: how many there are
+  COUNT  ///< number of kinds
 };
-constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);
+constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< number of kinds
 
-/// Where no place is meant: the whole member.
+/// Value of Fault::place for a fault of the whole member.
 constexpr int WHOLE_MEMBER = -1;
 
-/// As many can be active at once, and be configured.
+/// Most faults that can be active at once, and be configured.
 constexpr std::size_t MAX_FAULTS = 256;
 
 /// One fault of the gear. It is known by kind and place: the same once more replaces its severity.
@@ -50,7 +50,7 @@ struct Fault
   };               ///< tooth, segment, lobe or ball by kind, from 0 on; WHOLE_MEMBER where the kind allows it
   double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
 
-  /// Of a configured one: the twin starts with it.
+  /// Whether a twin with this fault in its configuration starts with it.
   bool isThereFromTheStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
@@ -66,11 +66,12 @@ enum class FaultPlace : std::uint8_t
   BALL         ///< balls, or pockets of the cage
 };
 
+/// What a kind of fault is: a row of FAULT_DESCRIPTIONS.
 struct FaultDescription
 {
   FaultKind kind;
-  const char* name;
-  FaultPlace place;
+  const char* name;      ///< of the kind, in files and messages
+  FaultPlace place;      ///< what Fault::place counts
   bool whole;            ///< WHOLE_MEMBER is allowed
   const char* severity;  ///< what severity 1 is
   const char* shows;     ///< where it shows first; orders by a name in braces, see shownFirst
@@ -141,21 +142,21 @@ constexpr bool hasRowsInOrder(const Table& table) noexcept
 }
 static_assert(hasRowsInOrder(FAULT_DESCRIPTIONS), "one row for each FaultKind, in its order");
 
-constexpr const FaultDescription& describe(FaultKind kind) noexcept
+constexpr const FaultDescription& describe(FaultKind kind) noexcept  ///< row of the table; `kind` is not COUNT
 {
   return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
 }
 /// Where it shows first in this drive, with the orders of its own bearing and teeth.
 std::string shownFirst(FaultKind kind, const Parameters& parameters);
-std::optional<FaultKind> faultNamed(const std::string& name);
-std::string faultNames();  ///< all, for an error text
+std::optional<FaultKind> faultNamed(const std::string& name);  ///< nothing if no kind has this name
+std::string faultNames();                                      ///< all, for an error text
 
-/// How a place of this kind is spelt, for a table.
+/// Word for a place of this kind, for a table: tooth, segment, lobe, ball or -.
 const char* placeName(FaultPlace place) noexcept;
-/// Places that there are in this gear.
+/// Number of such places in this gear.
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
-int firstPlace(FaultKind kind) noexcept;  ///< the least allowed: WHOLE_MEMBER or 0
-int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
+int firstPlace(FaultKind kind) noexcept;                               ///< the least allowed: WHOLE_MEMBER or 0
+int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;  ///< the greatest allowed in this gear
 
 /// The places of a kind: "tooth 0 ... 199 or -1 (the whole member)".
 std::string placeText(FaultKind kind, const Parameters& parameters);

@@ -17,7 +17,7 @@ namespace hjt
 struct ParameterValue
 {
   std::variant<bool, std::int64_t, double, std::string, std::vector<double>> value;
-  std::string origin;
+  std::string origin;  ///< file and line, option or server
 };
 
 /// Flat `section.key` to value; the common form of a YAML file, `--set` and the ROS parameter server.
@@ -44,7 +44,7 @@ ParameterValue parseScalar(const std::string& text, bool quoted, const std::stri
 /// The number that a value is, or that a text spells: on the parameter server 1e-3 is a text. Nothing if it is none.
 std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
-/// The value as an error text spells it.
+/// The value as error texts spell it.
 std::string valueText(const ParameterValue& value);
 
 /// Reads one `section.key=value` (value in YAML) over `map`. @throws ParameterError.
@@ -59,7 +59,7 @@ Parameters parseParameters(const ParameterMap& map);
 /// few. @throws ParameterError.
 void changeParameters(Parameters& parameters, const ParameterMap& changes);
 
-/// Of all values (FNV-1a, 64 bits).
+/// Hash of all values (FNV-1a, 64 bits).
 std::uint64_t parametersHash(const Parameters& parameters);
 
 /// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.
@@ -69,6 +69,6 @@ std::string describeParameters(const Parameters& parameters);
 /// @throws ParameterError naming source and line.
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
-/// The parameter table of the README, in Markdown: key, unit, range, meaning.
+/// The table of docs/parameters.md: key, unit, range, meaning.
 std::string parameterTableMarkdown();
 }  // namespace hjt

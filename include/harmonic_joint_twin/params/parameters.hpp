@@ -10,8 +10,8 @@
 
 namespace hjt
 {
-// Plain values, one struct per section of the configuration. No defaults: every key is read from configuration.
-// Units, ranges and meanings stand in one place, the field table (params/field_table.hpp).
+/// @file Plain values, one struct per section of the configuration, in SI units. No defaults: every key is read.
+/// Unit, range and meaning of each field stand in one place, docs/parameters.md (params/field_table.hpp).
 
 struct GearParameters
 {
@@ -104,7 +104,7 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Where a file could be named: there is none.
+/// Value of a parameter that names a file: no file.
 constexpr const char* NO_FILE = "none";
 
 /// Pitch errors of one toothed member: seeded, or from a table.
@@ -211,12 +211,11 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the joint is marched: one ring solve a step, staggered; the classical Runge-Kutta of Boost.odeint, four; or, on
-/// the response surface, steps of their own length by an error tolerance.
+/// How the joint is marched: one ring solve a step, staggered; or, on the response surface, steps of their own length
+/// by an error tolerance.
 enum class StepperKind
 {
   LEAPFROG,
-  RUNGE_KUTTA4,
   ADAPTIVE
 };
 
@@ -267,10 +266,12 @@ struct IndicatorParameters
   double stiffness_torque{};
   double lost_motion_torque{};
   int baseline_windows{};
+  int baseline_classes{};
   double least_spread{};
   double false_alarm_rate{};
   int evidence_windows{};
   double error_factor{};
+  std::string signatures{ NO_FILE };
 };
 
 struct HealthParameters

@@ -5,9 +5,10 @@
 
 namespace hjt
 {
+/// How a solve ended.
 enum class SolveCode
 {
-  CONVERGED,
+  CONVERGED,        ///< within solver.force_tolerance
   ITERATION_LIMIT,  ///< solver.max_iterations ran out, on the shortest path too
   NO_DESCENT,       ///< no step reduced the forces, on the shortest path neither
   SINGULAR,         ///< the tangent has no inverse
@@ -27,16 +28,16 @@ enum class SolveStage
 /// Outcome of a solve; the caller must look.
 struct [[nodiscard]] SolveStatus
 {
-  SolveCode code{ SolveCode::CONVERGED };
-  SolveStage stage{ SolveStage::MOTION };
-  int iterations{};            ///< Newton iterations, all attempts
-  int cuts{};                  ///< halvings of the path
-  int max_iterations{};        ///< solver.max_iterations, if the last attempt ran out of them; else 0
+  SolveCode code{ SolveCode::CONVERGED };  ///< how it ended
+  SolveStage stage{ SolveStage::MOTION };  ///< what it was doing
+  int iterations{};                        ///< Newton iterations, all attempts
+  int cuts{};                              ///< halvings of the path
+  int max_iterations{};                    ///< solver.max_iterations, if the last attempt ran out of them; else 0
   int jumps{};                 ///< teeth that changed their space through a tip: ratcheting, or too long a move
   double residual{};           ///< largest out-of-balance force component on a tooth [N]
   double unbalanced_torque{};  ///< of the last balance: load that the mesh does not carry [N.m]
 
-  bool ok() const noexcept { return code == SolveCode::CONVERGED; }
+  bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< it converged
 
   /// Adds the effort of an earlier attempt.
   SolveStatus& addEffort(const SolveStatus& before) noexcept

@@ -29,7 +29,7 @@ struct LossShares
 /// Steady turning at constant motor speed against a constant load.
 struct LossRow
 {
-  SolveStatus status;
+  SolveStatus status;     ///< of the ring; the numbers hold if ok()
   double motor_speed{};   ///< [rad/s]
   double load_torque{};   ///< at the output, > 0 resists [N.m]
   double load_reduced{};  ///< what the load asks of the motor without friction, mean of load x d(output)/d(motor) [N.m]
@@ -37,7 +37,8 @@ struct LossRow
   double gear_efficiency{};  ///< load power over motor power, the motor's own friction left out; 0 without load [-]
 };
 
-/// One row for every speed and load, in this order: all speeds of the first load, then of the next.
+/// One row for every speed [rad/s of the motor] and load [N.m at the output]: all speeds of the first load, then of the
+/// next. Laws and sources: docs/model.md, Friction.
 /// `positions`: wave generator angles per tooth pitch, >= 1. `progress`: called with the loads done.
 /// @throws InputError if positions < 1.
 std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vector<double>& speeds,
@@ -47,7 +48,7 @@ std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vect
 /// Torques at which the gear without its motor's own friction begins to move, at the temperature of the input section.
 struct Breakaway
 {
-  SolveStatus status;
+  SolveStatus status;     ///< of the ring; the numbers hold if ok()
   double starting{};      ///< at the wave generator, no load: the largest over a tooth pitch [N.m]
   double back_driving{};  ///< at the output, wave generator free: the load whose own pull overcomes the friction [N.m]
 };

@@ -11,6 +11,7 @@
 
 namespace hjt
 {
+/// Names of the places, in the order of the arrays by place. Laws and sources: docs/life.md.
 constexpr std::array<const char*, STRESS_PLACES> STRESS_PLACE_NAMES{ "tooth space", "transition", "flange" };
 
 /// What one place of the flexspline goes through in a turn of the wave generator at a steady load: nominal stresses,
@@ -21,11 +22,12 @@ struct StressCycle
   double highest{};  ///< [Pa]
   double shear{};    ///< constant over the turn [Pa]
 
-  double amplitude() const noexcept { return 0.5 * (highest - lowest); }
-  double mean() const noexcept { return 0.5 * (highest + lowest); }
+  double amplitude() const noexcept { return 0.5 * (highest - lowest); }  ///< [Pa]
+  double mean() const noexcept { return 0.5 * (highest + lowest); }       ///< [Pa]
   /// Largest equivalent stress after von Mises [Pa].
   double largest() const noexcept { return equivalent(std::max(highest, -lowest), shear); }
 
+  /// Equivalent stress after von Mises of a normal and a shear stress [Pa].
   static double equivalent(double normal, double shear) noexcept
   {
     return std::sqrt(normal * normal + 3.0 * shear * shear);
@@ -43,14 +45,15 @@ struct ToothStress
   /// By place, the same all around [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// What one tooth goes through in a turn is what all teeth have at one instant, as far as they are alike.
+  /// What one tooth goes through in a turn is what all teeth have at one instant, as far as they are alike. `place`:
+  /// below STRESS_PLACES.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());
     return { *lowest, *highest, shear[place] };
   }
 
-  /// Where the normal stress is largest in magnitude.
+  /// Tooth where the normal stress of a place is largest in magnitude.
   std::size_t worstTooth(std::size_t place) const noexcept
   {
     const auto worst = std::max_element(normal[place].begin(), normal[place].end(),

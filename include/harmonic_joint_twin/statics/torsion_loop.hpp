@@ -18,7 +18,7 @@ struct TorsionPoint
 /// Wave generator locked, load swept slowly to and fro: torsion with the friction of the teeth.
 struct TorsionLoop
 {
-  SolveStatus status;
+  SolveStatus status;                ///< the numbers hold if ok()
   std::vector<TorsionPoint> points;  ///< from +amplitude to -amplitude and back
   double hysteresis{};               ///< width of the loop at no load [rad]
   double lost_motion{};              ///< angle between the middles of the loop at + and - the lost motion torque [rad]

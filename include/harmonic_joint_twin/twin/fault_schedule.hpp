@@ -11,12 +11,13 @@
 
 namespace hjt
 {
+/// Faults that were injected, since reset.
 struct FaultCounters
 {
-  std::uint64_t accepted{};
-  std::uint64_t refused{};  ///< severity, place or onset out of its range
-  std::uint64_t late{};     ///< stamp before the instant already simulated: sets in at once
-  std::uint64_t no_room{};  ///< too many waiting or active: refused
+  std::uint64_t accepted{};  ///< queued
+  std::uint64_t refused{};   ///< severity, place or onset out of its range
+  std::uint64_t late{};      ///< stamp before the instant already simulated: sets in at once
+  std::uint64_t no_room{};   ///< too many waiting or active: refused
 };
 
 /// Faults that are to set in or to be taken away, in order of time, in a fixed store. Equal stamps keep the order of
@@ -24,11 +25,11 @@ struct FaultCounters
 class FaultSchedule
 {
 public:
-  static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;
+  static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;  ///< most that wait
 
-  explicit FaultSchedule(const Parameters& parameters);
+  explicit FaultSchedule(const Parameters& parameters);  ///< allocates; later members do not
 
-  void clear() noexcept;
+  void clear() noexcept;  ///< forgets all
   /// `fault` valid. @returns false if it is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
   /// Whether one has a stamp not after `instant`.

@@ -18,19 +18,21 @@ enum class InputKind : std::uint8_t
   TEMPERATURE,
   FAULT  ///< for Twin::injectFault: the queue takes none
 };
-constexpr std::size_t INPUT_KINDS = 4;  ///< of those with a value
+constexpr std::size_t INPUT_KINDS = 4;  ///< number of kinds with a value
 
+/// One stamped input of a twin.
 struct Input
 {
-  Stamp stamp{};
-  InputKind kind{};
-  double value{};
-  Fault fault{};  ///< for kind FAULT
+  Stamp stamp{};     ///< acts from here on [ns]
+  InputKind kind{};  ///< what `value` is
+  double value{};    ///< torque [N.m], temperature [degC], or 1 for an engaged brake
+  Fault fault{};     ///< for kind FAULT
 };
 
+/// Inputs of a queue since it was cleared.
 struct InputCounters
 {
-  std::uint64_t accepted{};
+  std::uint64_t accepted{};    ///< queued, late ones too
   std::uint64_t not_finite{};  ///< NaN or Inf: refused
   std::uint64_t late{};        ///< stamp before the instant already simulated: acts at once
   std::uint64_t overflow{};    ///< queue full: oldest dropped
@@ -40,10 +42,10 @@ struct InputCounters
 class InputQueue
 {
 public:
-  static constexpr std::size_t CAPACITY = 4096;
+  static constexpr std::size_t CAPACITY = 4096;  ///< most that wait
 
-  void clear() noexcept;
-  bool empty() const noexcept { return size_ == 0; }
+  void clear() noexcept;                              ///< forgets all, and the counters
+  bool empty() const noexcept { return size_ == 0; }  ///< none waits
 
   /// `now`: up to where has been simulated; an earlier stamp is late.
   void push(const Input& input, Stamp now) noexcept;
@@ -54,7 +56,7 @@ public:
   /// Takes the earliest input that is due. False: there is none.
   bool pop(Stamp instant, Input& input) noexcept;
 
-  const InputCounters& counters() const noexcept { return counters_; }
+  const InputCounters& counters() const noexcept { return counters_; }  ///< since clear
 
 private:
   std::array<Input, CAPACITY> inputs_{};

@@ -23,11 +23,11 @@ namespace hjt
 /// State of the joint at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
 struct JointOutputs
 {
-  Stamp stamp{};         ///< simulated instant [ns]
-  double motor_angle{};  ///< wave generator, true
-  double motor_velocity{};
-  double output_angle{};  ///< circular spline, true
-  double output_velocity{};
+  Stamp stamp{};                   ///< simulated instant [ns]
+  double motor_angle{};            ///< wave generator, true
+  double motor_velocity{};         ///< [rad/s]
+  double output_angle{};           ///< circular spline, true
+  double output_velocity{};        ///< [rad/s]
   double motor_torque{};           ///< applied, after command timeout and limits
   double load_torque{};            ///< external torque at the output, > 0 resists positive motion
   double temperature{};            ///< of the grease, that its friction has [degC]
@@ -39,50 +39,51 @@ struct JointOutputs
   double energy_residual{};        ///< energy in - stored - dissipated - released since reset [J]
   double dissipated_energy{};      ///< by all friction since reset [J]
   double released_energy{};        ///< stored energy that faults set free when they set in, since reset [J]
-  bool brake_engaged{};
-  bool converged{ true };      ///< false: the ring did not converge and the last good state is held
-  std::uint32_t iterations{};  ///< Newton iterations of the last step
-  std::uint32_t substeps{};    ///< it was divided into, where it would be too long for the joint's swing; 1 ... 31
-  double residual{};           ///< largest out-of-balance force [N]
-  double phase_advance{};      ///< of the joint's fastest natural mode in one substep [rad]
+  bool brake_engaged{};            ///< the brake holds the motor, but for its play
+  bool converged{ true };          ///< false: the ring did not converge and the last good state is held
+  std::uint32_t iterations{};      ///< Newton iterations of the last step
+  std::uint32_t substeps{};        ///< it was divided into, where it would be too long for the joint's swing; 1 ... 31
+  double residual{};               ///< largest out-of-balance force [N]
+  double phase_advance{};          ///< of the joint's fastest natural mode in one substep [rad]
 };
 
-/// Per-tooth arrays, sized once by `Twin::makeToothForces`. Signs and meanings as in ContactForces.msg.
+/// A value for each tooth of the flexspline, sized once by `Twin::makeToothForces`. Signs as in ContactForces.msg.
 struct ToothForces
 {
-  std::vector<double> wave_generator_force;
-  std::vector<double> rim_tension;
-  std::vector<double> bending_force;
-  std::vector<double> mesh_force;
-  std::vector<double> tooth_x;
-  std::vector<double> tooth_y;
+  std::vector<double> wave_generator_force;  ///< >= 0 [N]
+  std::vector<double> rim_tension;           ///< to the next tooth [N]
+  std::vector<double> bending_force;         ///< of the segment to the next tooth [N]
+  std::vector<double> mesh_force;            ///< normal to the flank, > 0 leading, < 0 trailing flank [N]
+  std::vector<double> tooth_x;               ///< of the tooth point, in the housing's axes [m]
+  std::vector<double> tooth_y;               ///< [m]
 };
 
+/// State of the solver over some steps, as in Health.msg.
 enum class SolverState : std::uint8_t
 {
-  OK = 0,
-  DEGRADED = 1,
-  FAILED = 2
+  OK = 0,        ///< every step converged on a short path
+  DEGRADED = 1,  ///< steps were cut or too long, or teeth jumped: see TwinCounters
+  FAILED = 2     ///< a step found no equilibrium: the last good state was held
 };
 
 /// Health indicators beside those in `JointOutputs`; as in Health.msg.
 struct HealthReport
 {
-  MotionIndicators motion;
-  LobeLoads lobes;
-  SolverState solver_state{};
+  MotionIndicators motion;     ///< of the last turns, from the true angles
+  LobeLoads lobes;             ///< at the current instant
+  SolverState solver_state{};  ///< of the steps that Twin::health was asked about
 };
 
 /// Counters since reset, for diagnostics.
 struct TwinCounters
 {
-  std::uint64_t steps{};
-  std::uint64_t solver_failures{};  ///< steps that did not converge: last good state held
-  std::uint64_t step_cuts{};        ///< steps that needed a shorter path
-  std::uint64_t jumps{};            ///< steps in which a tooth changed its space through a tip
-  std::uint64_t coarse_steps{};     ///< steps too long for what the joint does in them
-  InputCounters input;
-  FaultCounters faults;
+  std::uint64_t steps{};             ///< steps done
+  std::uint64_t solver_failures{};   ///< steps that did not converge: last good state held
+  std::uint64_t step_cuts{};         ///< steps that needed a shorter path
+  std::uint64_t jumps{};             ///< steps in which a tooth changed its space through a tip
+  std::uint64_t coarse_steps{};      ///< steps too long for what the joint does in them
+  InputCounters input;               ///< inputs but faults
+  FaultCounters faults;              ///< injected faults
   std::uint64_t torque_clamped{};    ///< steps on which the command exceeded motor.torque_limit
   std::uint64_t load_clamped{};      ///< steps on which the load exceeded output.load_torque_limit
   std::uint64_t overloads{};         ///< steps on which the joint's torque exceeded output.torque_limit
@@ -94,8 +95,8 @@ struct TwinCounters
 ///
 /// Time is the time of the messages: instants are whole multiples of the solver step, so that the same stamped inputs
 /// give the same numbers live, replayed and offline, in one go or in chunks.
-/// After construction no member throws or allocates unless stated. No question asked of the twin changes a bit of its
-/// run. Between two steps several threads may call its const members at once.
+/// After construction no member throws or allocates unless stated. Const members never change the
+/// simulation; between two steps several threads may call them at once.
 class Twin
 {
 public:
@@ -108,7 +109,7 @@ public:
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;
 
-  const Parameters& parameters() const noexcept;
+  const Parameters& parameters() const noexcept;  ///< those of the construction, without injected faults
 
   /// Restarts at rest, zero angles, at the first instant not before `stamp`, with the configured faults; forgets
   /// inputs, other faults and counters. False: the stamp is beyond +-MAX_STAMP, nothing was done.
@@ -127,9 +128,17 @@ public:
   /// that is not valid, or whose stamp is beyond +-MAX_STAMP, is refused and counted. While any is active all teeth are
   /// solved at every step.
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
-  const FaultList& activeFaults() const noexcept;
+  const FaultList& activeFaults() const noexcept;  ///< faults in force at the current instant
 
-  void push(const Input& input) noexcept;  ///< one of these, by its kind
+  void push(const Input& input) noexcept;  ///< queues one input, by `input.kind`
+
+  /// The arm around the joint, from the next step on and until the next call: its inertia at the output in place of
+  /// output.load_inertia [kg.m^2], >= 0, and its torque on the output beside that and the load torque, > 0 resists
+  /// positive motion [N.m]. Both finite. Only with solver.stepper = leapfrog. A reset settles under that torque.
+  void coupleArm(double inertia, double torque) noexcept;
+  double linkTorque() const noexcept;  ///< of gear and friction on load and arm, as they take it [N.m]
+  /// To load and arm, since reset: work on them and the output's kinetic energy [J].
+  double deliveredEnergy() const noexcept;
 
   /// Advances by one solver step if the next instant is not after `until`. False: nothing was done.
   bool step(Stamp until) noexcept;
@@ -137,10 +146,10 @@ public:
   Stamp stamp() const noexcept;       ///< current instant [ns]
   Stamp stepLength() const noexcept;  ///< [ns]
 
-  JointOutputs outputs() const noexcept;
-  EncoderReadings encoders() const noexcept;
-  double motorTorqueReading() const noexcept;  ///< as the drive estimates it from its current [N.m]
-  const TwinCounters& counters() const noexcept;
+  JointOutputs outputs() const noexcept;          ///< true state at the current instant
+  EncoderReadings encoders() const noexcept;      ///< what the sensors read there, with their errors
+  double motorTorqueReading() const noexcept;     ///< as the drive estimates it from its current [N.m]
+  const TwinCounters& counters() const noexcept;  ///< since the last reset
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
 
   ToothForces makeToothForces() const;  ///< allocates: call once
@@ -156,7 +165,7 @@ public:
   /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with
   /// `reset`.
   void watchSignals(bool on) noexcept;
-  bool watchesSignals() const noexcept;
+  bool watchesSignals() const noexcept;                       ///< as set by watchSignals
   const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
   /// Of the last window; of one in alarm 50 ms after its end, for so long its cause is searched for.
   const Assessment& assessment() const noexcept;

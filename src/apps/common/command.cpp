@@ -303,6 +303,7 @@ void CommandLine::addSubcommands()
     node.name = root_->name + " " + subcommand->name_;
     node.help = subcommand->help_;
     node.heading = HEADINGS[static_cast<std::size_t>(subcommand->subject_)];
+    node.is_built = subcommand->is_built_;
     addHelp(node);
     if (subcommand->declare_)
     {
@@ -320,7 +321,7 @@ bool CommandLine::knows(int argc, char** argv)
          std::any_of(all.begin(), all.end(), [&](const Subcommand* each) { return each->name_ == first; });
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv, bool aloud)
+std::optional<int> CommandLine::parse(int argc, char** argv)
 {
   try
   {
@@ -330,18 +331,12 @@ std::optional<int> CommandLine::parse(int argc, char** argv, bool aloud)
       run_ = request.command->run;
       return std::nullopt;
     }
-    if (aloud)
-    {
-      std::cout << request.text;
-    }
+    std::cout << request.text;
     return EXIT_DONE;
   }
   catch (const UsageError& error)
   {
-    if (aloud)
-    {
-      std::cerr << error.what() << '\n';
-    }
+    std::cerr << error.what() << '\n';
     return EXIT_USAGE;
   }
 }

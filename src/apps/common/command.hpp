@@ -72,6 +72,12 @@ enum class Subject
   DATA_SET
 };
 
+/// Why a build has not got a subcommand.
+struct NotBuilt
+{
+  const char* needs;  ///< name of the library that was missing
+};
+
 /// A subcommand of the tool. A static object of this type, at the end of the file that has its code, is all it takes to
 /// add one. "life age" is the subcommand `age` of the subcommand `life`.
 class Subcommand
@@ -83,6 +89,13 @@ public:
   Subcommand(Subject subject, const char* name, const char* help)
     : Subcommand(subject, name, help, std::function<Run(Command&)>())
   {
+  }
+
+  /// A subcommand that this build leaves out: it says so, whatever its arguments are.
+  Subcommand(Subject subject, const char* name, NotBuilt reason)
+    : Subcommand(subject, name, (std::string("not built: needs ") + reason.needs).c_str())
+  {
+    is_built_ = false;
   }
 
   template <class Options>
@@ -105,7 +118,8 @@ private:
   const Subject subject_;
   const std::string name_;
   const std::string help_;
-  const std::function<Run(Command&)> declare_;  // empty: has subcommands
+  const std::function<Run(Command&)> declare_;  // empty: has subcommands, or is not built
+  bool is_built_{ true };
 };
 
 /// The command line of a program.
@@ -121,9 +135,9 @@ public:
   /// The subcommand given is one of this program, or only the version is asked for.
   static bool knows(int argc, char** argv);
 
-  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, printed if
-  /// `aloud`.
-  std::optional<int> parse(int argc, char** argv, bool aloud = true);
+  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, which are
+  /// printed.
+  std::optional<int> parse(int argc, char** argv);
 
   /// Runs the subcommand that was chosen. @returns its exit code.
   int run() const { return run_(); }

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/configuration.hpp"
 
-#include <filesystem>
 #include <iostream>
 #include <regex>
 
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "params/configuration_files.hpp"
 #include "statics/gear_checks.hpp"
 
 namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 constexpr const char* GROUP = "Common options";
 }  // namespace
 
-void addFaultOption(Command& command, CommonOptions& options)
+void addFaultOption(Command& command, ConfigurationOptions& options)
 {
   command
       .add("--fault", options.faults,
@@ -26,7 +21,7 @@ void addFaultOption(Command& command, CommonOptions& options)
       .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 
-void addConfigurationOptions(Command& command, CommonOptions& options)
+void addConfigurationOptions(Command& command, ConfigurationOptions& options)
 {
   command.add("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
       .type("FILE")
@@ -39,16 +34,21 @@ void addConfigurationOptions(Command& command, CommonOptions& options)
       .group(GROUP);
 }
 
-void addCommonOptions(Command& command, CommonOptions& options)
+void addCommonOptions(Command& command, ConfigurationOptions& options, bool& json, bool& force)
 {
   addConfigurationOptions(command, options);
-  command.flag("--json", options.json, "one JSON document on stdout and nothing else there").group(GROUP);
-  command.flag("--force", options.force, "overwrite existing output files").group(GROUP);
+  command.flag("--json", json, "one JSON document on stdout and nothing else there").group(GROUP);
+  command.flag("--force", force, "overwrite existing output files").group(GROUP);
+}
+
+void addCommonOptions(Command& command, CommonOptions& options)
+{
+  addCommonOptions(command, options, options.json, options.force);
 }
 
 void addNamespaceOption(Command& command, std::string& joint_namespace)
 {
-  command.add("--joint-namespace", joint_namespace, "of the twin's topics")
+  command.add("--joint-namespace", joint_namespace, "ROS namespace of the twin's topics")
       .type("NAME")
       .check(
           [](const std::string& name)
@@ -59,61 +59,6 @@ void addNamespaceOption(Command& command, std::string& joint_namespace)
           });
 }
 
-fs::path configDirectory(const CommonOptions& options)
-{
-  return configurationDirectory(options.config_dir);
-}
-
-ParameterMap defaultParameterMap(const CommonOptions& options)
-{
-  ParameterMap map;
-  readDefaultConfiguration(configDirectory(options).string(), map);
-  return map;
-}
-
-void readOverlay(const CommonOptions& options, const std::string& name, ParameterMap& map)
-{
-  readYamlFile(findConfiguration(name, configDirectory(options)), map);
-}
-
-void addOverlays(const CommonOptions& options, ParameterMap& map)
-{
-  for (const std::string& overlay : options.configs)
-  {
-    readOverlay(options, overlay, map);
-  }
-  for (const std::string& assignment : options.assignments)
-  {
-    readAssignment(assignment, map);
-  }
-}
-
-ParameterMap loadParameterMap(const CommonOptions& options)
-{
-  ParameterMap map = defaultParameterMap(options);
-  addOverlays(options, map);
-  return map;
-}
-
-void addFaults(const CommonOptions& options, Parameters& parameters)
-{
-  for (const std::string& fault : options.faults)
-  {
-    parameters.faults.push_back(parseFault(fault, parameters));
-  }
-  if (parameters.faults.size() > MAX_FAULTS)
-  {
-    throw ParameterError("--fault: more than " + std::to_string(MAX_FAULTS) + " faults");
-  }
-}
-
-Parameters loadParameters(const CommonOptions& options)
-{
-  Parameters parameters = parseParameters(loadParameterMap(options));
-  addFaults(options, parameters);
-  return parameters;
-}
-
 void printGearWarnings(const Parameters& parameters)
 {
   for (const std::string& warning : gearWarnings(parameters))
@@ -122,7 +67,7 @@ void printGearWarnings(const Parameters& parameters)
   }
 }
 
-Parameters loadGear(const CommonOptions& options)
+Parameters loadGear(const ConfigurationOptions& options)
 {
   Parameters parameters = loadParameters(options);
   printGearWarnings(parameters);

@@ -1,57 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "apps/common/configuration.hpp"
 
-#include "recordings/recorded_motion.hpp"
-#include "tracking/motion_driven.hpp"
+#include "recordings/recording_options.hpp"
 
 namespace hjt
 {
-/// What subcommands on the measured motion of a joint take.
-struct MotionOptions : CommonOptions
+/// Options of a function on recordings, on the command line.
+template <class Options>
+struct Printed : Options
 {
-  std::string recording;
-  std::string joint;
-  std::string joint_namespace;
-  std::string topic;
-  double time_scale{ 1.0 };
+  bool json{};  ///< the result is printed as one document
 };
 
-/// A joint of UR's robots: its place in the columns of a controller's recording.
-struct UrJoint
-{
-  int number{};      ///< 0 ... 5
-  std::string name;  ///< in the messages of UR's driver
-};
+using ArmOptions = Printed<RecordingOptions>;
 
-/// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
-std::optional<UrJoint> findUrJoint(const std::string& name);
-
-constexpr const char* DEFAULT_TOPIC = "/joint_states";
+/// Progress and notices on stderr; signals that end the process otherwise stop the function, as long as it is kept.
+Watch consoleWatch();
 
 /// Those but the joint: the recording itself, then how it is read.
-void addRecording(Command& command, MotionOptions& options);
-void addReadingOptions(Command& command, MotionOptions& options);
+void addRecording(Command& command, RecordingOptions& options);
+void addReadingOptions(Command& command, RecordingOptions& options, bool& json);
 
-/// `addMotionOptions` leaves `--joint` no choice.
-void addRecordingOptions(Command& command, MotionOptions& options);
-void addMotionOptions(Command& command, MotionOptions& options);
+/// `--arm` alone.
+void addArmOption(Command& command, RecordingOptions& options);
 
-/// The recording and joint they name.
-MotionSource motionSource(const MotionOptions& options);
-
-/// Says on stderr if stamps and angles of a joint disagree with the recorded velocities.
-void warnOfStamps(const MotionCount& count);
-
-/// Calls `visit` with every sample of the recording, rates and load filled in, and returns what was found.
-/// Where the recording gives no load, it is what the joint is configured to carry.
-/// @throws InputError as readMotion.
-MotionFindings visitMotion(const MotionSource& source, const MotionDriven& twin,
-                           const std::function<void(const MotionSample&)>& visit);
-MotionFindings visitMotion(const MotionOptions& options, const MotionDriven& twin,
-                           const std::function<void(const MotionSample&)>& visit);
+/// `--joint` or `--arm`, and what goes with them.
+void addArmOptions(Command& command, RecordingOptions& options, bool& json);
 }  // namespace hjt

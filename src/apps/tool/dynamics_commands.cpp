@@ -21,7 +21,6 @@ namespace hjt
 namespace
 {
 const std::map<std::string, RingMethod> METHODS{ { "rk4", RingMethod::RUNGE_KUTTA4 },
-                                                 { "dop853", RingMethod::DORMAND_PRINCE8 },
                                                  { "implicit_euler", RingMethod::IMPLICIT_EULER },
                                                  { "tr_bdf2", RingMethod::TR_BDF2 },
                                                  { "esdirk4", RingMethod::ESDIRK4 } };
@@ -38,7 +37,7 @@ void requireEstimate(const std::string& method, double tolerance)
   if (tolerance > 0.0 && !judgesItsError(METHODS.at(method)))
   {
     throw InputError("--tolerance " + shortNumber(tolerance) + " [m]: " + method +
-                     " does not judge its error; dop853, tr_bdf2 and esdirk4 do");
+                     " does not judge its error; tr_bdf2 and esdirk4 do");
   }
 }
 
@@ -51,8 +50,7 @@ void declareMethod(Command& command, std::string& method, double& step, double& 
   }
   command
       .add("--method", method,
-           "rk4, dop853: explicit of order 4 (Boost.odeint), 8; implicit_euler, tr_bdf2, esdirk4: implicit of order 1, "
-           "2, 4")
+           "rk4: explicit of order 4 (Boost.odeint); implicit_euler, tr_bdf2, esdirk4: implicit of order 1, 2, 4")
       .choice(names);
   command.add("--step", step, "of time [s]").positive();
   command

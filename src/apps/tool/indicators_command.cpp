@@ -1,208 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <iostream>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
-#include "apps/tool/recorded_windows.hpp"
+#include "apps/common/motion_options.hpp"
+#include "apps/tool/signal_options.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
-#include "output/output_file.hpp"
-#include "output/run_summary.hpp"
-#include "output/text_table.hpp"
-#include "recordings/indicators_report.hpp"
-
-#include "bags/bag_file.hpp"
-#include "base/number_text.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/baseline_file.hpp"
-#include "health/signal_monitor.hpp"
-#include "messages/conversions.hpp"
-#include "messages/topics.hpp"
+#include "recordings/indicators.hpp"
 
 namespace hjt
 {
 namespace
 {
-struct IndicatorsOptions : SignalOptions
-{
-  std::vector<std::string> models;  // none, or one for each recording
-  std::string baseline;
-  std::string save_baseline;
-  std::string out;
-  bool carry{};    ///< the reference is of another motion
-  bool windows{};  ///< the recordings hold the windows' indicators, not the signals
-};
+using Options = Printed<IndicatorsOptions>;
 
-/// Windows of a recording, and what they were made of and with.
-struct WindowSeries
+int run(const Options& given)
 {
-  std::vector<SignalIndicators> windows;
-  const char* origin{};  // as in WindowResult
-  const char* parameters{};
-};
-
-/// All windows of a recording of signals.
-std::vector<SignalIndicators> readWindows(const std::string& path, const SignalSource& source,
-                                          const Parameters& parameters, std::uint64_t& refused)
-{
-  SignalMonitor monitor(parameters);
-  std::vector<SignalIndicators> windows;
-  const InterruptScope interrupts;
-  readSignals(path, source,
-              [&](const SignalSample& sample)
-              {
-                if (monitor.update(sample))
-                {
-                  windows.push_back(monitor.indicators());
-                }
-                return interruptSignal() == 0;
-              });
-  refused = monitor.refused();
-  return windows;
-}
-
-/// What was published of the windows while they were recorded; each message repeats the last window.
-std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
-{
-  rosbag::Bag bag;
-  openForReading(bag, path);
-  std::vector<SignalIndicators> windows;
-  for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
+  Options options = given;
+  options.watch = consoleWatch();
+  const AssessedWindows found = indicators(options);
+  if (!found.windows.empty())
   {
-    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
-    if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
-    {
-      windows.push_back(readIndicators(*message));
-    }
+    options.json ? printReport(true, reportOf(found).lines) : printSummary(found.windows);
   }
-  return windows;
-}
-
-/// All windows of one recording, or of a model's.
-WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
-{
-  if (options.windows)
-  {
-    return { readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS), "published windows",
-             "configuration" };
-  }
-  const RecordingParameters parameters = recordingParameters(signals, path);
-  if (std::optional<std::vector<SignalIndicators>> windows = windowsOfRun(path, signals, parameters))
-  {
-    return { std::move(*windows), "windows of the run", parameters.origin };
-  }
-  std::uint64_t refused = 0;
-  WindowSeries series{ readWindows(path, signalSource(signals, parameters.values), parameters.values, refused),
-                       "signals", parameters.origin };
-  warn(refused, path + ": samples without an angle, a torque or progress in time passed over");
-  return series;
-}
-
-/// All windows of recording `index`, less those of its model if there is one, which come into `model`.
-WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, std::vector<SignalIndicators>& model)
-{
-  WindowSeries measured = readOne(options.recordings[index], options, options);
-  if (!options.models.empty())
-  {
-    const CommonOptions& common = options;
-    SignalOptions twin;
-    static_cast<CommonOptions&>(twin) = common;
-    twin.joint_namespace = options.joint_namespace;
-    model = readOne(options.models[index], twin, options).windows;
-    measured.windows.resize(std::min(measured.windows.size(), model.size()));
-    for (std::size_t i = 0; i < measured.windows.size(); ++i)
-    {
-      measured.windows[i] = difference(measured.windows[i], model[i]);
-    }
-  }
-  return measured;
-}
-
-/// Every window of every recording. `judged`: of each recording, how near it came to a verdict.
-std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& assessor,
-                                 std::vector<ClosestAssessment>& judged)
-{
-  std::vector<WindowResult> windows;
-  for (std::size_t index = 0; index < options.recordings.size(); ++index)
-  {
-    const std::string& recording = options.recordings[index];
-    if (!options.baseline.empty())
-    {
-      assessor.reset();  // each is judged for itself
-    }
-    std::vector<SignalIndicators> model;
-    const WindowSeries measured = readRecording(index, options, model);
-    judged.emplace_back();
-    for (std::size_t i = 0; i < measured.windows.size(); ++i)
-    {
-      const Assessment assessment = assessor.update(measured.windows[i], model.empty() ? nullptr : &model[i]);
-      judged.back().take(assessment);
-      windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i], assessor.deviations(),
-                          assessor.baseline().residual(), assessment });
-    }
-    if (!options.baseline.empty() ? !judged.back().isJudged() : measured.windows.empty())
-    {
-      std::cerr << "joint_twin: not judged: " << judged.back().whyNotJudged(recording) << '\n';
-    }
-  }
-  return windows;
-}
-
-void refuseWrongModels(const IndicatorsOptions& options)
-{
-  if (!options.models.empty() && options.models.size() != options.recordings.size())
-  {
-    throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
-                     std::to_string(options.recordings.size()) +
-                     " recordings; it takes the twin's own recording of each, in their order");
-  }
-}
-
-int run(const IndicatorsOptions& options)
-{
-  const Parameters parameters = recordingParameters(options, options.recordings.front()).values;
-  for (const std::string& file : { options.out, options.save_baseline })
-  {
-    requireWritable(file, options.force, options.recordings.front());
-  }
-  refuseWrongModels(options);
-  const bool less_model = !options.models.empty();
-  Assessor assessor(parameters);
-  if (!options.baseline.empty())
-  {
-    assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
-  }
-  std::vector<ClosestAssessment> judged;
-  const std::vector<WindowResult> windows = assess(options, assessor, judged);
-  if (windows.empty())
-  {
-    throw InputError(options.recordings.front() + " is too short for one window (indicators.window_turns = " +
-                     shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
-                     shortNumber(parameters.indicators.window_time) + " s)");
-  }
-  writeWindows(options.out, windows);
-  if (!options.save_baseline.empty())
-  {
-    writeBaseline(options.save_baseline, assessor.baseline(), less_model);
-  }
-  options.json ? printDocument(windows, assessor.baseline().threshold()) : printSummary(windows);
   if (interruptSignal() != 0)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const bool any =
-      std::any_of(judged.begin(), judged.end(), [](const ClosestAssessment& one) { return one.isJudged(); });
-  return options.baseline.empty() || any ? EXIT_DONE : EXIT_FAILED;
+  return options.baseline.empty() || found.is_judged ? EXIT_DONE : EXIT_FAILED;
 }
 
-void declare(Command& command, IndicatorsOptions& options)
+void declare(Command& command, Options& options)
 {
   addSignalOptions(command, options);
   command
@@ -222,7 +47,7 @@ void declare(Command& command, IndicatorsOptions& options)
       .needs("--model");
   command.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
   command.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
-  addCommonOptions(command, options);
+  addCommonOptions(command, options, options.json, options.force);
 }
 
 const Subcommand INDICATORS{

@@ -1,26 +1,101 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/tool/sweep_runner.hpp"
-
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <sstream>
+#include <string>
 #include <thread>
 
-#include "apps/common/command.hpp"
+#include "apps/common/configuration.hpp"
+#include "datasets/expectation.hpp"
+#include "datasets/file_seal.hpp"
+#include "datasets/run_file.hpp"
+#include "datasets/sweep.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/run_summary.hpp"
+#include "surface/surface_cache.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
-struct ShardOptions : SweepArguments
+struct SweepOptions : CommonOptions
 {
+  std::string plan;
+  std::string out;
+  unsigned jobs{ std::max(1u, std::thread::hardware_concurrency()) };
   std::string part;
+  std::uint64_t shard{};
+  std::uint64_t shards{ 1 };
+  bool dry_run{};
+  bool list{};
 };
 
-void declare(Command& command, ShardOptions& options)
+/// Surfaces of the user's cache, each once in memory; each remark about them once.
+/// Those of drives with a wear of their own, which come but once, are not kept on the disk.
+SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
 {
-  options.jobs = std::max(1u, std::thread::hardware_concurrency());
-  addSweepOptions(command, options);
+  struct Remarks
+  {
+    std::mutex mutex;
+    std::set<std::string> shown;
+    Progress building{ "building response surfaces" };
+  };
+  const auto remarks = std::make_shared<Remarks>();
+  const auto show = [remarks](double done)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    remarks->building.update(done);
+  };
+  const auto tell = [remarks](const std::string& what)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    if (remarks->shown.insert(what).second)
+    {
+      std::cerr << "warning: " << what << '\n';
+    }
+  };
+  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), show, tell,
+           std::make_shared<SurfacePool>(jobs + 2) };
+}
+
+void printList(const Plan& plan, const SweepOptions& options)
+{
+  const SweepDirectory directory(plan, options.out);
+  std::cout << directory.indexHeader() << '\n';
+  for (std::uint64_t run = options.shard; run < plan.runs(); run += options.shards)
+  {
+    OrderedJson record = directory.record(run);
+    if (!record.is_object())
+    {
+      record = recordOf(checkedRun(plan, run), directory.runFileName(run));
+      record["status"] = "pending";
+      record[FILE_HASH] = nullptr;
+    }
+    std::cout << directory.indexRow(record) << '\n';
+  }
+}
+void declare(Command& command, SweepOptions& options)
+{
+  command.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
+  command.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
+      .required()
+      .type("DIR");
+  command.add("--jobs", options.jobs, "runs at the same time").range(1, 4096);
+  command.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
+  command.flag("--list", options.list, "print the index with every run of the plan, run nothing");
+  command.flag("--json", options.json,
+               "print the numbers of runs done, found and failed as one JSON document on stdout");
+  addConfigurationOptions(command, options);
   command.add("--shard", options.part, "only every N-th run, from run I on: one of N processes, anywhere")
       .type("I/N")
       .check(
@@ -35,21 +110,85 @@ void declare(Command& command, ShardOptions& options)
           });
 }
 
-int run(const ShardOptions& options)
+/// Under the plan's own overlays.
+Plan readPlan(const SweepOptions& options)
 {
-  return sweep(options);
+  SweepOptions with_overlays = options;
+  for (const std::string& overlay : Plan::overlays(options.plan))
+  {
+    with_overlays.configs.push_back(overlay);
+  }
+  return Plan(options.plan, loadParameterMap(with_overlays));
 }
 
-int runLives(const ShardOptions& options)
+void tellResult(const SweepOptions& options, const Plan& plan, const SweepResult& result)
 {
-  ShardOptions of_lives = options;
-  of_lives.lives = true;
-  return sweep(of_lives);
+  const std::string index = options.out + "/index.csv";
+  if (options.json)
+  {
+    printReport(true, { { "index", "", index },
+                        { "runs", "", plan.runs() },
+                        { "done", "", result.done },
+                        { "present", "", result.present },
+                        { "failed", "", result.failed },
+                        { "damaged", "", result.damaged },
+                        { ROWS_WITHOUT_FORCES, "", result.rows_without_forces } });
+  }
+  else
+  {
+    std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
+              << " failed, " << result.damaged << " damaged ones done again; index: " << index << "\n";
+  }
+  warn(result.rows_without_forces,
+       "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs");
 }
 
-const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "work off a plan of many runs: a labelled data set", declare, run };
+int workOff(const SweepOptions& options, const Plan& plan)
+{
+  if (options.list)
+  {
+    printList(plan, options);
+    return EXIT_DONE;
+  }
+  checkRuns(plan);
+  if (options.dry_run)
+  {
+    printExpectation(plan, options.jobs, sharedSurfaces(plan, 1));
+    return EXIT_DONE;
+  }
+  SweepDirectory directory(plan, options.out);
+  directory.open();
+  const InterruptScope interrupts;
+  const SweepResult result = runSweep(plan, directory, { options.out, options.jobs, options.shard, options.shards },
+                                      sharedSurfaces(plan, options.jobs));
+  tellResult(options, plan, result);
+  if (interruptSignal() != 0)
+  {
+    std::cerr << "joint_twin: interrupted; the same command resumes\n";
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
+}
+
+int sweep(const SweepOptions& options)
+{
+  return workOff(options, readPlan(options));
+}
+
+int sweepLives(const SweepOptions& options)
+{
+  const Plan plan = readPlan(options);
+  if (plan.lives() == nullptr)
+  {
+    throw InputError(options.plan + " has no mapping 'lives'; joint_twin sweep works it off");
+  }
+  return workOff(options, plan);
+}
+
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "work off a plan of many runs: a labelled data set", declare,
+                        sweep };
 const Subcommand LIVES{ Subject::DATA_SET, "lives",
                         "drives from new to their end, with a check-up every so often: a data set of run to failure",
-                        declare, runLives };
+                        declare, sweepLives };
 }  // namespace
 }  // namespace hjt

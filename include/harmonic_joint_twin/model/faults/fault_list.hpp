@@ -9,9 +9,10 @@
 
 namespace hjt
 {
+/// A fault in force.
 struct ActiveFault
 {
-  Fault fault;
+  Fault fault;           ///< what it is
   std::int64_t since{};  ///< stamp of its present severity [ns]
 };
 
@@ -22,16 +23,16 @@ public:
   /// Adds a fault, or replaces the severity of the one of its kind and place; severity 0 takes it away.
   /// What is as it should be already stays, with its stamp. @returns false if there is no room: nothing was done.
   bool set(const Fault& fault, std::int64_t since) noexcept;
-  void clear() noexcept
+  void clear() noexcept  ///< takes all away
   {
     version_ += size_ > 0 ? 1 : 0;
     size_ = 0;
   }
 
-  const ActiveFault* begin() const noexcept { return faults_.data(); }
-  const ActiveFault* end() const noexcept { return faults_.data() + size_; }
-  std::size_t size() const noexcept { return size_; }
-  bool empty() const noexcept { return size_ == 0; }
+  const ActiveFault* begin() const noexcept { return faults_.data(); }        ///< first
+  const ActiveFault* end() const noexcept { return faults_.data() + size_; }  ///< behind the last
+  std::size_t size() const noexcept { return size_; }                         ///< 0 ... MAX_FAULTS
+  bool empty() const noexcept { return size_ == 0; }                          ///< no fault is active
   std::uint64_t version() const noexcept { return version_; }  ///< another one whenever the list has changed
 
 private:

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// In place of the other hdf5_*.cpp where HDF5 is missing.
+#include "datasets/hdf5_files.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+[[noreturn]] void refuse(const std::string& path)
+{
+  throw InputError(path + ": HDF5 files are not built: they need HDF5");
+}
+}  // namespace
+
+bool hasHdf5()
+{
+  return false;
+}
+
+std::unique_ptr<RunFile> makeHdf5RunFile(const Recording&, const RunSpec&, const Twin*, const std::string& path)
+{
+  refuse(path);
+}
+
+std::string readHdf5Text(const std::string& path, const char*)
+{
+  refuse(path);
+}
+
+Columns readHdf5Columns(const std::string& path, const std::vector<std::string>&)
+{
+  refuse(path);
+}
+}  // namespace hjt

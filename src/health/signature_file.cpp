@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signature_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "base/edit_distance.hpp"
+#include "base/number_text.hpp"
+#include "base/range.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr int FORMAT = 1;
+constexpr const char* TABLE = "\nsignatures: |\n";  // the last key: rows are read as they stand
+constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
+
+/// Index of the indicator that a number of a signature speaks of.
+std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers()
+{
+  std::array<std::size_t, SIGNATURE_SIZE> indicators{};
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+  {
+    indicators[i] = i;
+  }
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  {
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+    {
+      indicators[signatureNumber(signal, line)] = amplitudeIndex(signal, line);
+    }
+  }
+  return indicators;
+}
+
+std::size_t lineOf(const YAML::Node& node)
+{
+  return static_cast<std::size_t>(node.Mark().line) + 1;
+}
+
+bool isIn(const Range& range, double value)
+{
+  return value >= range.min && value <= range.max;
+}
+
+class SignatureReader
+{
+public:
+  SignatureReader(const std::string& text, const std::string& path) : path_(path)
+  {
+    const std::size_t table = text.find(TABLE);
+    readHeader(text.substr(0, table));
+    if (table == std::string::npos)
+    {
+      fail(0, "signatures: no such table");
+    }
+    const std::string above = text.substr(0, table + 1);
+    readTable(text.substr(table + std::string(TABLE).size()),
+              static_cast<std::size_t>(std::count(above.begin(), above.end(), '\n')) + 2);
+  }
+
+  SignatureSet take() { return std::move(set_); }
+
+private:
+  /// `line` 0: of the file as a whole.
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const
+  {
+    throw ParameterError("indicators.signatures: " + path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " +
+                         what);
+  }
+
+  void readHeader(const std::string& text)
+  {
+    try
+    {
+      const YAML::Node file = YAML::Load(text);
+      if (!file.IsMap())
+      {
+        fail(0, "no file of signatures: it has no keys");
+      }
+      const YAML::Node format = section(file, "format");
+      if (!format.IsScalar() || format.Scalar() != std::to_string(FORMAT))
+      {
+        fail(lineOf(format), "format: " + (format.IsScalar() ? format.Scalar() : "no number") + ", expected " +
+                                 std::to_string(FORMAT) +
+                                 ": the file is of another version; make it again with "
+                                 "`scripts/evaluate_health --signatures`");
+      }
+      set_.gear = section(file, "gear").as<std::string>();
+      readErrors(section(file, "errors"));
+      readIndicators(section(file, "indicators"));
+      readSound(section(file, "sound"));
+      readCarried(section(file, "carried"));
+    }
+    catch (const YAML::Exception& error)
+    {
+      fail(static_cast<std::size_t>(error.mark.line) + 1, error.msg);
+    }
+  }
+
+  YAML::Node section(const YAML::Node& file, const char* key) const
+  {
+    const YAML::Node node = file[key];
+    if (!node)
+    {
+      fail(0, std::string(key) + ": missing");
+    }
+    return node;
+  }
+
+  double number(const YAML::Node& node, const std::string& key, const Range& range) const
+  {
+    const std::optional<double> value = node.IsScalar() ? decimalNumber(node.Scalar()) : std::nullopt;
+    if (!value || !isIn(range, *value))
+    {
+      fail(lineOf(node),
+           key + ": " + (node.IsScalar() ? node.Scalar() : "no number") + ", expected " + rangeText(range));
+    }
+    return *value;
+  }
+
+  void readErrors(const YAML::Node& errors)
+  {
+    const std::vector<std::pair<const char*, double*>> keys{ { "number", &set_.number_error },
+                                                             { "length", &set_.length_error },
+                                                             { "line", &set_.line_error },
+                                                             { "weight", &set_.evidence_weight },
+                                                             { "severity", &set_.severity_error } };
+    for (const auto& [key, value] : keys)
+    {
+      *value = number(section(errors, key), std::string("errors.") + key, { 0.0, 1e3 });
+    }
+  }
+
+  std::size_t indicatorNamed(const YAML::Node& node) const
+  {
+    const std::string& name = node.Scalar();
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    {
+      known.emplace_back(indicatorName(i));
+      if (known.back() == name)
+      {
+        return i;
+      }
+    }
+    fail(lineOf(node), "indicator " + name + ": no such indicator" + didYouMean(name, known));
+  }
+
+  void readIndicators(const YAML::Node& indicators)
+  {
+    const std::array<std::size_t, SIGNATURE_SIZE> known = indicatorsOfNumbers();
+    for (const auto& entry : indicators)
+    {
+      const std::size_t indicator = indicatorNamed(entry.first);
+      const auto found = std::find(known.begin(), known.end(), indicator);
+      const std::string key = "indicators." + entry.first.Scalar();
+      if (found == known.end())
+      {
+        fail(lineOf(entry.first), key + ": a part of a line; signatures have its amplitude");
+      }
+      if (entry.second.Scalar() != indicatorUnit(indicator))
+      {
+        fail(lineOf(entry.second), key + ": unit " + entry.second.Scalar() + ", expected " + indicatorUnit(indicator));
+      }
+      columns_.push_back(static_cast<std::size_t>(found - known.begin()));
+      set_.fitted[columns_.back()] = true;
+    }
+  }
+
+  void readSound(const YAML::Node& sound)
+  {
+    for (const auto& entry : sound)
+    {
+      const std::size_t indicator = indicatorNamed(entry.first);
+      if (indicator >= SCALAR_COUNT)
+      {
+        fail(lineOf(entry.first), "sound." + entry.first.Scalar() + ": a line; only scalar indicators have one");
+      }
+      set_.sound[indicator] = number(entry.second, "sound." + entry.first.Scalar(), { -1e30, 1e30 });
+    }
+  }
+
+  void readCarried(const YAML::Node& carried)
+  {
+    for (const auto& entry : carried)
+    {
+      const std::string key = "carried." + entry.first.Scalar();
+      CarriedError& error = set_.carried[indicatorNamed(entry.first)];
+      if (!entry.second.IsSequence() || entry.second.size() != 3)
+      {
+        fail(lineOf(entry.first), key + ": expected [deviation, share, degrees of freedom]");
+      }
+      error.deviation = number(entry.second[0], key, { 0.0, 1e30 });
+      error.share = number(entry.second[1], key, { 0.0, 1e30 });
+      error.freedom = number(entry.second[2], key, { 1.0, 1e9 });
+    }
+  }
+
+  void readTable(const std::string& table, std::size_t first_line)
+  {
+    std::istringstream rows(table);
+    std::string row;
+    for (std::size_t line = first_line; std::getline(rows, row); ++line)
+    {
+      std::istringstream stream(row);
+      const std::vector<std::string> words{ std::istream_iterator<std::string>(stream), {} };
+      if (!words.empty())
+      {
+        readRow(words, line);
+      }
+    }
+  }
+
+  void readRow(const std::vector<std::string>& words, std::size_t line)
+  {
+    if (words.size() != ROW_START + columns_.size())
+    {
+      fail(line, "signatures: " + std::to_string(words.size()) + " words, expected " +
+                     std::to_string(ROW_START + columns_.size()) +
+                     ": cause, motion, speed, direction, severity and a number for each of 'indicators'");
+    }
+    Signature signature{};
+    signature.cause = causeNamed(words[0], line);
+    signature.motion.speed = rowNumber(words[2], "speed [rad/s]", { 0.0, 1e5 }, line);
+    signature.motion.direction = rowNumber(words[3], "direction [-]", { 0.0, 1.0 }, line);
+    signature.severity = rowNumber(words[4], "severity [-]", { 0.0, 1.0 }, line);
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+    {
+      signature.change[columns_[i]] = rowNumber(words[ROW_START + i], "change", { -1e30, 1e30 }, line);
+    }
+    set_.signatures.push_back(signature);
+  }
+
+  double rowNumber(const std::string& word, const char* key, const Range& range, std::size_t line) const
+  {
+    const std::optional<double> value = decimalNumber(word);
+    if (!value || !isIn(range, *value))
+    {
+      fail(line, std::string("signatures: ") + key + " = " + word + ", expected " + rangeText(range));
+    }
+    return *value;
+  }
+
+  Cause causeNamed(const std::string& name, std::size_t line) const
+  {
+    std::vector<std::string> known;
+    for (auto cause = static_cast<std::size_t>(Cause::FIRST_FAULT); cause < CAUSE_COUNT; ++cause)
+    {
+      known.emplace_back(causeName(static_cast<Cause>(cause)));
+      if (known.back() == name)
+      {
+        return static_cast<Cause>(cause);
+      }
+    }
+    fail(line, "signatures: no such cause: " + name + didYouMean(name, known));
+  }
+
+  const std::string path_;
+  SignatureSet set_;
+  std::vector<std::size_t> columns_;  // numbers of a signature
+};
+
+std::string readText(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::string text{ std::istreambuf_iterator<char>(file), {} };
+  if (!file)
+  {
+    throw ParameterError("indicators.signatures = '" + path + "': cannot be read; name a file, or " + NO_FILE);
+  }
+  return text;
+}
+}  // namespace
+
+SignatureSet parseSignatures(const std::string& text, const std::string& path)
+{
+  return SignatureReader(text, path).take();
+}
+
+std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
+{
+  static std::mutex mutex;
+  static std::map<std::pair<std::string, fs::file_time_type>, std::shared_ptr<const SignatureSet>> known;
+  const std::string path =
+      name == NO_FILE || fs::path(name).is_absolute() ? name : findConfiguration(name, configurationDirectory(""));
+  std::error_code error;
+  const fs::file_time_type written = name == NO_FILE ? fs::file_time_type{} : fs::last_write_time(path, error);
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_ptr<const SignatureSet>& set = known[{ path, written }];
+  if (!set)
+  {
+    set = std::make_shared<SignatureSet>(name == NO_FILE ? SignatureSet{} : parseSignatures(readText(path), path));
+  }
+  return set;
+}
+}  // namespace hjt

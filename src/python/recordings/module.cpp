@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions on recordings within Python: the module _recordings, behind python/harmonic_joint_twin/_commands.py, which
+// has their signatures.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/choices.hpp"
+#include "params/configuration_files.hpp"
+#include "python/comparison_row.hpp"
+#include "python/overlays.hpp"
+#include "recordings/compare.hpp"
+#include "recordings/follow.hpp"
+#include "recordings/identify.hpp"
+#include "recordings/indicators.hpp"
+#include "recordings/remaining.hpp"
+
+namespace hjt
+{
+namespace
+{
+py::object toPython(const Json& json);
+
+struct ToPython
+{
+  py::object operator()(std::nullptr_t) const { return py::none(); }
+  py::object operator()(double value) const
+  {
+    return std::isfinite(value) ? py::float_(value) : py::object(py::none());
+  }
+  py::object operator()(const std::vector<Json>& values) const
+  {
+    py::list list;
+    for (const Json& value : values)
+    {
+      list.append(toPython(value));
+    }
+    return std::move(list);
+  }
+  py::object operator()(const std::vector<Json::Member>& members) const
+  {
+    py::dict dict;
+    for (const auto& [name, value] : members)
+    {
+      dict[py::str(name)] = toPython(value);
+    }
+    return std::move(dict);
+  }
+  template <class Value>
+  py::object operator()(const Value& value) const
+  {
+    return py::cast(value);
+  }
+};
+
+py::object toPython(const Json& json)
+{
+  return json.visit(ToPython());
+}
+
+/// A function's options by their names. What Python cannot give as the option's type is its TypeError.
+class Given
+{
+public:
+  explicit Given(const py::dict& values) : values_(values) {}
+
+  template <class Value>
+  void take(const char* name, Value& field) const
+  {
+    if (values_.contains(name))
+    {
+      field = py::cast<Value>(values_[name]);
+    }
+  }
+
+  void take(const char* name, std::optional<Span>& field) const
+  {
+    std::optional<std::array<double, 2>> pair;
+    take<std::optional<std::array<double, 2>>>(name, pair);
+    field = pair ? std::make_optional(Span{ (*pair)[0], (*pair)[1] }) : std::nullopt;
+  }
+
+  py::object operator[](const char* name) const
+  {
+    return values_.contains(name) ? py::object(values_[name]) : py::none();
+  }
+
+private:
+  py::dict values_;
+};
+
+/// How Python follows a function: Ctrl-C, an error out of `progress`, and the notices that become warnings.
+class PythonWatch
+{
+public:
+  explicit PythonWatch(py::object progress) : progress_(std::move(progress)) {}
+  PythonWatch(const PythonWatch&) = delete;
+  PythonWatch& operator=(const PythonWatch&) = delete;
+
+  Watch watch()
+  {
+    return { [this](const std::string& what) { return [this, what](double done) { look(what, done); }; },
+             [this]
+             {
+               look({}, 0.0);
+               return ended_;
+             },
+             [this](const std::string& text) { notices_.push_back(text); } };
+  }
+
+  /// @throws what Python raised meanwhile.
+  std::vector<std::string> finish()
+  {
+    if (error_)
+    {
+      std::rethrow_exception(error_);
+    }
+    if (ended_)
+    {
+      throw py::error_already_set();
+    }
+    return std::move(notices_);
+  }
+
+private:
+  /// Nothing of Python is called once it has raised: files are closed first.
+  void look(const std::string& what, double done)
+  {
+    if (ended_)
+    {
+      return;
+    }
+    try
+    {
+      check_();
+      if (!what.empty() && !progress_.is_none() && std::abs(done - shown_) >= STEP)
+      {
+        shown_ = done;
+        const py::gil_scoped_acquire acquire;
+        progress_(what, done);
+      }
+    }
+    catch (const Interrupted&)
+    {
+      ended_ = true;
+    }
+    catch (const py::error_already_set&)
+    {
+      error_ = std::current_exception();
+      ended_ = true;
+    }
+  }
+
+  static constexpr double STEP = 0.01;
+
+  py::object progress_;
+  InterruptCheck check_;
+  double shown_{ -1.0 };
+  bool ended_{};
+  std::exception_ptr error_;
+  std::vector<std::string> notices_;
+};
+
+void takeConfiguration(const Given& given, ConfigurationOptions& options)
+{
+  for (const auto& overlay : given["overlays"])
+  {
+    readOverlay(overlay, configurationDirectory("").string(), options.values);
+  }
+}
+
+using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A column of a mapping of arrays or a structured array, of shape (rows,) or, of an arm, (rows, joints); none: it is
+/// not there.
+class MotionColumn
+{
+public:
+  MotionColumn(const py::object& columns, const char* name)
+  {
+    const py::object names = py::hasattr(columns, "dtype") ? columns.attr("dtype").attr("names") : columns;
+    if (names.contains(name))
+    {
+      values_ = columns[name].cast<Values>();
+      data_ = values_.data();
+    }
+  }
+
+  explicit operator bool() const { return data_ != nullptr; }
+  py::ssize_t rows() const { return values_.shape(0); }
+  py::ssize_t width() const { return values_.ndim() > 1 ? values_.shape(1) : 1; }
+  double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
+
+private:
+  Values values_;
+  const double* data_{};
+};
+
+/// @throws InputError if columns are missing or not of one shape.
+void takeRows(const py::object& columns, RecordingOptions& options)
+{
+  struct Choice
+  {
+    const char* name;
+    double MotionRow::*field;
+    bool needed;
+  };
+  constexpr std::array<Choice, 6> CHOICES{ { { "position", &MotionRow::position, true },
+                                             { "current", &MotionRow::current, true },
+                                             { "load", &MotionRow::load, false },
+                                             { "velocity", &MotionRow::recorded_velocity, false },
+                                             { "temperature", &MotionRow::temperature, false },
+                                             { "motor_angle", &MotionRow::motor_angle, false } } };
+  const MotionColumn times(columns, "time");
+  const MotionColumn positions(columns, "position");
+  if (!times || !positions || times.width() != 1 || times.rows() == 0)
+  {
+    throw InputError("recording: columns 'time', of shape (rows,), and 'position' are needed");
+  }
+  options.rows.assign(static_cast<std::size_t>(times.rows()),
+                      std::vector<MotionRow>(static_cast<std::size_t>(positions.width())));
+  for (const Choice& choice : CHOICES)
+  {
+    const MotionColumn column(columns, choice.name);
+    if (!column && !choice.needed)
+    {
+      continue;
+    }
+    if (!column || column.rows() != times.rows() || column.width() != positions.width())
+    {
+      throw InputError(std::string("recording: column '") + choice.name + "' is missing or not of the shape (" +
+                       std::to_string(times.rows()) + ", " + std::to_string(positions.width()) + ") of the angles");
+    }
+    for (std::size_t row = 0; row < options.rows.size(); ++row)
+    {
+      for (std::size_t joint = 0; joint < options.rows[row].size(); ++joint)
+      {
+        MotionRow& motion = options.rows[row][joint];
+        motion.*choice.field = column.at(row, joint);
+        motion.time = times.at(row, 0) - times.at(0, 0);
+        motion.received = motion.time;
+      }
+    }
+  }
+  options.rows_have_load = static_cast<bool>(MotionColumn(columns, "load"));
+}
+
+/// @throws InputError where options contradict each other or are out of range.
+void takeRecording(const Given& given, RecordingOptions& options)
+{
+  takeConfiguration(given, options);
+  given.take("joint", options.joint);
+  given.take("arm", options.arm);
+  given.take("load", options.load);
+  given.take("identified", options.identified);
+  given.take("topic", options.topic);
+  given.take("time_scale", options.time_scale);
+  given.take("force", options.force);
+  if (options.joint.empty() == options.arm.empty())
+  {
+    throw InputError("one of joint and arm is needed");
+  }
+  if (options.load != LOAD_OF_ARM && options.load != LOAD_RECORDED)
+  {
+    throw InputError("load = '" + options.load + "' must be 'arm' or 'target_moment'");
+  }
+  if (!(options.time_scale > 0.0) || !std::isfinite(options.time_scale))
+  {
+    throw InputError("time_scale = " + std::to_string(options.time_scale) + " [-] must be above 0");
+  }
+  const py::object recording = given["recording"];
+  options.recording = py::isinstance<py::str>(recording) ? py::cast<std::string>(recording) : "recording";
+  if (!py::isinstance<py::str>(recording))
+  {
+    takeRows(recording, options);
+  }
+}
+
+/// `at_hand`: names to columns of arrays, of shape (rows,).
+void takeSignals(const Given& given, SignalOptions& options)
+{
+  takeConfiguration(given, options);
+  given.take("recordings", options.recordings);
+  given.take("joint", options.joint);
+  given.take("torque_scale", options.torque_scale);
+  given.take("force", options.force);
+  given.take("at_hand", options.at_hand);
+  for (const auto& [recording, columns] : options.at_hand)
+  {
+    for (const auto& [name, values] : columns)
+    {
+      if (values.size() != columns.begin()->second.size())
+      {
+        throw InputError(recording + ": column '" + name + "' has " + std::to_string(values.size()) +
+                         " values, expected: " + std::to_string(columns.begin()->second.size()) + " as '" +
+                         columns.begin()->first + "'");
+      }
+    }
+  }
+  for (const std::string& recording : options.recordings)
+  {
+    const std::string wrong = options.at_hand.count(recording) > 0 ? "" : wrongSignalFile(recording);
+    if (!wrong.empty())
+    {
+      throw InputError(wrong);
+    }
+  }
+}
+
+using Answer = std::pair<py::object, std::vector<std::string>>;
+
+/// Calls `function` with the options, without the interpreter's lock; gives what `document` makes of its result, and
+/// the notices.
+template <class Options, class Function, class Document>
+Answer call(const Given& given, Options& options, const Function& function, const Document& document)
+{
+  PythonWatch watch(given["progress"]);
+  options.watch = watch.watch();
+  const auto result = withoutLock([&] { return function(options); });
+  const std::vector<std::string> notices = watch.finish();
+  return { document(result), notices };
+}
+
+Answer followIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  FollowOptions options;
+  takeRecording(given, options);
+  given.take("bag", options.bag);
+  std::string mode = "motion";
+  given.take("mode", mode);
+  bool known = false;
+  for (const auto& [name, choice] : choiceNames(InputMode{}))
+  {
+    known = known || (mode == name && choice != InputMode::COMMANDS);
+    options.mode = mode == name ? choice : options.mode;
+  }
+  if (!known)
+  {
+    throw InputError("mode = '" + mode + "' must be 'motion', 'torque' or 'observer'");
+  }
+  std::vector<std::vector<ComparisonRow>> rows;
+  options.take = [&](std::size_t joint, const Comparison& now)
+  {
+    rows.resize(std::max(rows.size(), joint + 1));
+    rows[joint].push_back(rowOf(now));
+  };
+  return call(
+      given, options, [](const FollowOptions& asked) { return follow(asked); },
+      [&](const Followed& followed)
+      {
+        rows.resize(followed.joints.size());
+        py::object document = toPython(documentOf(reportOf(followed)));
+        py::dict arrays;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          arrays[py::str(followed.joints[i].name)] =
+              py::array_t<ComparisonRow>(static_cast<py::ssize_t>(rows[i].size()), rows[i].data());
+        }
+        document["comparison"] = followed.is_arm ? py::object(arrays) : arrays[py::str(followed.joints.front().name)];
+        return document;
+      });
+}
+
+Answer identifyIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  IdentifyOptions options;
+  takeRecording(given, options);
+  given.take("out", options.out);
+  given.take("train", options.train);
+  given.take("judge", options.judge);
+  given.take("folds", options.folds);
+  if (arguments.contains("folds") && (options.folds < 2 || options.folds > 100))
+  {
+    throw InputError("folds = " + std::to_string(options.folds) + " is out of range, allowed: 2 ... 100");
+  }
+  return call(
+      given, options, [](const IdentifyOptions& asked) { return identify(asked); },
+      [](const Identified& found) { return toPython(documentOf(reportOf(found).whole())); });
+}
+
+Answer compareIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  ComparisonOptions options;
+  takeRecording(given, options);
+  given.take("report", options.report);
+  given.take("reference", options.reference);
+  return call(
+      given, options, [](const ComparisonOptions& asked) { return compare(asked); },
+      [](const ComparedRecording& found) { return toPython(found.document); });
+}
+
+Answer indicatorsIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  IndicatorsOptions options;
+  takeSignals(given, options);
+  given.take("models", options.models);
+  given.take("baseline", options.baseline);
+  given.take("save_baseline", options.save_baseline);
+  given.take("out", options.out);
+  given.take("carry", options.carry);
+  if (options.carry && (options.baseline.empty() || options.models.empty()))
+  {
+    throw InputError("carry needs baseline and models");
+  }
+  return call(
+      given, options, [](const IndicatorsOptions& asked) { return indicators(asked); },
+      [](const AssessedWindows& found) { return toPython(documentOf(reportOf(found))); });
+}
+
+Answer remainingIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  RemainingOptions options;
+  takeSignals(given, options);
+  given.take("hours", options.hours);
+  given.take("baseline", options.baseline);
+  given.take("duty", options.duty);
+  given.take("use_record", options.use_record);
+  if (options.hours && !(*options.hours >= 1e-6 && *options.hours <= 1e7))
+  {
+    throw InputError("hours = " + std::to_string(*options.hours) + " [h] is out of range, allowed: 1e-6 ... 1e7 [h]");
+  }
+  return call(
+      given, options, [](const RemainingOptions& asked) { return remaining(asked); },
+      [](const Remaining& found) { return toPython(documentOf(reportOf(found))); });
+}
+}  // namespace
+}  // namespace hjt
+
+PYBIND11_MODULE(_recordings, module)
+{
+  module.doc() = "Functions on recordings: options by name in, a document and the notices out.";
+  pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
+  module.def("follow", &hjt::followIn, pybind11::arg("arguments"), "Joints beside their twins, and their rows.");
+  module.def("identify", &hjt::identifyIn, pybind11::arg("arguments"), "Gain, friction, inertia and ripple.");
+  module.def("compare", &hjt::compareIn, pybind11::arg("arguments"), "Verdict and page.");
+  module.def("indicators", &hjt::indicatorsIn, pybind11::arg("arguments"), "Windows and their assessment.");
+  module.def("remaining", &hjt::remainingIn, pybind11::arg("arguments"), "Use and remaining life.");
+}

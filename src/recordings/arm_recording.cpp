@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/arm_recording.hpp"
+
+#include <cmath>
+
+#include "arm/arm_configuration.hpp"
+#include "base/number_text.hpp"
+#include "elements/load.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/effort.hpp"
+#include "tracking/motion_driven.hpp"
+#include "tracking/ratio_fit.hpp"
+
+namespace hjt
+{
+namespace
+{
+Parameters parametersOf(const ArmJoint& joint, const RecordingOptions& options)
+{
+  ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
+  readAssignment("telemetry.load=" + options.load, map);
+  addOverlays(options, map);
+  Parameters parameters = parseParameters(map);
+  addFaults(options, parameters);
+  const LoadSource load = parameters.telemetry.load;
+  if (load != LoadSource::TARGET_MOMENT && load != LoadSource::ARM)
+  {
+    throw ParameterError("telemetry.load: the load of an arm is chosen by --load");
+  }
+  return parameters;
+}
+
+/// One joint as an arm.
+ArmDescription armOf(const std::string& short_name)
+{
+  ArmDescription arm;
+  ArmJoint& joint = arm.joints.emplace_back();
+  const std::optional<UrJoint> known = findUrJoint(short_name);
+  joint.name = known ? known->name : short_name;
+  joint.short_name = short_name;
+  return arm;
+}
+
+/// In words, if stamps and angles of a joint disagree with the recorded velocities.
+std::string wrongStamps(const MotionCount& count)
+{
+  constexpr double TOLERANCE = 0.03;
+  if (!std::isfinite(count.velocity_ratio) || std::abs(count.velocity_ratio - 1.0) <= TOLERANCE)
+  {
+    return {};
+  }
+  const std::string factor = roundedText(count.velocity_ratio, 3);
+  return "by their stamps the angles change " + factor +
+         " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all results" +
+         (count.velocity_ratio > 0.0 ? "; --time-scale " + factor + " makes them agree" : "");
+}
+}  // namespace
+
+ArmRecording::ArmRecording(const RecordingOptions& options)
+  : watch_(options.watch)
+  , rows_(options.rows)
+  , joint_namespace_(options.joint_namespace)
+  , affixes_(options.affixes)
+  , is_arm_(!options.arm.empty())
+  , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
+  , source_(motionSource(options))
+{
+  for (const ArmJoint& joint : arm_.joints)
+  {
+    parameters_.push_back(is_arm_ ? parametersOf(joint, options) : loadParameters(options));
+  }
+  has_load_ = isFile() ? recordsLoad(source_) : options.rows_have_load;
+  uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
+  if (uses_recorded_ && !has_load_)
+  {
+    throw InputError(source_.path + " holds no load; --load arm needs none");
+  }
+  for (Parameters& parameters : parameters_)
+  {
+    Parameters drive = parameters;
+    inertias_in_load_.push_back(is_arm_ ? takeInertiaInLoad(drive) : 0.0);
+    if (!uses_recorded_)
+    {
+      parameters = drive;
+    }
+  }
+}
+
+MotionSource ArmRecording::source(std::size_t joint) const
+{
+  const Parameters& parameters = parameters_[joint];
+  MotionSource source = source_;
+  source.joint = is_arm_ ? affixes_(arm_.joints[joint].name) : source_.joint;
+  source.csv_joint = is_arm_ ? static_cast<int>(joint) : source_.csv_joint;
+  source.current_per_effort = currentPerEffort(parameters);
+  source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
+  return source;
+}
+
+std::string ArmRecording::twinNamespace(std::size_t joint) const
+{
+  return (is_arm_ ? "/" + arm_.joints[joint].short_name : std::string()) + joint_namespace_;
+}
+
+MotionFindings ArmRecording::read(const VisitRows& visit) const
+{
+  RecordingFit fit(parameters_);
+  const MotionFindings found = read(visit, fit);
+  noticeOf(fit);
+  noticeOf(found);
+  return found;
+}
+
+MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit, double end) const
+{
+  return is_arm_ ? readArm(visit, fit, end) : readJoint(visit, end);
+}
+
+MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
+{
+  return differentiate([this](const VisitRows& rows) { return read(rows); }, visit);
+}
+
+MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit& fit) const
+{
+  const auto read_all = [&](const VisitRows& rows)
+  {
+    const MotionFindings found = read(rows, fit);
+    noticeOf(found);
+    return found;
+  };
+  return differentiate(read_all, visit);
+}
+
+MotionFindings ArmRecording::differentiate(const Read& read, const VisitSample& visit) const
+{
+  std::vector<MotionDifferentiator> differentiators(arm_.joints.size());
+  std::vector<Load> loads;
+  for (const Parameters& parameters : parameters_)
+  {
+    loads.emplace_back(parameters.output);
+  }
+  const auto forward = [&](std::size_t i, bool at_end)
+  {
+    while (std::optional<MotionSample> sample = differentiators[i].pop(at_end))
+    {
+      if (!is_arm_ && !has_load_)
+      {
+        sample->load = ownTorque(loads[i], *sample);
+      }
+      visit(i, *sample);
+    }
+  };
+  MotionFindings found = read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          differentiators[i].push(rows[i].row);
+          forward(i, false);
+        }
+      });
+  for (std::size_t i = 0; i < differentiators.size(); ++i)
+  {
+    forward(i, true);
+  }
+  if (!is_arm_)
+  {
+    found.refused = differentiators.front().refused();
+    found.gaps = differentiators.front().gaps();
+    if (found.corrupt > 0 || found.refused > 0 || found.gaps > 0)
+    {
+      watch_.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
+                    std::to_string(found.refused) + " rows repeated or out of order, " + std::to_string(found.gaps) +
+                    " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) + " s");
+    }
+  }
+  return found;
+}
+
+/// The rows at hand, as readArmMotion reads a file.
+MotionCount ArmRecording::readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const
+{
+  const std::function<void(double)> progress = watch_.progress("reading");
+  MotionCount count;
+  for (const std::vector<MotionRow>& row : rows_)
+  {
+    if (row.size() != arm_.joints.size())
+    {
+      throw InputError(source_.path + " has " + std::to_string(row.size()) +
+                       " joints, expected: " + std::to_string(arm_.joints.size()));
+    }
+    ++count.rows;
+    count.duration = row.front().time;
+    progress(static_cast<double>(count.rows) / static_cast<double>(rows_.size()));
+    if (!visit(row))
+    {
+      break;
+    }
+  }
+  return count;
+}
+
+MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
+{
+  RatioFit ratio(nominalRatio(parameters_.front().gear));
+  std::vector<ArmJointRow> rows(1);
+  MotionFindings found;
+  found.has_load = has_load_;
+  const auto take = [&](const MotionRow& row)
+  {
+    rows.front() = { row, row.load, 0.0 };
+    ratio.add(row);
+    visit(rows);
+    return !watch_.stopped() && row.time < end;
+  };
+  static_cast<MotionCount&>(found) = isFile() ?
+                                         readMotion(source(0), take, watch_.progress("reading")) :
+                                         readRows([&](const std::vector<MotionRow>& row) { return take(row.front()); });
+  if (!found.misfit.exists())
+  {
+    found.misfit = { Reason::GEAR_RATIO, ratio.text() };
+  }
+  return found;
+}
+
+MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
+{
+  std::vector<std::string> names;
+  for (const ArmJoint& joint : arm_.joints)
+  {
+    names.push_back(affixes_(joint.name));
+  }
+  ArmLoad load(arm_);
+  std::vector<ArmJointRow> rows(names.size());
+  std::vector<MotionRow> in_current;
+  MotionFindings findings;
+  findings.has_load = has_load_;
+  const auto forward = [&](bool at_end)
+  {
+    while (const ArmSample* sample = load.pop(at_end))
+    {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        rows[i].row = sample->joints[i];
+        rows[i].recorded_load = sample->joints[i].load;
+        rows[i].motor_part = inertias_in_load_[i] * sample->joints[i].acceleration;
+        if (!uses_recorded_)
+        {
+          rows[i].row.load = sample->torques[i];
+        }
+      }
+      fit.update(sample->joints, sample->torques);
+      findings.gaps += sample->joints.front().after_gap ? 1 : 0;
+      visit(rows);
+    }
+  };
+  const auto take = [&](const std::vector<MotionRow>& motion)
+  {
+    in_current = motion;
+    for (std::size_t i = 0; i < motion.size() && isFile(); ++i)
+    {
+      in_current[i].current *= currentPerEffort(parameters_[i]);
+    }
+    findings.refused += load.push(in_current) ? 0 : 1;
+    forward(false);
+    return !watch_.stopped() && motion.front().time < end;
+  };
+  static_cast<MotionCount&>(findings) =
+      isFile() ? readArmMotion(source_, names, take, watch_.progress("reading")) : readRows(take);
+  forward(true);
+  findings.velocity_ratio = fit.stampFactor().value;
+  fit.refuse(findings.misfit);
+  return findings;
+}
+
+void ArmRecording::noticeOf(const RecordingFit& fit) const
+{
+  const auto say = [this](const std::string& of, const std::vector<RecordingFinding>& findings)
+  {
+    for (const RecordingFinding& finding : findings)
+    {
+      if (finding.stops && finding.kind != "stamps")
+      {
+        watch_.notice(of + finding.text);
+      }
+    }
+  };
+  if (is_arm_)
+  {
+    say("", fit.ofArm());
+    for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+    {
+      say(arm_.joints[i].short_name + ": ", fit.ofJoint(i));
+    }
+  }
+}
+
+void ArmRecording::noticeOf(const MotionFindings& found) const
+{
+  if (const std::string text = wrongStamps(found); !text.empty())
+  {
+    watch_.notice(text);
+  }
+  for (const std::string& remark : found.remarks)
+  {
+    watch_.notice(source_.path + ": " + remark);
+  }
+  if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
+  {
+    watch_.notice(source_.path + ": " + found.misfit.clause);
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "arm/arm_load.hpp"
+#include "arm/recording_fit.hpp"
+#include "recordings/recording_options.hpp"
+
+namespace hjt
+{
+/// One joint of the arm at the time of a row.
+struct ArmJointRow
+{
+  MotionRow row;           ///< its load the one chosen, at the output
+  double recorded_load{};  ///< [N.m]
+  double motor_part{};     ///< what of the motor's inertia a controller's torque holds beside the arm's load [N.m]
+};
+
+/// The recording of an arm, or of one joint as an arm of one, and the twin's parameters of each of its joints. The load
+/// of one joint is the recorded one.
+class ArmRecording
+{
+public:
+  using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
+  using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
+
+  /// `options` must outlive it. @throws ParameterError, InputError: unreadable, or without the load that is chosen.
+  explicit ArmRecording(const RecordingOptions& options);
+
+  bool isArm() const { return is_arm_; }
+  bool isFile() const { return rows_.empty(); }
+  const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
+  const std::vector<ArmJoint>& joints() const { return arm_.joints; }
+  MotionSource source(std::size_t joint) const;        ///< of that joint alone
+  std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
+  /// `telemetry.inertia_in_load` is that of the load that is chosen.
+  const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
+  const std::vector<Parameters>& parameters() const { return parameters_; }
+  bool hasRecordedLoad() const { return has_load_; }
+  /// The load is the recorded one.
+  bool usesRecordedLoad() const { return uses_recorded_; }
+
+  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
+  /// not fit. Without any load the rows' is 0. @throws InputError.
+  MotionFindings read(const VisitRows& visit) const;
+  /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
+  MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
+
+  /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
+  void noticeOf(const RecordingFit& fit) const;
+  /// And of the whole recording.
+  void noticeOf(const MotionFindings& found) const;
+
+  /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
+  /// what it is configured to. @throws InputError.
+  MotionFindings readSamples(const VisitSample& visit) const;
+  MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
+
+private:
+  using Read = std::function<MotionFindings(const VisitRows&)>;
+
+  MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
+  MotionFindings readJoint(const VisitRows& visit, double end) const;
+  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
+  MotionFindings differentiate(const Read& read, const VisitSample& visit) const;
+
+  Watch watch_;
+  const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file
+  std::string joint_namespace_;
+  JointAffixes affixes_;
+  bool is_arm_;
+  ArmDescription arm_;
+  std::vector<Parameters> parameters_;
+  std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
+  MotionSource source_;
+  bool has_load_{};
+  bool uses_recorded_{};
+};
+}  // namespace hjt

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/follow.hpp"
+
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <memory>
+
+#include "output/text_table.hpp"
+#include "recordings/arm_recording.hpp"
+#include "recordings/tracked_bag.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// As the fields of Comparison.msg.
+const std::vector<Column<Comparison>> COLUMNS{
+  { "time", &Comparison::time },
+  { "position_measured", [](const Comparison& now) { return now.position.measured; } },
+  { "position_predicted", [](const Comparison& now) { return now.position.predicted; } },
+  { "position_residual", [](const Comparison& now) { return now.position.residual(); } },
+  { "position_band", [](const Comparison& now) { return now.position.band; } },
+  { "velocity_measured", [](const Comparison& now) { return now.velocity.measured; } },
+  { "velocity_predicted", [](const Comparison& now) { return now.velocity.predicted; } },
+  { "velocity_residual", [](const Comparison& now) { return now.velocity.residual(); } },
+  { "current_measured", [](const Comparison& now) { return now.current.measured; } },
+  { "current_predicted", [](const Comparison& now) { return now.current.predicted; } },
+  { "current_residual", [](const Comparison& now) { return now.current.residual(); } },
+  { "current_band", [](const Comparison& now) { return now.current.band; } },
+  { "residual_torque", &Comparison::residual_torque },
+  { "joint_torque", &Comparison::joint_torque },
+  { "friction_torque", &Comparison::friction_torque },
+  { "load_torque", &Comparison::load_torque },
+  { "load_told", &Comparison::load_provided },
+  { "temperature", &Comparison::temperature },
+  { "temperature_received", &Comparison::temperature_received },
+  { "sticking", &Comparison::sticking },
+  { "after_gap", &Comparison::after_gap },
+  { "outside_band", &Comparison::isOutside }
+};
+
+/// Root mean square of what is added.
+class Rms
+{
+public:
+  void add(double value)
+  {
+    squares_ += value * value;
+    ++count_;
+  }
+  double value() const { return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0; }
+
+private:
+  double squares_{};
+  std::uint64_t count_{};
+};
+
+/// One joint beside its twin.
+class Follower
+{
+public:
+  /// `bag`: gets the comparisons as those of joint `number`, if there is one.
+  Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
+    : options_(options)
+    , has_load_(recording.isArm() || recording.hasRecordedLoad())
+    , has_arm_load_(recording.isArm() && !recording.usesRecordedLoad())
+    , has_load_error_(has_arm_load_ && recording.hasRecordedLoad())
+    , bag_(bag)
+    , number_(number)
+    , tracker_(recording.parameters(number), options.mode, surfaceSource(options.watch))
+  {
+    if (!options.out.empty())
+    {
+      csv_.emplace(pathOf(recording), COLUMNS);
+    }
+  }
+
+  void add(const ArmJointRow& joint)
+  {
+    if (has_arm_load_)
+    {
+      motor_parts_.push_back({ joint.row.time, joint.motor_part });
+    }
+    if (has_load_error_)
+    {
+      load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
+    }
+    if (has_load_)
+    {
+      tracker_.pushLoad(joint.row.time, joint.row.load);
+    }
+    tracker_.push(joint.row);
+    take(false);
+  }
+
+  FollowedJoint finish(const std::string& name)
+  {
+    take(true);
+    if (csv_)
+    {
+      csv_->close();
+    }
+    return { name,
+             tracker_.counters(),
+             tracker_.timing(),
+             tracker_.lag(),
+             current_.value(),
+             residual_.value(),
+             velocity_.value(),
+             position_.value(),
+             has_load_error_ ? std::make_optional(load_error_.value()) : std::nullopt };
+  }
+
+  Tracker& tracker() { return tracker_; }
+
+private:
+  std::string pathOf(const ArmRecording& recording) const
+  {
+    const std::filesystem::path out = options_.out;
+    const std::string path =
+        recording.isArm() ? (out / (recording.joints()[number_].short_name + ".csv")).string() : options_.out;
+    requireWritable(path, options_.force, options_.recording);
+    return path;
+  }
+
+  void take(bool at_end)
+  {
+    while (std::optional<Comparison> now = tracker_.pop(at_end))
+    {
+      if (bag_ != nullptr)
+      {
+        bag_->offer(number_, *now, tracker_);
+      }
+      // The column is always the torque of a controller, independent of the load option.
+      while (!motor_parts_.empty() && motor_parts_.front().time < now->time)
+      {
+        motor_parts_.pop_front();
+      }
+      if (!motor_parts_.empty())
+      {
+        now->load_torque += motor_parts_.front().torque;
+      }
+      current_.add(now->current.measured);
+      residual_.add(now->current.residual());
+      velocity_.add(now->velocity.residual());
+      position_.add(now->position.residual());
+      options_.take(number_, *now);
+      if (csv_)
+      {
+        csv_->write(*now);
+      }
+    }
+  }
+
+  struct MotorPart
+  {
+    double time;
+    double torque;
+  };
+
+  const FollowOptions& options_;
+  const bool has_load_;
+  const bool has_arm_load_;
+  const bool has_load_error_;
+  TrackedBag* bag_;
+  std::size_t number_;  // of the joint
+  Tracker tracker_;
+  std::optional<TableFile<Comparison>> csv_;
+  std::deque<MotorPart> motor_parts_;  // of rows whose comparison is to come
+  Rms current_;
+  Rms residual_;
+  Rms velocity_;
+  Rms position_;
+  Rms load_error_;
+};
+
+/// Null: no bag is asked for.
+std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
+{
+  if (options.bag.empty())
+  {
+    return nullptr;
+  }
+  if (!recording.isFile())
+  {
+    throw InputError("bag = '" + options.bag + "' needs a recording in a file, whose times it keeps");
+  }
+  std::vector<TrackedBag::Joint> joints;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    joints.push_back({ recording.joints()[i].name, recording.twinNamespace(i), recording.parameters(i) });
+  }
+  return std::make_unique<TrackedBag>(options.bag, recording.source(0), joints);
+}
+
+void noticeOfUnusedLoad(const ArmRecording& recording, const FollowOptions& options)
+{
+  const MotionSource source = recording.source(0);
+  if (!recording.isArm() && recording.hasRecordedLoad() && recording.parameters(0).telemetry.load == LoadSource::MODEL)
+  {
+    options.watch.notice("the recording holds a load (" + (isCsv(source) ? "target_moment" : source.load_topic) +
+                         "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give "
+                         "--config recorded_load.yaml after the joint's own file");
+  }
+}
+
+const std::vector<Column<FollowedJoint>> JOINT_COLUMNS{
+  { "joint", &FollowedJoint::name, "joint" },
+  { "rows", [](const FollowedJoint& joint) { return joint.counters.compared; }, "rows" },
+  { "current_rms", &FollowedJoint::current_rms, "current, rms [A]" },
+  { "current_residual_rms", &FollowedJoint::current_residual_rms, "less predicted [A]" },
+  { "outside", [](const FollowedJoint& joint) { return joint.counters.outside; }, "rows outside" },
+  { "load_difference_rms", &FollowedJoint::load_error, "load less recorded [N.m]" }
+};
+
+Report reportOfArm(const Followed& followed)
+{
+  const MotionFindings& found = followed.found;
+  return { { { "rows", "rows", found.rows },
+             { "duration", "duration", found.duration, "s" },
+             { "unreadable", "messages unreadable or incomplete", found.corrupt },
+             { "refused", "rows repeated, out of order or not finite", found.refused },
+             { "gaps", "gaps that cut the recording", found.gaps },
+             { "temperatures_refused", "temperatures refused: not finite, impossible values",
+               found.refused_temperatures },
+             { "load", "load", followed.load } },
+           { { "joints", Table(JOINT_COLUMNS, followed.joints) } } };
+}
+
+Report reportOfJoint(const MotionFindings& found, const FollowedJoint& joint)
+{
+  return {
+    { { "rows", "rows", found.rows },
+      { "duration", "duration", found.duration, "s" },
+      { "unreadable", "messages unreadable", found.corrupt },
+      { "refused", "rows refused: repeated, out of order, impossible values", joint.counters.refused },
+      { "missing", "rows missing, at a period of " + shortNumber(joint.timing.period) + " s", joint.timing.missing },
+      { "period", "", joint.timing.period },
+      { "gaps", "gaps that cut the recording", joint.counters.gaps },
+      { "reception_offset", "reception minus stamp", joint.timing.offset, "s" },
+      { "reception_jitter", "jitter of the reception, 95 %", joint.timing.jitter, "s" },
+      { "lag", "", joint.lag },
+      { "", "delay of the measurement", joint.lag ? Json(*joint.lag) : "unknown", joint.lag ? "s" : "" },
+      { "temperatures_refused", "temperatures refused: not finite, impossible values", found.refused_temperatures },
+      { "without_load", "rows without a received load", joint.counters.without_load },
+      { "current_residual_rms", "measured less predicted current, rms", joint.current_residual_rms, "A" },
+      { "velocity_residual_rms", "measured less predicted velocity, rms", joint.velocity_residual_rms, "rad/s" },
+      { "position_residual_rms", "measured less predicted position, rms", joint.position_residual_rms, "rad" },
+      { "outside", "rows outside the band of the current", joint.counters.outside },
+      { "solver_failures", "", joint.counters.solver_failures } },
+    {}
+  };
+}
+}  // namespace
+
+Followed follow(const FollowOptions& options)
+try
+{
+  const ArmRecording recording(options);
+  noticeOfUnusedLoad(recording, options);
+  if (recording.isArm() && !options.out.empty())
+  {
+    std::filesystem::create_directories(options.out);
+  }
+  requireWritable(options.bag, options.force, options.recording);
+  const std::unique_ptr<TrackedBag> bag = bagOf(recording, options);
+  std::vector<std::unique_ptr<Follower>> followers;
+  std::vector<Tracker*> trackers;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    followers.push_back(std::make_unique<Follower>(recording, options, bag.get(), i));
+    trackers.push_back(&followers.back()->tracker());
+  }
+  if (bag)
+  {
+    bag->judge(trackers, !options.identified.empty());
+  }
+  ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
+  RecordingFit fit(recording.parameters());
+  Followed followed{ recording.isArm(), options.load, {}, {} };
+  followed.found = recording.read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          followers[i]->add(rows[i]);
+        }
+        friction.look(rows.front().row.time);
+        if (bag)
+        {
+          bag->offerVerdicts(rows.front().row.time, recording.isArm() ? &fit : nullptr);
+        }
+      },
+      fit);
+  recording.noticeOf(fit);
+  recording.noticeOf(followed.found);
+  for (std::size_t i = 0; i < followers.size(); ++i)
+  {
+    followed.joints.push_back(followers[i]->finish(recording.joints()[i].short_name));
+  }
+  if (bag)
+  {
+    bag->close();
+  }
+  return followed;
+}
+catch (const Stopped&)
+{
+  return {};
+}
+
+Report reportOf(const Followed& followed)
+{
+  return followed.is_arm ? reportOfArm(followed) : reportOfJoint(followed.found, followed.joints.front());
+}
+}  // namespace hjt

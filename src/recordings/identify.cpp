@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "output/text_table.hpp"
+#include "recordings/arm_recording.hpp"
+
+#include "base/number_text.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "tracking/motion_driven.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double PAST_THE_END = 1.0;  // [s]
+
+/// Entries of an overlay by section.
+using Sections = std::map<std::string, std::string>;
+
+/// The identified parameters, each with its interval.
+Sections identifiedSections(const Identification& found)
+{
+  Sections sections;
+  const auto add = [&](const std::string& key, const std::string& value, const std::string& comment)
+  {
+    const std::size_t dot = key.find('.');
+    sections[key.substr(0, dot)] += "  # " + comment + "\n  " + key.substr(dot + 1) + ": " + value + "\n";
+  };
+  for (const IdentifiedValue& value : found.values)
+  {
+    if (!value.refusal.empty() || value.key.empty())
+    {
+      continue;
+    }
+    add(value.key, numberText(value.value),
+        value.name + " [" + value.unit + "]; 95 %: +-" + shortNumber(value.half_width) + ". Identified.");
+    if (value.key == "mesh.friction_kinetic")
+    {
+      add("mesh.friction_static", numberText(found.parameters.mesh.friction_static), "In proportion.");
+    }
+  }
+  const TelemetryParameters& telemetry = found.parameters.telemetry;
+  for (const RippleLine& line : found.lines)
+  {
+    add(line.key, "[" + numberText(line.torque[0]) + ", " + numberText(line.torque[1]) + "]",
+        line.refusal.empty() ? "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]; 95 %: +-" +
+                                   shortNumber(line.half_width) + ". Identified." :
+                               "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
+  }
+  add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
+  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
+  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
+  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest), "Beyond, none is known [rad/s].");
+  return sections;
+}
+
+void writeOverlay(const IdentifyOptions& options, const std::string& joint, const std::string& path,
+                  const Sections& sections)
+{
+  std::string text =
+      "# Overlay: results of `joint_twin identify` for joint  " + joint + " in\n# " + options.recording + "\n";
+  for (const auto& [section, entries] : sections)
+  {
+    text += "\n" + section + ":\n" + entries;
+  }
+  writeTextFile(path, text);
+}
+
+const std::vector<Column<IdentifiedValue>> VALUE_COLUMNS{
+  { "name", &IdentifiedValue::name },      { "key", &IdentifiedValue::key },
+  { "unit", &IdentifiedValue::unit },      { "configured", &IdentifiedValue::configured },
+  { "value", &IdentifiedValue::value },    { "half_width", &IdentifiedValue::half_width },
+  { "refusal", &IdentifiedValue::refusal }
+};
+const std::vector<Column<RippleLine>> LINE_COLUMNS{ { "key", &RippleLine::key },
+                                                    { "order", &RippleLine::order },
+                                                    { "amplitude", &RippleLine::amplitude },
+                                                    { "half_width", &RippleLine::half_width },
+                                                    { "phase", &RippleLine::phase },
+                                                    { "refusal", &RippleLine::refusal } };
+
+void addErrors(const std::string& key, const JudgedErrors& judged, bool shown, std::vector<ReportLine>& lines)
+{
+  const auto add = [&](const std::string& name, const std::string& label, const CurrentError& error)
+  {
+    const std::string path = key + "." + name;
+    lines.insert(lines.end(), { { path + ".rows", "", error.rows },
+                                { path + ".all", "", error.all },
+                                { path + ".moving", "", error.moving },
+                                { path + ".resting", "", error.resting },
+                                { path + ".signal", "", error.signal } });
+    if (shown)
+    {
+      lines.push_back({ "", label,
+                        shortNumber(error.all) + " (moving " + shortNumber(error.moving) + ", resting " +
+                            shortNumber(error.resting) + ")",
+                        "A" });
+    }
+  };
+  add("configured", "as configured", judged.configured);
+  add("without_ripple", "identified, without ripple", judged.without_ripple);
+  add("identified", "identified", judged.identified);
+  add("gain_coulomb_viscous", "gain, Coulomb and viscous fitted alike", judged.gain_coulomb_viscous);
+}
+
+Report valuesOf(const IdentifiedJoint& joint, std::vector<std::string>& refused)
+{
+  const Identification& found = joint.found;
+  const TelemetryParameters& telemetry = found.parameters.telemetry;
+  std::vector<ReportLine> lines{ { "train", "", std::vector<double>{ joint.train.from, joint.train.to } },
+                                 { "judge", "", std::vector<double>{ joint.judge.from, joint.judge.to } },
+                                 { "values", "", Table(VALUE_COLUMNS, found.values).rows() },
+                                 { "lines", "", Table(LINE_COLUMNS, found.lines).rows() },
+                                 { "ripple_resonance", "", telemetry.ripple_resonance },
+                                 { "ripple_damping", "", telemetry.ripple_damping },
+                                 { "ripple_lag", "", telemetry.ripple_lag },
+                                 { "ripple_fastest", "", telemetry.ripple_fastest } };
+  const auto tell = [&](const std::string& name, const auto& value, double size, const std::string& unit)
+  {
+    if (value.refusal.empty())
+    {
+      lines.push_back({ "", name, shortNumber(size) + " +- " + shortNumber(value.half_width), unit });
+    }
+    else
+    {
+      refused.push_back(name + ": " + value.refusal);
+    }
+  };
+  for (const IdentifiedValue& value : found.values)
+  {
+    tell(value.name, value, value.value, value.unit);
+  }
+  for (const RippleLine& line : found.lines)
+  {
+    tell("ripple, " + shortNumber(line.order) + " a turn", line, line.amplitude, "N.m");
+  }
+  const auto span = [&](const std::string& name, const Span& part) {
+    lines.push_back({ "", name, shortNumber(part.from) + " to " + shortNumber(part.to), "s" });
+  };
+  span("identified on", joint.train);
+  span("judged on", joint.judge);
+  return { lines, {} };
+}
+
+std::vector<ReportLine> errorsOf(const IdentifiedJoint& joint)
+{
+  std::vector<ReportLine> errors{ { "", "the current itself, rms", joint.found.judged.identified.signal, "A" },
+                                  { "", "error of the current on the judged part, rms", "" } };
+  addErrors("judged", joint.found.judged, true, errors);
+  const bool folded = joint.left_out.identified.rows > 0;
+  if (folded)
+  {
+    errors.push_back({ "", "on pieces left out in turn", "" });
+  }
+  addErrors("left_out", joint.left_out, folded, errors);
+  return errors;
+}
+
+/// Whether an interval leaves zero out: else it says nothing.
+bool saysSomething(const Identification& found)
+{
+  return std::any_of(found.values.begin(), found.values.end(),
+                     [](const IdentifiedValue& value)
+                     { return value.refusal.empty() && value.half_width < std::abs(value.value); }) ||
+         std::any_of(found.lines.begin(), found.lines.end(),
+                     [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
+}
+
+/// What the user must know to judge the result of one joint.
+void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
+{
+  const JudgedErrors& judged = joint.found.judged;
+  if (any && judged.identified.all > judged.configured.all)
+  {
+    watch.notice("on the judged part the identified parameters predict the current worse (" +
+                 shortNumber(judged.identified.all) + " A) than the configured ones (" +
+                 shortNumber(judged.configured.all) + " A); identify on more motion with --train");
+  }
+  if (!any)
+  {
+    watch.notice("nothing could be identified from " + shortNumber(joint.train.from) + " to " +
+                 shortNumber(joint.train.to) + " s of the recording");
+  }
+}
+
+constexpr int ARM_FOLDS = 5;
+/// Largest error of pieces left out with ripple over that without, moving, at which the ripple of an arm's joint is
+/// kept.
+constexpr double RIPPLE_GAIN = 0.95;
+
+/// The parts to identify and to judge on, as given or by default.
+void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
+{
+  const bool is_arm = !options.arm.empty();
+  const double third = duration / 3.0;
+  const Span whole{ 0.0, last + PAST_THE_END };
+  joint.train = options.train.value_or(is_arm ? whole : Span{ 0.0, third });
+  joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
+}
+
+/// Fits a joint to its part; the pieces left out in turn judge an arm's. @throws InputError if it hardly moves.
+void identifyJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
+                   const std::vector<MotionSample>& samples, IdentifiedJoint& joint)
+{
+  const JudgedPart judge{ samplesWithin(samples, { -HUGE_VAL, joint.judge.to }), joint.judge.from };
+  joint.found = identify(parameters, samplesWithin(samples, joint.train), judge, load_recorded);
+  const bool is_arm = !options.arm.empty();
+  JudgedErrors& left_out = joint.left_out;
+  left_out = leaveOneOut(parameters, samples, joint.train, options.folds > 0 || !is_arm ? options.folds : ARM_FOLDS,
+                         load_recorded);
+  if (is_arm && left_out.identified.moving > RIPPLE_GAIN * left_out.without_ripple.moving)
+  {
+    left_out.identified = left_out.without_ripple;
+    for (RippleLine& line : joint.found.lines)
+    {
+      line.torque = {};
+      line.refusal = "predicts pieces left out no better";
+    }
+  }
+  if (is_arm && left_out.identified.all > left_out.configured.all)
+  {
+    joint.refusal = "what was identified predicts pieces left out worse";
+  }
+}
+
+const std::vector<Column<IdentifiedJoint>> JOINT_COLUMNS{
+  { "joint", &IdentifiedJoint::name, "joint" },
+  { "signal", [](const IdentifiedJoint& joint) { return joint.left_out.identified.signal; }, "current, rms [A]" },
+  { "configured", [](const IdentifiedJoint& joint) { return joint.left_out.configured.all; }, "as configured [A]" },
+  { "identified", [](const IdentifiedJoint& joint) { return joint.left_out.identified.all; }, "identified [A]" },
+  { "identified_moving", [](const IdentifiedJoint& joint) { return joint.left_out.identified.moving; }, "moving [A]" },
+  { "gain_coulomb_viscous", [](const IdentifiedJoint& joint) { return joint.left_out.gain_coulomb_viscous.all; },
+    "gain, Coulomb, viscous [A]" },
+  { "values", [](const IdentifiedJoint& joint)
+    { return joint.found.values.empty() ? Json() : Table(VALUE_COLUMNS, joint.found.values).rows(); } },
+  { "refusal", &IdentifiedJoint::refusal, "stays as configured" }
+};
+
+/// By the currents that the twins predict as configured.
+IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples)
+{
+  std::vector<std::vector<double>> predicted(samples.size());
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    MotionDriven twin(recording.parameters(i));
+    for (const MotionSample& sample : samples[i])
+    {
+      predicted[i].push_back(twin.step(sample).current);
+    }
+    gains.push_back(recording.parameters(i).telemetry.torque_per_current);
+  }
+  return identifyPayload(recording.arm(), samples, predicted, gains);
+}
+
+std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
+{
+  const auto list = [](const std::array<double, 3>& values)
+  { return std::vector<double>(values.begin(), values.end()); };
+  std::vector<ReportLine> lines{ { "payload.configured", "", found.configured.mass },
+                                 { "payload.mass", "", found.mass },
+                                 { "payload.mass_half_width", "", found.mass_half_width },
+                                 { "payload.moment", "", list(found.moment) },
+                                 { "payload.moment_half_width", "", list(found.moment_half_width) },
+                                 { "", "payload by the currents",
+                                   shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width), "kg" },
+                                 { "", "payload configured", found.configured.mass, "kg" } };
+  if (found.differs() && found.mass > found.mass_half_width)
+  {
+    std::string centre;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      centre += (axis > 0 ? ", " : "") + shortNumber(found.moment[axis] / found.mass) + " +- " +
+                shortNumber(found.moment_half_width[axis] / found.mass);
+    }
+    lines.push_back({ "", "its centre in the frame of the tip", centre, "m" });
+    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file, identify again" });
+  }
+  return lines;
+}
+
+/// Where the overlay of a joint goes. @throws InputError if it must not be written.
+std::string overlayOf(const IdentifyOptions& options, const std::string& joint)
+{
+  const std::string path =
+      options.arm.empty() ? options.out : (std::filesystem::path(options.out) / (joint + ".yaml")).string();
+  requireWritable(path, options.force, options.recording);
+  return path;
+}
+
+void writeOverlay(const IdentifyOptions& options, const ArmJoint& arm_joint, const IdentifiedJoint& joint)
+{
+  Sections sections = joint.refusal.empty() ? identifiedSections(joint.found) : Sections();
+  if (!options.arm.empty())
+  {
+    sections["joint"] = "  # Name of the joint in JointState messages.\n  name: " + arm_joint.name + "\n";
+  }
+  writeOverlay(options, arm_joint.short_name, overlayOf(options, arm_joint.short_name), sections);
+}
+
+std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, const ArmRecording& recording,
+                                            double duration, const std::vector<std::vector<MotionSample>>& samples)
+{
+  std::vector<IdentifiedJoint> joints;
+  for (std::size_t i = 0; i < samples.size() && !options.watch.stopped(); ++i)
+  {
+    IdentifiedJoint& joint = joints.emplace_back();
+    joint.name = recording.joints()[i].short_name;
+    try
+    {
+      chooseParts(options, duration, samples[i].empty() ? 0.0 : samples[i].back().time, joint);
+      identifyJoint(options, recording.parameters(i), recording.usesRecordedLoad(), samples[i], joint);
+    }
+    catch (const InputError& error)
+    {
+      if (!recording.isArm())
+      {
+        throw;
+      }
+      joint.found = {};
+      joint.refusal = error.what();
+    }
+  }
+  return joints;
+}
+}  // namespace
+
+Identified identify(const IdentifyOptions& options)
+{
+  const ArmRecording recording(options);
+  if (!options.out.empty())
+  {
+    if (recording.isArm())
+    {
+      std::filesystem::create_directories(options.out);
+    }
+    for (const ArmJoint& joint : recording.joints())
+    {
+      overlayOf(options, joint.short_name);
+    }
+  }
+  std::vector<std::vector<MotionSample>> samples(recording.joints().size());
+  Identified identified{ recording.isArm(), options.load, {}, {}, {}, false };
+  identified.found =
+      recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); });
+  identified.joints = identifyJoints(options, recording, identified.found.duration, samples);
+  if (options.watch.stopped())
+  {
+    return identified;
+  }
+  if (recording.isArm())
+  {
+    identified.payload = payloadOf(recording, samples);
+    identified.any = std::any_of(identified.joints.begin(), identified.joints.end(),
+                                 [](const IdentifiedJoint& joint) { return joint.refusal.empty(); });
+  }
+  else
+  {
+    identified.any = saysSomething(identified.joints.front().found);
+    if (!recording.hasRecordedLoad())
+    {
+      options.watch.notice(
+          "the recording holds no load of the joint; weight and inertia are taken as configured, and "
+          "their error hides the friction");
+    }
+    noticeOf(identified.joints.front(), identified.any, options.watch);
+  }
+  for (std::size_t i = 0; i < samples.size() && !options.out.empty() && (identified.any || recording.isArm()); ++i)
+  {
+    writeOverlay(options, recording.joints()[i], identified.joints[i]);
+  }
+  return identified;
+}
+
+IdentifyReport reportOf(const Identified& identified)
+{
+  IdentifyReport report;
+  if (!identified.is_arm)
+  {
+    report.values = valuesOf(identified.joints.front(), report.refused);
+    report.errors = errorsOf(identified.joints.front());
+    return report;
+  }
+  report.values.lines = { { "rows", "rows", identified.found.rows }, { "load", "load", identified.load } };
+  const std::vector<ReportLine> payload = linesOf(*identified.payload);
+  report.values.lines.insert(report.values.lines.end(), payload.begin(), payload.end());
+  report.values.tables = { { "joints", Table(JOINT_COLUMNS, identified.joints) } };
+  return report;
+}
+
+Report IdentifyReport::whole() const
+{
+  Report report = values;
+  report.lines.insert(report.lines.end(), errors.begin(), errors.end());
+  return report;
+}
+}  // namespace hjt

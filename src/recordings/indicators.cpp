@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/indicators.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "output/output_file.hpp"
+#include "output/text_table.hpp"
+#include "recordings/recorded_windows.hpp"
+
+#include "bags/bag_file.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "health/baseline_file.hpp"
+#include "health/signal_monitor.hpp"
+#include "messages/conversions.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Windows of a recording, and what they were made of and with.
+struct WindowSeries
+{
+  std::vector<SignalIndicators> windows;
+  const char* origin{};  // as in WindowResult
+  const char* parameters{};
+};
+
+/// All windows of a recording of signals.
+std::vector<SignalIndicators> readWindows(const std::string& recording, const SignalOptions& options,
+                                          const Parameters& parameters, const Watch& watch)
+{
+  SignalMonitor monitor(parameters);
+  std::vector<SignalIndicators> windows;
+  readSignals(recording, options, parameters,
+              [&](const SignalSample& sample)
+              {
+                if (monitor.update(sample))
+                {
+                  windows.push_back(monitor.indicators());
+                }
+                return !watch.stopped();
+              });
+  if (monitor.refused() > 0)
+  {
+    watch.notice(recording + ": " + std::to_string(monitor.refused()) +
+                 " samples without an angle, a torque or progress in time passed over");
+  }
+  return windows;
+}
+
+/// What was published of the windows while they were recorded; each message repeats the last window.
+std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
+{
+  rosbag::Bag bag;
+  openForReading(bag, path);
+  std::vector<SignalIndicators> windows;
+  for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
+  {
+    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
+    if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
+    {
+      windows.push_back(readIndicators(*message));
+    }
+  }
+  return windows;
+}
+
+/// All windows of one recording, or of a model's.
+WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
+{
+  if (options.windows)
+  {
+    return { readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS), "published windows",
+             "configuration" };
+  }
+  const RecordingParameters parameters = recordingParameters(signals, path);
+  if (std::optional<std::vector<SignalIndicators>> windows = windowsOfRun(path, signals, parameters))
+  {
+    return { std::move(*windows), "windows of the run", parameters.origin };
+  }
+  return { readWindows(path, signals, parameters.values, options.watch), "signals", parameters.origin };
+}
+
+/// All windows of recording `index`, less those of its model if there is one, which come into `model`.
+WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, std::vector<SignalIndicators>& model)
+{
+  WindowSeries measured = readOne(options.recordings[index], options, options);
+  if (!options.models.empty())
+  {
+    SignalOptions twin;
+    static_cast<ConfigurationOptions&>(twin) = static_cast<const ConfigurationOptions&>(options);
+    twin.joint_namespace = options.joint_namespace;
+    twin.at_hand = options.at_hand;
+    model = readOne(options.models[index], twin, options).windows;
+    measured.windows.resize(std::min(measured.windows.size(), model.size()));
+    for (std::size_t i = 0; i < measured.windows.size(); ++i)
+    {
+      measured.windows[i] = difference(measured.windows[i], model[i]);
+    }
+  }
+  return measured;
+}
+
+/// Every window of every recording. `judged`: of each recording, how near it came to a verdict.
+std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& assessor,
+                                 std::vector<ClosestAssessment>& judged)
+{
+  std::vector<WindowResult> windows;
+  for (std::size_t index = 0; index < options.recordings.size(); ++index)
+  {
+    const std::string& recording = options.recordings[index];
+    if (!options.baseline.empty())
+    {
+      assessor.reset();  // each is judged for itself
+    }
+    std::vector<SignalIndicators> model;
+    const WindowSeries measured = readRecording(index, options, model);
+    judged.emplace_back();
+    for (std::size_t i = 0; i < measured.windows.size(); ++i)
+    {
+      const Assessment assessment = assessor.update(measured.windows[i], model.empty() ? nullptr : &model[i]);
+      judged.back().take(assessment);
+      windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i], assessor.deviations(),
+                          assessor.baseline().residual(), assessment });
+    }
+    if (!options.baseline.empty() ? !judged.back().isJudged() : measured.windows.empty())
+    {
+      options.watch.notice("not judged: " + judged.back().whyNotJudged(recording));
+    }
+  }
+  return windows;
+}
+
+void refuseWrongModels(const IndicatorsOptions& options)
+{
+  if (!options.models.empty() && options.models.size() != options.recordings.size())
+  {
+    throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
+                     std::to_string(options.recordings.size()) +
+                     " recordings; it takes the twin's own recording of each, in their order");
+  }
+}
+
+}  // namespace
+
+AssessedWindows indicators(const IndicatorsOptions& options)
+{
+  const Parameters parameters = recordingParameters(options, options.recordings.front()).values;
+  for (const std::string& file : { options.out, options.save_baseline })
+  {
+    requireWritable(file, options.force, options.recordings.front());
+  }
+  refuseWrongModels(options);
+  const bool less_model = !options.models.empty();
+  Assessor assessor(parameters);
+  if (!options.baseline.empty())
+  {
+    assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
+  }
+  std::vector<ClosestAssessment> judged;
+  AssessedWindows found;
+  found.windows = assess(options, assessor, judged);
+  found.threshold = assessor.baseline().threshold();
+  found.is_judged =
+      std::any_of(judged.begin(), judged.end(), [](const ClosestAssessment& one) { return one.isJudged(); });
+  if (found.windows.empty() && !options.watch.stopped())
+  {
+    throw InputError(options.recordings.front() + " is too short for one window (indicators.window_turns = " +
+                     shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
+                     shortNumber(parameters.indicators.window_time) + " s)");
+  }
+  writeWindows(options.out, found.windows);
+  if (!options.save_baseline.empty())
+  {
+    writeBaseline(options.save_baseline, assessor.baseline(), less_model);
+  }
+  return found;
+}
+}  // namespace hjt

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/recorded_signals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <vector>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "datasets/run_file.hpp"
+#include "recordings/recording_options.hpp"
+
+#include "bags/bag_file.hpp"
+#include "bags/checked_message.hpp"
+#include "base/edit_distance.hpp"
+#include "base/joined.hpp"
+#include "base/number_table.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/conversions.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Take = std::function<bool(const SignalSample&)>;
+
+enum Column : std::size_t
+{
+  TIME,
+  MOTOR_TORQUE,
+  MOTOR_ANGLE,
+  OUTPUT_ANGLE,
+  MOTOR_VELOCITY,
+  LOAD_TORQUE,
+  TEMPERATURE,
+  COLUMNS
+};
+
+using Names = std::array<std::string, COLUMNS>;
+
+/// How a column is named on the command line and, unless it is, in the file.
+struct ColumnChoice
+{
+  const char* option;
+  std::string SignalSource::*given;
+  const char* name;
+  const char* otherwise{};  // where `name` is missing
+};
+constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
+  { { "--time", &SignalSource::time, "time" },
+    { "--motor-torque", &SignalSource::motor_torque, "motor_torque_reading", "motor_torque" },
+    { "--motor-angle", &SignalSource::motor_angle, "motor_angle_encoder" },
+    { "--output-angle", &SignalSource::output_angle, "output_angle_encoder" },
+    { "--motor-velocity", &SignalSource::motor_velocity, "motor_velocity_encoder" },
+    { "--load-torque", &SignalSource::load_torque, "load_torque" },
+    { "--temperature", &SignalSource::temperature, "housing_temperature", "temperature" } }
+};
+
+bool contains(const std::vector<std::string>& names, const std::string& name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The columns of a file in the order of the signals. `place`: file and line. @throws InputError if one that was named
+/// is not there, or none of the angles.
+Names columnsOf(const std::string& place, const std::vector<std::string>& there, const SignalSource& source)
+{
+  Names names;
+  for (std::size_t i = 0; i < COLUMNS; ++i)
+  {
+    const ColumnChoice& choice = CHOICES[i];
+    const std::string& given = source.*choice.given;
+    if (!given.empty() && !contains(there, given))
+    {
+      throw InputError(place + ": " + choice.option + " " + given + ": no such column" + didYouMean(given, there) +
+                       "; it holds " + joined(there, ", "));
+    }
+    const bool is_named_so = choice.otherwise == nullptr || contains(there, choice.name);
+    names[i] = !given.empty() ? given : is_named_so ? choice.name : choice.otherwise;
+  }
+  for (const Column column : { MOTOR_TORQUE, TIME })
+  {
+    if (!contains(there, names[column]))
+    {
+      throw InputError(place + ": column '" + names[column] + "' is missing; name one with " + CHOICES[column].option +
+                       "; it holds " + joined(there, ", "));
+    }
+  }
+  if (!contains(there, names[MOTOR_ANGLE]) && !contains(there, names[OUTPUT_ANGLE]))
+  {
+    throw InputError(place + ": neither column '" + names[MOTOR_ANGLE] + "' nor '" + names[OUTPUT_ANGLE] +
+                     "' is there; name one with --motor-angle or --output-angle; it holds " + joined(there, ", "));
+  }
+  return names;
+}
+
+SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scale)
+{
+  SignalSample sample;
+  sample.stamp = static_cast<std::int64_t>(std::llround(1e9 * row[TIME]));
+  sample.motor_angle = row[MOTOR_ANGLE];
+  sample.output_angle = row[OUTPUT_ANGLE];
+  sample.motor_velocity = row[MOTOR_VELOCITY];
+  sample.motor_torque = torque_scale * row[MOTOR_TORQUE];
+  sample.load_torque = row[LOAD_TORQUE];
+  sample.temperature = row[TEMPERATURE];
+  return sample;
+}
+
+/// Names of a table's columns. @throws InputError.
+std::vector<std::string> headerOf(const std::string& path)
+{
+  std::ifstream file(path);
+  std::string header;
+  if (!std::getline(file, header))
+  {
+    throw InputError(path + " cannot be read, or is empty");
+  }
+  std::vector<std::string> names;
+  std::istringstream cells(header);
+  for (std::string name; std::getline(cells, name, ',');)
+  {
+    const std::size_t first = name.find_first_not_of(" \t\r");
+    names.push_back(first == std::string::npos ? "" : name.substr(first, name.find_last_not_of(" \t\r") + 1 - first));
+  }
+  return names;
+}
+
+/// The motor's speed as the drive's own sensors have it: what its angle changes by over the window. Before the first
+/// window is over, that of the first window.
+std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
+{
+  std::vector<double> velocity(time.size(), NOT_MEASURED);
+  const double period = time.size() > 1 ? time[1] - time[0] : 1.0;
+  const auto steps = static_cast<std::size_t>(std::max(std::lround(window / period), 1L));
+  for (std::size_t end = steps; end < time.size(); ++end)
+  {
+    velocity[end] = (angle[end] - angle[end - steps]) / (time[end] - time[end - steps]);
+  }
+  std::fill_n(velocity.begin(), std::min(steps, time.size()), steps < time.size() ? velocity[steps] : NOT_MEASURED);
+  return velocity;
+}
+
+void readTable(const std::string& path, const SignalSource& source, const Take& take)
+{
+  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", headerOf(path), source), COLUMNS - MOTOR_ANGLE);
+  std::array<double, COLUMNS> row{};
+  row.fill(NOT_MEASURED);
+  while (table.read(row) && take(sampleOf(row, source.torque_scale)))
+  {
+  }
+}
+
+/// Columns by their names. `place`: whose, for the error text.
+void readColumns(const std::string& place, Columns columns, const SignalSource& source, const Take& take)
+{
+  std::vector<std::string> there;
+  std::transform(columns.begin(), columns.end(), std::back_inserter(there),
+                 [](const auto& item) { return item.first; });
+  const Names names = columnsOf(place, there, source);
+  if (columns.count(names[MOTOR_VELOCITY]) == 0 && columns.count(names[MOTOR_ANGLE]) > 0)
+  {
+    columns[names[MOTOR_VELOCITY]] =
+        velocityOf(columns.at(names[TIME]), columns.at(names[MOTOR_ANGLE]), source.velocity_window);
+  }
+  std::array<double, COLUMNS> row{};
+  row.fill(NOT_MEASURED);
+  for (std::size_t i = 0; i < columns.at(names[TIME]).size(); ++i)
+  {
+    for (std::size_t column = 0; column < COLUMNS; ++column)
+    {
+      const auto found = columns.find(names[column]);
+      row[column] = found != columns.end() ? found->second[i] : NOT_MEASURED;
+    }
+    if (!take(sampleOf(row, source.torque_scale)))
+    {
+      return;
+    }
+  }
+}
+
+/// A run of a data set.
+void readRun(const std::string& path, const SignalSource& source, const Take& take)
+{
+  const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
+  Columns columns =
+      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
+                                                         std::vector<std::string>{ source.motor_torque });
+  if (columns.empty())
+  {
+    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
+  }
+  readColumns(path, std::move(columns), source, take);
+}
+
+double entry(const std::vector<double>& values, std::size_t place)
+{
+  return place < values.size() ? values[place] : NOT_MEASURED;
+}
+
+SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& names, double torque_scale)
+{
+  const auto motor = placeOf(state, names.motor);
+  const auto joint = placeOf(state, names.joint);
+  SignalSample sample;
+  sample.stamp = fromRosTime(state.header.stamp);
+  sample.motor_angle = entry(state.position, motor);
+  sample.motor_velocity = entry(state.velocity, motor);
+  sample.output_angle = entry(state.position, joint);
+  sample.motor_torque = torque_scale * entry(state.effort, motor < state.name.size() ? motor : joint);
+  return sample;
+}
+
+void readBag(const std::string& path, const SignalSource& source, const Take& take)
+{
+  for (const ColumnChoice& choice : CHOICES)
+  {
+    if (!(source.*choice.given).empty())
+    {
+      throw InputError(path + " is a bag: " + choice.option + " " + source.*choice.given + " names a column");
+    }
+  }
+  rosbag::Bag bag;
+  openForReading(bag, path);
+  const JointNames names(source.joint);
+  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{ source.states_topic, source.load_topic }));
+  CheckedMessage checked;
+  double load = NOT_MEASURED;
+  std::uint64_t samples = 0;
+  if (source.load_topic_given && rosbag::View(bag, rosbag::TopicQuery(source.load_topic)).size() == 0)
+  {
+    throw InputError(path + " has no topic " + source.load_topic + "; it holds:" + listTopics(bag));
+  }
+  for (const rosbag::MessageInstance& message : view)
+  {
+    if (!checked.read(message))
+    {
+      continue;
+    }
+    const sensor_msgs::JointState& state = checked.state();
+    if (message.getTopic() == source.load_topic)
+    {
+      readLoadTorque(state, names, load);
+    }
+    else if (std::min(placeOf(state, names.joint), placeOf(state, names.motor)) < state.name.size())
+    {
+      SignalSample sample = sampleOf(state, names, source.torque_scale);
+      sample.load_torque = load;
+      ++samples;
+      if (!take(sample))
+      {
+        return;
+      }
+    }
+  }
+  if (samples == 0)
+  {
+    throw InputError(path + " has no state of " + source.joint + " on " + source.states_topic +
+                     "; it holds:" + listTopics(bag));
+  }
+}
+/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
+{
+  const bool robot = !options.joint.empty();
+  const std::optional<UrJoint> known = findUrJoint(options.joint);
+  SignalSource source = options.source;
+  source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
+  source.states_topic =
+      options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
+  source.load_topic = options.load_topic.value_or(options.joint_namespace + "/" + topics::LOAD);
+  source.load_topic_given = options.load_topic.has_value();
+  source.velocity_window = parameters.sensors.velocity_window;
+  source.torque_scale = options.torque_scale.value_or(
+      robot ? parameters.telemetry.torque_per_current / nominalRatio(parameters.gear) : 1.0);
+  return source;
+}
+}  // namespace
+
+bool namesColumn(const SignalSource& source)
+{
+  return std::any_of(CHOICES.begin(), CHOICES.end(),
+                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
+}
+
+void readSignals(const std::string& recording, const SignalOptions& options, const Parameters& parameters,
+                 const Take& take)
+{
+  const SignalSource source = signalSource(options, parameters);
+  if (const auto found = options.at_hand.find(recording); found != options.at_hand.end())
+  {
+    readColumns(recording, found->second, source, take);
+    return;
+  }
+  const std::string extension = std::filesystem::path(recording).extension().string();
+  const auto read = extension == ".bag" ? readBag : extension == ".h5" ? readRun : readTable;
+  read(recording, source, take);
+}
+
+std::string wrongSignalFile(const std::string& path)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".bag" || ending == ".csv" || ending == ".h5" ? "" : "'" + path + "' must end in .bag, .csv or .h5";
+}
+}  // namespace hjt

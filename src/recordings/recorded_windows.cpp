@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/recorded_windows.hpp"
+
+#include <array>
+#include <filesystem>
+#include <tuple>
+
+#include "datasets/run_file.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+bool isRun(const std::string& recording)
+{
+  return std::filesystem::path(recording).extension() == ".h5";
+}
+
+/// Whether two configurations make the same windows, for all that is known: they may differ in what reference and
+/// assessment alone go by.
+bool makeSameWindows(Parameters one, const Parameters& other)
+{
+  one.indicators.baseline_windows = other.indicators.baseline_windows;
+  one.indicators.least_spread = other.indicators.least_spread;
+  one.indicators.false_alarm_rate = other.indicators.false_alarm_rate;
+  one.indicators.evidence_windows = other.indicators.evidence_windows;
+  one.indicators.error_factor = other.indicators.error_factor;
+  return describeParameters(one) == describeParameters(other);
+}
+}  // namespace
+
+RecordingParameters recordingParameters(const SignalOptions& options, const std::string& recording)
+{
+  RecordingParameters parameters;
+  ParameterMap map = defaultParameterMap(options);
+  const bool changed = !options.isDefault();
+  parameters.origin = "configuration";
+  if (const std::string text = isRun(recording) ? readRunParameters(recording) : std::string(); !text.empty())
+  {
+    readDescription(text, recording + ": parameters", map);
+    parameters.run = parseParameters(map);
+    parameters.origin = changed ? "run, under those of the command line" : "run";
+  }
+  addOverlays(options, map);
+  parameters.values = parseParameters(map);
+  return parameters;
+}
+
+std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
+                                                          const RecordingParameters& parameters)
+{
+  const bool plain = !options.torque_scale && options.joint.empty() && !namesColumn(options.source);
+  if (!parameters.run || !plain || !makeSameWindows(*parameters.run, parameters.values))
+  {
+    return std::nullopt;
+  }
+  const Columns columns = readRunColumns(recording, { "window_end" });
+  if (columns.empty())
+  {
+    return std::nullopt;
+  }
+  const auto column = [&](const std::string& name) -> const std::vector<double>&
+  {
+    const auto found = columns.find(name);
+    if (found == columns.end() || found->second.size() != columns.at("window_end").size())
+    {
+      throw InputError(recording + ": its group indicators has no column '" + name + "' as long as window_end");
+    }
+    return found->second;
+  };
+  std::vector<SignalIndicators> windows(column("window_end").size());
+  const auto read = [&](const char* name, const auto& put)
+  {
+    const std::vector<double>& values = column(name);
+    for (std::size_t i = 0; i < windows.size(); ++i)
+    {
+      put(windows[i], values[i]);
+    }
+  };
+  using W = SignalIndicators&;
+  read("window_end", [](W w, double value) { w.stamp = toStampLength(value); });
+  read("window_turns", [](W w, double value) { w.turns = value; });
+  read("window_speed", [](W w, double value) { w.point.speed = value; });
+  read("window_direction", [](W w, double value) { w.point.direction = value; });
+  read("window_load", [](W w, double value) { w.point.load = value; });
+  read("window_load_constant", [](W w, double value) { w.point.load_constant = value; });
+  read("window_load_sine", [](W w, double value) { w.point.load_sine = value; });
+  read("window_load_cosine", [](W w, double value) { w.point.load_cosine = value; });
+  read("window_inertia", [](W w, double value) { w.point.inertia = value; });
+  read("window_temperature", [](W w, double value) { w.point.temperature = value; });
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    read(indicatorName(i), [i](W w, double value) { w.values[i] = value; });
+  }
+  for (std::size_t i = 0; i < windows.size(); ++i)
+  {
+    windows[i].windows = i + 1;
+  }
+  return windows;
+}
+
+void ClosestAssessment::take(const Assessment& assessment)
+{
+  const auto nearness = [](const Assessment& of)
+  {
+    constexpr std::array BY_STATE{ 0, 1, 3, 1, 2 };
+    return std::tuple(BY_STATE[static_cast<std::size_t>(of.state)], of.windows_here);
+  };
+  closest_ = nearness(assessment) >= nearness(closest_) ? assessment : closest_;
+}
+
+std::string ClosestAssessment::whyNotJudged(const std::string& recording) const
+{
+  return recording + ": " + (closest_.windows == 0 ? "no whole window of steady motion" : hjt::whyNotJudged(closest_));
+}
+}  // namespace hjt

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "twin/configuration_options.hpp"
+
+#include <cstdlib>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
+
+namespace hjt
+{
+namespace fs = std::filesystem;
+
+fs::path configDirectory(const ConfigurationOptions& options)
+{
+  if (!options.config_dir.empty())
+  {
+    setenv("HJT_CONFIG_DIR", options.config_dir.c_str(), 1);  // files that parameters name lie there too
+  }
+  return configurationDirectory("");
+}
+
+ParameterMap defaultParameterMap(const ConfigurationOptions& options)
+{
+  ParameterMap map;
+  readDefaultConfiguration(configDirectory(options).string(), map);
+  return map;
+}
+
+void readOverlay(const ConfigurationOptions& options, const std::string& name, ParameterMap& map)
+{
+  readYamlFile(findConfiguration(name, configDirectory(options)), map);
+}
+
+void addOverlays(const ConfigurationOptions& options, ParameterMap& map)
+{
+  for (const std::string& overlay : options.configs)
+  {
+    readOverlay(options, overlay, map);
+  }
+  for (const std::string& assignment : options.assignments)
+  {
+    readAssignment(assignment, map);
+  }
+  if (options.values.count(faultKey(0) + ".kind") > 0)
+  {
+    eraseFaults(map);
+  }
+  for (const auto& [key, value] : options.values)
+  {
+    map[key] = value;
+  }
+}
+
+ParameterMap loadParameterMap(const ConfigurationOptions& options)
+{
+  ParameterMap map = defaultParameterMap(options);
+  addOverlays(options, map);
+  return map;
+}
+
+void addFaults(const ConfigurationOptions& options, Parameters& parameters)
+{
+  for (const std::string& fault : options.faults)
+  {
+    parameters.faults.push_back(parseFault(fault, parameters));
+  }
+  if (parameters.faults.size() > MAX_FAULTS)
+  {
+    throw ParameterError("--fault: more than " + std::to_string(MAX_FAULTS) + " faults");
+  }
+}
+
+Parameters loadParameters(const ConfigurationOptions& options)
+{
+  Parameters parameters = parseParameters(loadParameterMap(options));
+  addFaults(options, parameters);
+  return parameters;
+}
+}  // namespace hjt

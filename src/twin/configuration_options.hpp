@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
+namespace hjt
+{
+/// Which parameters are asked for: the default configuration and what lies over it.
+struct ConfigurationOptions
+{
+  std::string config_dir;                ///< where the default configuration lies; empty: found by itself
+  std::vector<std::string> configs;      ///< overlays, files; later wins
+  std::vector<std::string> assignments;  ///< section.key=value, over the overlays
+  std::vector<std::string> faults;       ///< KIND:SEVERITY[:PLACE[:ONSET]], beside the configured ones
+  ParameterMap values;                   ///< over all of these
+
+  /// Nothing lies over the default configuration but faults.
+  bool isDefault() const { return configs.empty() && assignments.empty() && values.empty(); }
+};
+
+/// Where the default configuration lies. @throws ParameterError if there is none.
+std::filesystem::path configDirectory(const ConfigurationOptions& options);
+
+/// Steps of loadParameterMap: the default configuration, one overlay as given or beside it, those of the options.
+/// @throws ParameterError.
+ParameterMap defaultParameterMap(const ConfigurationOptions& options);
+void readOverlay(const ConfigurationOptions& options, const std::string& name, ParameterMap& map);
+void addOverlays(const ConfigurationOptions& options, ParameterMap& map);
+
+/// The default configuration with the overlays, assignments and values over it. @throws ParameterError.
+ParameterMap loadParameterMap(const ConfigurationOptions& options);
+
+/// Adds the faults of the options to the configured ones. @throws ParameterError.
+void addFaults(const ConfigurationOptions& options, Parameters& parameters);
+
+/// The same, checked, with the faults. @throws ParameterError.
+Parameters loadParameters(const ConfigurationOptions& options);
+}  // namespace hjt

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signature_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "test/core/test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* SMALL = R"(format: 1
+gear: mine
+errors: {number: 0.1, length: 0.01, line: 0.5, weight: 0.2, severity: 0.3}
+indicators:
+  torsional_stiffness: N.m/rad
+  torque_ball: N.m
+sound:
+  torsional_stiffness: 2000.0
+carried:
+  torque_ball_above: [0.1, 0.2, 3.0]
+signatures: |
+  pitting check_up 80 0.02 0.5 -0.25 3e-7
+  circular_spline_tooth any 0 0 1.0 0 1e-2
+)";
+
+std::string replaced(const std::string& what, const std::string& by)
+{
+  std::string text = SMALL;
+  return text.replace(text.find(what), what.size(), by);
+}
+
+std::string refusal(const std::string& text)
+{
+  try
+  {
+    parseSignatures(text, "mine.yaml");
+  }
+  catch (const ParameterError& error)
+  {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(SignatureFile, IsTakenNumberByNumber)
+{
+  const SignatureSet set = parseSignatures(SMALL, "mine.yaml");
+  EXPECT_EQ(set.gear, "mine");
+  EXPECT_EQ(set.length_error, 0.01);
+  EXPECT_EQ(set.severity_error, 0.3);
+  constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
+  constexpr std::size_t BALL = signatureNumber(LineSignal::MOTOR_TORQUE, index(Line::BALL));
+  EXPECT_EQ(std::count(set.fitted.begin(), set.fitted.end(), true), 2);
+  EXPECT_TRUE(set.fitted[STIFFNESS] && set.fitted[BALL]);
+  EXPECT_EQ(set.sound[STIFFNESS], 2000.0);
+  EXPECT_TRUE(std::isnan(set.sound[indexOf(ScalarIndicator::RUNNING_TORQUE)]));
+  const std::size_t above = amplitudeIndex(LineSignal::MOTOR_TORQUE, index(Line::BALL_ABOVE));
+  EXPECT_EQ(set.carried[above].share, 0.2);
+  EXPECT_EQ(set.carried[STIFFNESS].deviation, CarriedError{}.deviation);
+  ASSERT_EQ(set.signatures.size(), 2U);
+  EXPECT_EQ(set.signatures[0].cause, causeOf(FaultKind::PITTING));
+  EXPECT_EQ(set.signatures[0].motion.speed, 80.0);
+  EXPECT_EQ(set.signatures[0].change[STIFFNESS], -0.25);
+  EXPECT_EQ(set.signatures[0].change[BALL], 3e-7);
+  EXPECT_EQ(set.signatures[1].cause, Cause::CIRCULAR_SPLINE_TOOTH);
+  EXPECT_EQ(causesThatMove(set, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0, 0.1).size(), 0U);  // not at severity 1
+}
+
+TEST(SignatureFile, SaysWhereItIsDamaged)
+{
+  const auto says = [](const std::string& what)
+  { return testing::StartsWith("indicators.signatures: mine.yaml" + what); };
+  EXPECT_THAT(refusal(replaced("format: 1", "format: 2")), says(":1: format: 2, expected 1"));
+  EXPECT_THAT(refusal(replaced("gear: mine\n", "")), says(": gear: missing"));
+  EXPECT_THAT(refusal(replaced("weight: 0.2", "weight: -0.2")), says(":3: errors.weight: -0.2, expected 0 ... 1000"));
+  EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_bell: N.m")),
+              says(":6: indicator torque_bell: no such indicator (did you mean torque_ball?)"));
+  EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_ball: rad")),
+              says(":6: indicators.torque_ball: unit rad, expected N.m"));
+  EXPECT_THAT(refusal(replaced("[0.1, 0.2, 3.0]", "[0.1, 0.2]")),
+              says(":10: carried.torque_ball_above: expected [deviation, share, degrees of freedom]"));
+  EXPECT_THAT(refusal(replaced("pitting", "pittin")),
+              says(":12: signatures: no such cause: pittin (did you mean pitting?)"));
+  EXPECT_THAT(refusal(replaced("0.5 -0.25", "1.5 -0.25")),
+              says(":12: signatures: severity [-] = 1.5, expected 0 ... 1"));
+  EXPECT_THAT(refusal(replaced("1e-2", "")), says(":13: signatures: 6 words, expected 7"));
+  EXPECT_THAT(refusal(replaced("1e-2", "nan")), says(":13: signatures: change = nan"));
+  EXPECT_THAT(refusal(replaced("signatures: |\n", "signatures:\n")), testing::Not("accepted"));
+  EXPECT_THAT(refusal("- 1\n"), says(": no file of signatures"));
+}
+
+TEST(SignatureFile, IsReadOnceAndSharedByAllWhoNameIt)
+{
+  const std::string name = shippedParameters().indicators.signatures;
+  const auto shipped = loadSignatures(name);
+  EXPECT_EQ(shipped, loadSignatures(name));
+  EXPECT_GT(shipped->signatures.size(), 1000U);
+  EXPECT_EQ(std::count(shipped->fitted.begin(), shipped->fitted.end(), true), SIGNATURE_SIZE);
+  EXPECT_THROW(loadSignatures("signatures/size_26.yaml"), ParameterError);
+}
+
+TEST(SignatureFile, WithoutOneThereIsNoCauseAndNoConfidence)
+{
+  Assessor assessor(shippedParameters(
+      { "indicators.signatures=none", "indicators.baseline_windows=8", "indicators.evidence_windows=1" }));
+  SignalIndicators window;
+  window.point.speed = 80.0;
+  for (int i = 0; i < 20; ++i)
+  {
+    window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = (i < 8 ? 0.1 : 0.3) + 1e-4 * (i % 3);
+    ++window.windows;
+    assessor.update(window);
+  }
+  EXPECT_EQ(assessor.assessment().level, HealthLevel::ERROR);
+  EXPECT_EQ(assessor.assessment().cause, Cause::NONE);
+  EXPECT_EQ(assessor.assessment().confidence, 0.0);
+  EXPECT_GT(assessor.assessment().evidence_count, 0U);
+}
+
+TEST(Baseline, LearnsNoMoreClassesThanItHasMemoryFor)
+{
+  const Parameters parameters = shippedParameters({ "indicators.baseline_classes=2" });
+  Baseline baseline(parameters, loadSignatures(NO_FILE));
+  Deviations deviations;
+  SignalIndicators window;
+  for (const double speed : { 20.0, 80.0, 320.0 })
+  {
+    window.point.speed = speed;
+    const BaselineState state = baseline.update(window, nullptr, deviations);
+    EXPECT_EQ(state, speed < 300.0 ? BaselineState::LEARNING : BaselineState::NO_REFERENCE);
+  }
+  EXPECT_EQ(baseline.bins().size(), 2U);
+  baseline.setReference(baseline.bins());
+  EXPECT_TRUE(baseline.sums().empty());
+}
+}  // namespace
+}  // namespace hjt
