@@ -451,7 +451,7 @@ TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
   EXPECT_LT(tracker.outsideShare(), 0.02);
 }
 
-TEST(VerdictWatch, TheLastVerdictStandsWhileNothingIsJudged)
+TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
 {
   const Parameters parameters = parametersWith(KNOWN_LOAD);
   const SwingingRobot robot(parameters, 60.0);
@@ -467,7 +467,10 @@ TEST(VerdictWatch, TheLastVerdictStandsWhileNothingIsJudged)
     {
       watch.judge(1.0);
       each_second.push_back(watch.now());
-      EXPECT_TRUE(i < row_of(19.0) || watch.confirmed().isJudged()) << PERIOD * static_cast<double>(i) << " s";
+      if (i > row_of(19.0))
+      {
+        EXPECT_EQ(watch.now().isJudged(), !tracker.evidence().isTouched()) << PERIOD * static_cast<double>(i) << " s";
+      }
     }
   }
   const Verdict& before = each_second[19];

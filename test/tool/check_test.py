@@ -199,10 +199,12 @@ class Check(tool.ToolTest):
         self.assertEqual(found["missing_joints"], tool.JOINT_NAMES)
         self.assertTrue(any(line.startswith("effort      none") for line in self.lines("mute.bag")))
 
-        write_driver_bag(self.path("crane.bag"), columns, rate=125.0, names=["slew", "lift"])
+        write_driver_bag(self.path("crane.bag"), swinging(), rate=125.0, names=["slew", "lift"])
         found = self.check("crane.bag")
         self.assertEqual((found["arm"], found["load"], found["arms"]), (None, "unknown", []))
-        self.assertEqual({joint["name"] for joint in found["joints"]}, {"slew", "lift"})
+        self.assertEqual({joint["name"]: joint["judged"] for joint in found["joints"] if not joint["judged"]},
+                         {"finger_joint": False})
+        self.assertEqual({joint["name"] for joint in found["joints"]}, {"slew", "lift", "finger_joint"})
         self.assertEqual(found["next"], ["joint_twin compare crane.bag --joint lift --report report"])
 
         write_driver_bag(self.path("short.bag"), columns, rate=125.0, names=tool.JOINT_NAMES[:5])
@@ -226,12 +228,13 @@ class Check(tool.ToolTest):
     def test_sound_recordings_have_nothing_that_stops_judging(self):
         for name, path in RECORDINGS.items():
             found = self.check(path)
-            print(f"{name:10} stamps {found['stamp_factor']:.4f}, effort {found['effort_factor']:.3f}, lags",
+            print(f"{name:10} stamps {found['stamp_factor']:.4f}, effort {found['effort_factor']}, lags",
                   [None if joint["velocity_lag"] is None else round(joint["velocity_lag"], 3)
                    for joint in found["joints"]])
             findings = found["findings"] + [finding for joint in found["joints"] for finding in joint["findings"]]
             self.assertEqual([finding for finding in findings if finding["stops"]], [], name)
-            self.assertEqual(found["effort"], "current", name)
+            # A push is no load that the arm's motion explains.
+            self.assertIn(found["effort"], ("current", None) if "pushed" in name else ("current",), name)
             self.assertTrue(found["usable"] and found["load_recorded"], name)
             self.lines(path)
 

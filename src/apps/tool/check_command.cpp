@@ -96,17 +96,19 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
   {
     return "not known; joints: " + joined(contents.named);
   }
-  std::string text = joined(arm.fitting) + " have these joints" + names + "; taken: " + arm.taken;
+  std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
-  if (taken != arm.ranked.end() && std::isfinite(taken->share()))
+  if (taken != arm.ranked.end() && std::isfinite(taken->rest.share()))
   {
-    text += ", whose load leaves " + roundedText(100.0 * taken->share(), 2) + " % of the currents" +
-            (other == arm.ranked.end() ? "" : " (" + other->arm + " " + roundedText(100.0 * other->share(), 2) + " %)");
+    text +=
+        ": its load leaves " + roundedText(100.0 * taken->rest.share(), 2) + " % of the currents" +
+        (other == arm.ranked.end() ? "" :
+                                     ", " + other->arm + "'s " + roundedText(100.0 * other->rest.share(), 2) + " %");
   }
-  return text + "; --arm takes another";
+  return text;
 }
 
 std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
@@ -205,7 +207,9 @@ void printJudged(const CheckedArm& arm)
   std::map<std::string, std::vector<std::string>> open;
   for (const CheckedJoint& joint : arm.joints)
   {
-    (joint.verdict.isJudged() ? judged : open[findingText(joint.verdict, joint.verdict.findings.front())])
+    const Verdict& verdict = joint.verdict;
+    const bool is_said = stops(arm.findings) || stops(joint.findings);
+    (verdict.isJudged() ? judged : open[is_said ? "as said above" : findingText(verdict, verdict.findings.front())])
         .push_back(joint.name);
   }
   printLine("judged", judged.empty() ? "nothing" : "friction and current of " + joined(judged));
@@ -240,9 +244,9 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(remedy.after, 2) +
-                           " A rms instead of " + roundedText(remedy.before, 2) +
-                           (remedy.helps ? " A" : " A: this is not what is wrong"));
+    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
+                           " % of the currents instead of " + roundedText(100.0 * remedy.before, 2) +
+                           (remedy.helps ? " %" : " %: this is not what is wrong"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
