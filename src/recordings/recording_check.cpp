@@ -82,7 +82,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   arm.rest = fit.loadRest(arm.configured_effort);
   arm.temperature = parameters.front().input.temperature;
   arm.findings = fit.ofArm();
-  const std::vector<std::string> reasons = fit.whyNotJudged();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     CheckedJoint& joint = arm.joints[i];
@@ -92,7 +92,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
     joint.time_factor = fit.timeFit(i).factor();
     joint.lag = fit.timeFit(i).lag();
     joint.findings = fit.ofJoint(i);
-    joint.why_not = reasons[i].empty() ? "" : sentence(reasons[i]);
+    joint.misfit = misfits[i];
   }
 }
 
@@ -115,12 +115,12 @@ public:
     forward(joint, false);
   }
 
-  /// Says of each joint whether it is judged; `why_not` is that of the reading before.
+  /// Takes the misfits as the reading before left them.
   void judgeAll(double duration, CheckedArm& arm)
   {
     std::vector<MeasuredFriction> frictions;
     const auto context = [&](std::size_t i, double factor) {
-      return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].why_not };
+      return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].misfit };
     };
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
@@ -130,10 +130,7 @@ public:
     const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      const Verdict verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i]));
-      CheckedJoint& joint = arm.joints[i];
-      joint.is_judged = verdict.judged;
-      joint.why_not = verdict.judged ? "" : joint.why_not.empty() ? verdict.reason : joint.why_not;
+      arm.joints[i].verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i]));
     }
   }
 
@@ -307,7 +304,7 @@ bool RecordingCheck::isUsable() const
                      [](const CheckedArm& arm)
                      {
                        return std::any_of(arm.joints.begin(), arm.joints.end(),
-                                          [](const CheckedJoint& joint) { return joint.is_judged; });
+                                          [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
                      });
 }
 
