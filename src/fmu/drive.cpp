@@ -295,12 +295,9 @@ void Drive::makeTwin()
   state_.given.clear();
 }
 
-/// The motor's torque at every instant, so that it does not time out; of the others what has changed.
-void Drive::giveInputs()
+/// What has changed of the inputs, but the motor's torque, from this instant on.
+void Drive::giveInputs(Stamp instant)
 {
-  Twin& twin = *state_.twin;
-  const Stamp instant = twin.stamp() + twin.stepLength();
-  twin.commandMotorTorque(instant, state_.values[MOTOR_TORQUE].numbers[0]);
   if (state_.given.empty())
   {
     // The twin starts with all of them but a load.
@@ -321,11 +318,11 @@ void Drive::giveInputs()
     {
       const std::size_t kind = i - FIRST_FAULT;
       const auto place = static_cast<int>(state_.values[placeReference(kind)].numbers[0]);
-      twin.injectFault(instant, { static_cast<FaultKind>(kind), value, place });
+      state_.twin->injectFault(instant, { static_cast<FaultKind>(kind), value, place });
       continue;
     }
     constexpr InputKind KINDS[]{ InputKind::LOAD_TORQUE, InputKind::TEMPERATURE, InputKind::BRAKE };
-    twin.push({ instant, KINDS[i - LOAD_TORQUE], value });
+    state_.twin->push({ instant, KINDS[i - LOAD_TORQUE], value });
   }
 }
 
@@ -334,26 +331,35 @@ bool Drive::step(double at, double length)
   requireMode(state_.mode == Mode::STEP, "fmi3DoStep");
   const double tolerance = 1e-9 * std::max(1.0, std::abs(state_.time));
   const double end = at + length;
-  const std::string asked = "currentCommunicationPoint = " + numberText(at) +
-                            " [s], communicationStepSize = " + numberText(length) + " [s]: ";
+  const auto asked = [&]
+  {
+    return "currentCommunicationPoint = " + numberText(at) + " [s], communicationStepSize = " + numberText(length) +
+           " [s]: ";
+  };
   if (!(std::abs(at - state_.time) <= tolerance))
   {
-    throw CallError(asked + "the instance is at " + numberText(state_.time) + " [s]");
+    throw CallError(asked() + "the instance is at " + numberText(state_.time) + " [s]");
   }
   if (!(length > 0.0) || !(end <= LARGEST_TIME))
   {
-    throw CallError(asked + "a step must be longer than 0 and end before 1e9 [s]");
+    throw CallError(asked() + "a step must be longer than 0 and end before 1e9 [s]");
   }
   if (state_.stop && end > *state_.stop + tolerance)
   {
-    throw CallError(asked + "the stop time is " + numberText(*state_.stop) + " [s]");
+    throw CallError(asked() + "the stop time is " + numberText(*state_.stop) + " [s]");
   }
   Twin& twin = *state_.twin;
   const std::uint64_t failures = twin.counters().solver_failures;
   const Stamp until = stampAt(end) + twin.stepLength() / 1000;  // sums of steps are rounded
-  while (twin.stamp() + twin.stepLength() <= until)
+  Stamp instant = twin.stamp() + twin.stepLength();
+  if (instant <= until)
   {
-    giveInputs();
+    giveInputs(instant);
+  }
+  const double torque = state_.values[MOTOR_TORQUE].numbers[0];
+  for (; instant <= until; instant += twin.stepLength())
+  {
+    twin.commandMotorTorque(instant, torque);  // at every instant, so that it does not time out
     twin.step(until);
   }
   state_.time = end;

@@ -81,7 +81,7 @@ private:
   void changed(ValueReference reference);
   void makeTwin();
   Parameters parameters() const;
-  void giveInputs();
+  void giveInputs(Stamp instant);
   void readOutput(ValueReference reference);
   void readTeeth();
 

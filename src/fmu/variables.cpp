@@ -20,7 +20,7 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Of an operating twin or of what it publishes; the last change what the description states.
+/// Of an operating twin or of what it publishes; the last four are an input, or change what the description states.
 constexpr std::array LEFT_OUT{ "joint.",
                                "life.",
                                "input.",
@@ -31,6 +31,7 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "comparison.",
                                "stress.",
                                "solver.rate",
+                               "brake.engaged_at_start",
                                "gear.teeth_flexspline",
                                "gear.teeth_circular_spline" };
 
