@@ -101,7 +101,7 @@ struct ParameterMaker
     }
   }
 
-  void add(UnitVariable variable)
+  void add(FmuVariable variable)
   {
     const auto begins = [&](const char* left_out) { return variable.name.rfind(left_out, 0) == 0; };
     if (std::none_of(LEFT_OUT.begin(), LEFT_OUT.end(), begins))
@@ -110,7 +110,7 @@ struct ParameterMaker
     }
   }
 
-  std::vector<UnitVariable>& all;
+  std::vector<FmuVariable>& all;
 };
 
 /// The configured fault of a kind that the twin starts with, if any; else none at the first place allowed.
@@ -122,7 +122,7 @@ Fault startingFault(FaultKind kind, const Parameters& parameters)
   return found != parameters.faults.end() ? *found : Fault{ kind, 0.0, firstPlace(kind) };
 }
 
-void addInputs(const Parameters& parameters, std::vector<UnitVariable>& all)
+void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
 {
   const double load = parameters.output.load_torque_limit;
   const auto add = [&](const char* name, const char* unit, const char* meaning, double start, const Range& range) {
@@ -153,7 +153,7 @@ void addInputs(const Parameters& parameters, std::vector<UnitVariable>& all)
   }
 }
 
-void addOutputs(const Parameters& parameters, std::vector<UnitVariable>& all)
+void addOutputs(const Parameters& parameters, std::vector<FmuVariable>& all)
 {
   for (const ScalarOutput& output : scalarOutputs())
   {
@@ -270,9 +270,9 @@ std::size_t placeReference(std::size_t kind)
   return FIRST_OUTPUT + scalarOutputs().size() + toothOutputs().size() + kind;
 }
 
-std::vector<UnitVariable> variables(const Parameters& parameters)
+std::vector<FmuVariable> variables(const Parameters& parameters)
 {
-  std::vector<UnitVariable> all;
+  std::vector<FmuVariable> all;
   addInputs(parameters, all);
   addOutputs(parameters, all);
   for (const FaultDescription& kind : FAULT_DESCRIPTIONS)

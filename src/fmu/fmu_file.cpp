@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fmu/unit_file.hpp"
+#include "fmu/fmu_file.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -30,7 +30,7 @@ std::string readBytes(const std::string& path)
 }
 }  // namespace
 
-std::string unitFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
+std::string fmuFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
 {
 #ifdef __aarch64__
   const std::string binaries = "binaries/aarch64-linux/";
