@@ -57,7 +57,7 @@ Parameters readParameters(const std::string& text, const std::string& folder)
   return parseParameters(map);
 }
 
-std::string nameAndValue(const UnitVariable& variable, std::size_t element, double value)
+std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
 {
   return variable.name + (variable.is_array ? '[' + std::to_string(element + 1) + ']' : "") + " = " +
          numberText(value) + " [" + variable.unit + "]";
@@ -87,12 +87,12 @@ void Drive::log(Status status, const char* category, const std::string& message)
   }
 }
 
-void Drive::requireMode(bool allowed, const char* call) const
+void Drive::requireMode(bool allowed, const char* call, const char* what) const
 {
   constexpr const char* NAMES[]{ "Instantiated", "Initialization Mode", "Step Mode", "Terminated" };
   if (!allowed)
   {
-    throw CallError(std::string(call) + " is not allowed in state " + NAMES[static_cast<int>(state_.mode)]);
+    throw CallError(std::string(call) + what + " is not allowed in state " + NAMES[static_cast<int>(state_.mode)]);
   }
 }
 
@@ -127,7 +127,7 @@ void Drive::terminate()
 void Drive::reset()
 {
   state_ = {};
-  for (const UnitVariable& variable : variables_)
+  for (const FmuVariable& variable : variables_)
   {
     state_.values.push_back(variable.start);
   }
@@ -140,13 +140,13 @@ void Drive::takeUp(const State& state)
   teeth_known_ = false;
 }
 
-const UnitVariable& Drive::variable(ValueReference reference, Type type) const
+const FmuVariable& Drive::variable(ValueReference reference, Type type) const
 {
   if (reference >= variables_.size())
   {
     throw CallError("no variable has the value reference " + std::to_string(reference));
   }
-  const UnitVariable& found = variables_[reference];
+  const FmuVariable& found = variables_[reference];
   if (found.type != type)
   {
     throw CallError(found.name + " is of another type than the function");
@@ -169,16 +169,16 @@ void Drive::requireCount(Type type, const ValueReference* references, std::size_
   }
 }
 
-void Drive::requireSettable(const UnitVariable& variable) const
+void Drive::requireSettable(const FmuVariable& variable) const
 {
   const bool before_start = state_.mode == Mode::INSTANTIATED || state_.mode == Mode::INITIALIZATION;
   const bool settable = variable.causality == Causality::PARAMETER ?
                             before_start :
                             variable.causality == Causality::INPUT && (before_start || state_.mode == Mode::STEP);
-  requireMode(settable, ("setting " + variable.name).c_str());
+  requireMode(settable, "setting ", variable.name.c_str());
 }
 
-void Drive::check(const UnitVariable& variable, std::size_t element, double value) const
+void Drive::check(const FmuVariable& variable, std::size_t element, double value) const
 {
   const bool in_range = !variable.range || (value >= variable.range->min && value <= variable.range->max);
   // A command beyond the limits is clamped and counted; a number it must be.
@@ -192,14 +192,14 @@ void Drive::check(const UnitVariable& variable, std::size_t element, double valu
 
 const Value& Drive::value(ValueReference reference)
 {
-  const UnitVariable& asked = variables_[reference];
+  const FmuVariable& asked = variables_[reference];
   if (asked.causality == Causality::INDEPENDENT)
   {
     state_.values[reference].numbers[0] = state_.time;
   }
   if (asked.causality == Causality::OUTPUT)
   {
-    requireMode(state_.mode != Mode::INSTANTIATED, ("getting " + asked.name).c_str());
+    requireMode(state_.mode != Mode::INSTANTIATED, "getting ", asked.name.c_str());
     if (!state_.twin)
     {
       makeTwin();
@@ -209,16 +209,6 @@ const Value& Drive::value(ValueReference reference)
   return state_.values[reference];
 }
 
-/// Before the start the twin is another one with other values; later inputs go to it with the next step.
-void Drive::changed(ValueReference)
-{
-  if (state_.mode != Mode::STEP)
-  {
-    state_.twin.reset();
-    teeth_known_ = false;
-  }
-}
-
 /// Those of the export with the values that were set; faults that were set are there from the start.
 Parameters Drive::parameters() const
 {
@@ -226,7 +216,7 @@ Parameters Drive::parameters() const
   const std::size_t first = placeReference(FAULT_KINDS);
   for (std::size_t i = first; i < variables_.size(); ++i)
   {
-    const UnitVariable& variable = variables_[i];
+    const FmuVariable& variable = variables_[i];
     const Value& value = state_.values[i];
     if (value.text == variable.start.text && value.numbers == variable.start.numbers)
     {
@@ -268,7 +258,7 @@ Parameters Drive::parameters() const
     faults.erase(std::remove_if(faults.begin(), faults.end(),
                                 [&](const Fault& fault)
                                 {
-                                  return fault.kind == now.kind && fault.isThereFromTheStart() &&
+                                  return fault.kind == now.kind && fault.isActiveAtStart() &&
                                          (fault.place == before.place || fault.place == now.place);
                                 }),
                  faults.end());
@@ -295,12 +285,9 @@ void Drive::makeTwin()
   state_.given.clear();
 }
 
-/// The motor's torque at every instant, so that it does not time out; of the others what has changed.
-void Drive::giveInputs()
+/// What has changed of the inputs, but the motor's torque, from this instant on.
+void Drive::giveInputs(Stamp instant)
 {
-  Twin& twin = *state_.twin;
-  const Stamp instant = twin.stamp() + twin.stepLength();
-  twin.commandMotorTorque(instant, state_.values[MOTOR_TORQUE].numbers[0]);
   if (state_.given.empty())
   {
     // The twin starts with all of them but a load.
@@ -321,11 +308,11 @@ void Drive::giveInputs()
     {
       const std::size_t kind = i - FIRST_FAULT;
       const auto place = static_cast<int>(state_.values[placeReference(kind)].numbers[0]);
-      twin.injectFault(instant, { static_cast<FaultKind>(kind), value, place });
+      state_.twin->injectFault(instant, { static_cast<FaultKind>(kind), value, place });
       continue;
     }
     constexpr InputKind KINDS[]{ InputKind::LOAD_TORQUE, InputKind::TEMPERATURE, InputKind::BRAKE };
-    twin.push({ instant, KINDS[i - LOAD_TORQUE], value });
+    state_.twin->push({ instant, KINDS[i - LOAD_TORQUE], value });
   }
 }
 
@@ -334,26 +321,35 @@ bool Drive::step(double at, double length)
   requireMode(state_.mode == Mode::STEP, "fmi3DoStep");
   const double tolerance = 1e-9 * std::max(1.0, std::abs(state_.time));
   const double end = at + length;
-  const std::string asked = "currentCommunicationPoint = " + numberText(at) +
-                            " [s], communicationStepSize = " + numberText(length) + " [s]: ";
+  const auto asked = [&]
+  {
+    return "currentCommunicationPoint = " + numberText(at) + " [s], communicationStepSize = " + numberText(length) +
+           " [s]: ";
+  };
   if (!(std::abs(at - state_.time) <= tolerance))
   {
-    throw CallError(asked + "the instance is at " + numberText(state_.time) + " [s]");
+    throw CallError(asked() + "the instance is at " + numberText(state_.time) + " [s]");
   }
   if (!(length > 0.0) || !(end <= LARGEST_TIME))
   {
-    throw CallError(asked + "a step must be longer than 0 and end before 1e9 [s]");
+    throw CallError(asked() + "a step must be longer than 0 and end before 1e9 [s]");
   }
   if (state_.stop && end > *state_.stop + tolerance)
   {
-    throw CallError(asked + "the stop time is " + numberText(*state_.stop) + " [s]");
+    throw CallError(asked() + "the stop time is " + numberText(*state_.stop) + " [s]");
   }
   Twin& twin = *state_.twin;
   const std::uint64_t failures = twin.counters().solver_failures;
   const Stamp until = stampAt(end) + twin.stepLength() / 1000;  // sums of steps are rounded
-  while (twin.stamp() + twin.stepLength() <= until)
+  Stamp instant = twin.stamp() + twin.stepLength();
+  if (instant <= until)
   {
-    giveInputs();
+    giveInputs(instant);
+  }
+  const double torque = state_.values[MOTOR_TORQUE].numbers[0];
+  for (; instant <= until; instant += twin.stepLength())
+  {
+    twin.commandMotorTorque(instant, torque);  // at every instant, so that it does not time out
     twin.step(until);
   }
   state_.time = end;

@@ -72,23 +72,22 @@ public:
   void takeUp(const State& state);
 
 private:
-  const UnitVariable& variable(ValueReference reference, Type type) const;
-  void requireMode(bool allowed, const char* call) const;
-  void requireSettable(const UnitVariable& variable) const;
-  void check(const UnitVariable& variable, std::size_t element, double value) const;
+  const FmuVariable& variable(ValueReference reference, Type type) const;
+  void requireMode(bool allowed, const char* call, const char* what = "") const;
+  void requireSettable(const FmuVariable& variable) const;
+  void check(const FmuVariable& variable, std::size_t element, double value) const;
   void requireCount(Type type, const ValueReference* references, std::size_t references_count, std::size_t count) const;
   const Value& value(ValueReference reference);
-  void changed(ValueReference reference);
   void makeTwin();
   Parameters parameters() const;
-  void giveInputs();
+  void giveInputs(Stamp instant);
   void readOutput(ValueReference reference);
   void readTeeth();
 
   void* environment_;
   LogMessage log_;
   Parameters base_;
-  std::vector<UnitVariable> variables_;
+  std::vector<FmuVariable> variables_;
   State state_;
   bool teeth_known_{};
   std::optional<ToothForces> forces_;
@@ -125,7 +124,7 @@ void Drive::set(Type type, const ValueReference* references, std::size_t referen
   std::size_t place = 0;
   for (std::size_t i = 0; i < references_count; ++i)
   {
-    const UnitVariable& target = variable(references[i], type);
+    const FmuVariable& target = variable(references[i], type);
     requireSettable(target);
     taken.push_back(state_.values[references[i]]);
     for (std::size_t k = 0; k < (type == Type::STRING ? 1 : taken.back().numbers.size()); ++k)
@@ -140,7 +139,12 @@ void Drive::set(Type type, const ValueReference* references, std::size_t referen
   for (std::size_t i = 0; i < references_count; ++i)
   {
     state_.values[references[i]] = std::move(taken[i]);
-    changed(references[i]);
+  }
+  // Before the start the twin is another one with other values; later inputs go to it with the next step.
+  if (state_.mode != Mode::STEP)
+  {
+    state_.twin.reset();
+    teeth_known_ = false;
   }
 }
 }  // namespace hjt::fmu

@@ -65,7 +65,7 @@ std::string unitDefinition(const std::string& unit)
 }
 
 /// A bound of a variable as its type has it; without one where the table has none.
-std::string bound(const char* name, const UnitVariable& variable, double value)
+std::string bound(const char* name, const FmuVariable& variable, double value)
 {
   const bool open = value <= -std::numeric_limits<double>::max() || value >= std::numeric_limits<double>::max();
   return open                         ? "" :
@@ -73,7 +73,7 @@ std::string bound(const char* name, const UnitVariable& variable, double value)
                                         attribute(name, numberText(value));
 }
 
-std::string startText(const UnitVariable& variable)
+std::string startText(const FmuVariable& variable)
 {
   return joined(variable.start.numbers, " ",
                 [&](double number)
@@ -84,7 +84,7 @@ std::string startText(const UnitVariable& variable)
                 });
 }
 
-std::string element(const UnitVariable& variable, std::size_t reference)
+std::string element(const FmuVariable& variable, std::size_t reference)
 {
   constexpr std::array TYPES{ "Float64", "Int32", "Boolean", "String" };
   constexpr std::array CAUSALITIES{ "independent", "input", "output", "parameter" };
@@ -120,7 +120,7 @@ std::string element(const UnitVariable& variable, std::size_t reference)
 
 std::string modelDescription(const Parameters& parameters, const std::string& token)
 {
-  const std::vector<UnitVariable> all = variables(parameters);
+  const std::vector<FmuVariable> all = variables(parameters);
   std::set<std::string> units;
   std::string elements;
   std::string outputs;

@@ -20,7 +20,7 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Of an operating twin or of what it publishes; the last change what the description states.
+/// Of an operating twin or of what it publishes; the last four are an input, or change what the description states.
 constexpr std::array LEFT_OUT{ "joint.",
                                "life.",
                                "input.",
@@ -31,6 +31,7 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "comparison.",
                                "stress.",
                                "solver.rate",
+                               "brake.engaged_at_start",
                                "gear.teeth_flexspline",
                                "gear.teeth_circular_spline" };
 
@@ -100,7 +101,7 @@ struct ParameterMaker
     }
   }
 
-  void add(UnitVariable variable)
+  void add(FmuVariable variable)
   {
     const auto begins = [&](const char* left_out) { return variable.name.rfind(left_out, 0) == 0; };
     if (std::none_of(LEFT_OUT.begin(), LEFT_OUT.end(), begins))
@@ -109,7 +110,7 @@ struct ParameterMaker
     }
   }
 
-  std::vector<UnitVariable>& all;
+  std::vector<FmuVariable>& all;
 };
 
 /// The configured fault of a kind that the twin starts with, if any; else none at the first place allowed.
@@ -117,11 +118,11 @@ Fault startingFault(FaultKind kind, const Parameters& parameters)
 {
   const auto found =
       std::find_if(parameters.faults.begin(), parameters.faults.end(),
-                   [&](const Fault& fault) { return fault.kind == kind && fault.isThereFromTheStart(); });
+                   [&](const Fault& fault) { return fault.kind == kind && fault.isActiveAtStart(); });
   return found != parameters.faults.end() ? *found : Fault{ kind, 0.0, firstPlace(kind) };
 }
 
-void addInputs(const Parameters& parameters, std::vector<UnitVariable>& all)
+void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
 {
   const double load = parameters.output.load_torque_limit;
   const auto add = [&](const char* name, const char* unit, const char* meaning, double start, const Range& range) {
@@ -152,7 +153,7 @@ void addInputs(const Parameters& parameters, std::vector<UnitVariable>& all)
   }
 }
 
-void addOutputs(const Parameters& parameters, std::vector<UnitVariable>& all)
+void addOutputs(const Parameters& parameters, std::vector<FmuVariable>& all)
 {
   for (const ScalarOutput& output : scalarOutputs())
   {
@@ -269,9 +270,9 @@ std::size_t placeReference(std::size_t kind)
   return FIRST_OUTPUT + scalarOutputs().size() + toothOutputs().size() + kind;
 }
 
-std::vector<UnitVariable> variables(const Parameters& parameters)
+std::vector<FmuVariable> variables(const Parameters& parameters)
 {
-  std::vector<UnitVariable> all;
+  std::vector<FmuVariable> all;
   addInputs(parameters, all);
   addOutputs(parameters, all);
   for (const FaultDescription& kind : FAULT_DESCRIPTIONS)

@@ -37,7 +37,7 @@ struct Value
 };
 
 /// What stands for it in the description and in calls; its value reference is its place in the list.
-struct UnitVariable
+struct FmuVariable
 {
   std::string name;
   std::string unit;  ///< "-": none
@@ -85,7 +85,7 @@ const std::vector<ToothOutput>& toothOutputs();
 
 /// All variables: time, inputs, scalar outputs, tooth outputs, places of the faults, then the parameters that shape the
 /// drive. What the twin is beside a robot or publishes is left out, and what sizes or steps would change with.
-std::vector<UnitVariable> variables(const Parameters& parameters);
+std::vector<FmuVariable> variables(const Parameters& parameters);
 
 /// Value reference of the place of a kind of fault.
 std::size_t placeReference(std::size_t kind);

@@ -71,13 +71,13 @@ class Unit:
         return {name: self.get(name, instance) for name, variable in self.variables.items()
                 if variable.get("causality") == "output"}
 
-    def start(self, instance=0, stop="nan", **values):
+    def start(self, instance=0, begin=0.0, stop="nan", **values):
         """An instance that has been initialised with these values."""
         assert self.call("new", instance) == OK
         for name, value in values.items():
             assert self.set(name.replace("__", "."), *(value if isinstance(value, list) else [value]),
                             instance=instance) == OK, name
-        assert self.call("enter", instance, 0.0, stop) == OK
+        assert self.call("enter", instance, begin, stop) == OK
         assert self.call("exit", instance) == OK
 
 
@@ -233,6 +233,10 @@ class States(Fmu):
         self.assertEqual(unit.call("step", 2, 0.0, 0.01, 20), OK)
         self.assertEqual(unit.outputs(2), unit.outputs(0))
         self.assertNotEqual(unit.outputs(1), unit.outputs(0))
+        unit.start(3, begin=-2.5, motor_torque=0.4)
+        self.assertEqual(unit.get("time", 3), [-2.5])
+        self.assertEqual(unit.call("step", 3, -2.5, 0.01, 20), OK)
+        self.assertEqual(unit.get("output_angle", 3), unit.get("output_angle", 0))
         unit.call("free", 0)
         self.assertEqual(unit.call("step", 1, 0.2, 0.01), OK)
         unit.close()

@@ -17,7 +17,7 @@
 #include "base/whole_file.hpp"
 #include "base/xml_text.hpp"
 #include "elements/motor.hpp"
-#include "fmu/unit_file.hpp"
+#include "fmu/fmu_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "params/configuration_files.hpp"
@@ -165,26 +165,26 @@ std::vector<std::string> loadedYamlCpp()
   return paths;
 }
 
-int exportUnit(const ExportOptions& options)
+int exportFmu(const ExportOptions& options)
 {
   const Parameters parameters = loadGear(options);
   requireWritable(options.out, options.force);
   const std::string library = libraryDirectory() / "harmonic_joint_twin/harmonic_joint_twin_fmu.so";
-  writeTextFile(options.out, fmu::unitFile(parameters, library, loadedYamlCpp()));
+  writeTextFile(options.out, fmu::fmuFile(parameters, library, loadedYamlCpp()));
   return EXIT_DONE;
 }
 
 int exportJoint(const ExportOptions& options)
 {
-  const bool is_unit = options.format == "fmu";
-  if (is_unit == options.out.empty())
+  const bool is_fmu = options.format == "fmu";
+  if (is_fmu == options.out.empty())
   {
-    std::cerr << "joint_twin: " << (is_unit ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
+    std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
     return EXIT_USAGE;
   }
-  if (is_unit)
+  if (is_fmu)
   {
-    return exportUnit(options);
+    return exportFmu(options);
   }
   const Parameters parameters = loadParameters(options);
   const double ratio = nominalRatio(parameters.gear);

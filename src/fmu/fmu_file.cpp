@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fmu/unit_file.hpp"
+#include "fmu/fmu_file.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -30,7 +30,7 @@ std::string readBytes(const std::string& path)
 }
 }  // namespace
 
-std::string unitFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
+std::string fmuFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
 {
 #ifdef __aarch64__
   const std::string binaries = "binaries/aarch64-linux/";
@@ -58,7 +58,20 @@ std::string unitFile(Parameters parameters, const std::string& library, const st
   zip.add(binaries + MODEL_IDENTIFIER + ".so", readBytes(library));
   for (const std::string& other : others)
   {
-    zip.add(binaries + fs::path(other).filename().string(), readBytes(other));
+    const std::string name = fs::path(other).filename();
+    zip.add(binaries + name, readBytes(other));
+    // Its licence goes with it, from where Debian keeps it: /usr/share/doc/libNAME-VERSION/copyright.
+    const std::string package = name.substr(0, name.find(".so"));
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator("/usr/share/doc", error))
+    {
+      const fs::path licence = entry.path() / "copyright";
+      if (entry.path().filename().string().rfind(package, 0) == 0 && fs::exists(licence, error))
+      {
+        zip.add("documentation/licenses/" + entry.path().filename().string() + ".txt", readBytes(licence));
+        break;
+      }
+    }
   }
   return zip.bytes();
 }
