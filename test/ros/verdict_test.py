@@ -100,7 +100,8 @@ class Verdict(unittest.TestCase):
         self.assertTrue(message.friction_measured)
         for field in ("joint", "text", "friction_factor", "friction_lower", "friction_upper", "friction_has_interval",
                       "causes", "cause_weights"):
-            self.assertEqual(getattr(message, field), offline[field], field)
+            value = getattr(message, field)
+            self.assertEqual(list(value) if isinstance(value, tuple) else value, offline[field], field)
         live = dict(zip(message.evidence_names, message.evidence_values))
         stored = dict(zip(offline["evidence_names"], offline["evidence_values"]))
         for name in ("friction_of_twin", "friction_speeds", "lowest_speed", "highest_speed", "current_rms"):
