@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +25,7 @@
 #include "recordings/recording_comparison.hpp"
 
 #include "base/joined.hpp"
+#include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/conversions.hpp"
@@ -71,10 +74,13 @@ void prepareDirectory(const ComparisonOptions& options, const std::string& direc
 
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
-  std::error_code error;
-  if (fs::equivalent(options.report, options.reference, error))
+  for (const std::string& reference : options.references)
   {
-    throw InputError("--report and --reference are the same directory: the reference would be lost");
+    std::error_code error;
+    if (fs::equivalent(options.report, reference, error))
+    {
+      throw InputError("--report and --reference are the same directory: the reference would be lost");
+    }
   }
 }
 
@@ -107,14 +113,14 @@ void makePage(const std::string& directory)
 class JointComparison
 {
 public:
-  /// `reference`: directory of an earlier report; empty: none. `is_identified`: the parameters are of this very joint.
+  /// `references`: directories of earlier reports; empty: none. `is_identified`: the parameters are of this very joint.
   JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load, const std::string& directory,
-                  const std::string& reference, bool is_identified)
+                  const std::vector<std::string>& references, bool is_identified)
     : parameters_(recording.parameters(joint))
     , source_(recording.source(joint))
     , is_file_(recording.isFile())
     , directory_(directory)
-    , sound_(reference.empty() ? SoundJoint() : readSoundJoint(reference, parameters_))
+    , sound_(references.empty() ? SoundJoint() : readSoundJoint(references, parameters_))
     , is_identified_(is_identified)
     , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
     , comparison_(parameters_, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
@@ -131,7 +137,7 @@ public:
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparedJoint write(const MotionFindings& found, double arm_friction, const std::string& misfit,
+  ComparedJoint write(const MotionFindings& found, double arm_friction, double arm_deviation, const std::string& misfit,
                       const std::string& twin_topic)
   {
     windows_.close();
@@ -147,9 +153,13 @@ public:
           readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
       record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
     }
-    record.verdict =
-        judge(evidence(), parameters_, { sound_.own, is_identified_, found.duration, arm_friction, misfit });
+    const JointContext context{ sound_.own, is_identified_, found.duration, arm_friction, misfit, arm_deviation };
+    record.verdict = judge(evidence(), parameters_, context);
+    record.friction = frictionFactor(evidence(), context);
+    record.is_friction_judged = record.verdict.findings.front().judged;
     ComparedJoint compared;
+    compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
+    compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
     compared.document = writeComparison(directory_, comparison_, parameters_, record);
     compared.temperature = evidence().temperature();
     compared.temperature_source = temperatureSource(evidence());
@@ -172,19 +182,77 @@ private:
   RecordingComparison comparison_;
 };
 
+template <typename Member>
+std::optional<double> number(const ComparedJoint& line, Member member)
+{
+  return line.friction ? std::make_optional(std::invoke(member, *line.friction)) : std::nullopt;
+}
+
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
   { "level", [](const ComparedJoint& line) { return verdictName(line.verdict); }, "verdict" },
   { "reason", [](const ComparedJoint& line) { return line.verdict.reason; } },
-  { "friction_ratio", &ComparedJoint::friction_ratio, "friction [-]" },
+  { "friction_ratio", [](const ComparedJoint& line) { return number(line, &FrictionFactor::value); } },
+  { "friction_low", [](const ComparedJoint& line) { return number(line, &FrictionFactor::low); } },
+  { "friction_high", [](const ComparedJoint& line) { return number(line, &FrictionFactor::high); } },
+  { "friction", [](const ComparedJoint& line) { return line.friction ? factorText(*line.friction) : "-"; },
+    "friction [95 %]" },
   { "temperature", &ComparedJoint::temperature, "at [degC]" },
   { "temperature_source", [](const ComparedJoint& line) { return line.temperature_source; }, "which is" },
   { "current_rms", &ComparedJoint::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Joints of the worst level, and what they have in common.
-std::string reasonOf(const std::vector<ComparedJoint>& lines, HealthLevel level, const ArmFriction& arm)
+/// What the joints of a group have in common, if that is worth a word.
+std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
+{
+  constexpr double NOTEWORTHY = 0.1;
+  if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
+  {
+    return {};
+  }
+  return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
+         fixedText(group.median, 2) +
+         " times the expected one: another temperature or lubricant of these, not a fault of one joint. ";
+}
+
+/// Every joint that departs or is not judged, and why.
+std::string departuresOf(const std::vector<ComparedJoint>& lines)
+{
+  std::string reason;
+  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
+  bool departs = false;
+  bool judged = false;
+  for (const ComparedJoint& line : lines)
+  {
+    judged = judged || line.verdict.judged;
+    if (line.verdict.level != HealthLevel::OK)
+    {
+      reason += line.name + ": " + line.verdict.reason + " ";
+      departs = true;
+    }
+    if (!line.verdict.judged)
+    {
+      const std::string& why = line.verdict.findings.front().text;
+      const auto same = std::find_if(unjudged.begin(), unjudged.end(), [&](const auto& one) { return one.first == why; });
+      (same == unjudged.end() ? unjudged.emplace_back(why, std::vector<std::string>()) : *same)
+          .second.push_back(line.name);
+    }
+    else if (!line.contact.empty())
+    {
+      reason += line.name + ": " + line.contact + " Judged by the rest. ";
+    }
+  }
+  reason += judged && !departs ? "No joint departs from a sound one. " : "";
+  for (const auto& [why, joints] : unjudged)
+  {
+    reason += "Not judged: " + joined(joints) + ". " + why + " ";
+  }
+  return reason;
+}
+
+/// What the joints have in common, and each that departs or is not judged.
+std::string reasonOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm)
 {
   std::string reason;
   if (arm.median != 1.0)
@@ -197,26 +265,11 @@ std::string reasonOf(const std::vector<ComparedJoint>& lines, HealthLevel level,
                 " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
-  std::vector<std::string> unjudged;
-  for (const ComparedJoint& line : lines)
+  for (const JointGroup& group : arm.groups)
   {
-    if (level != HealthLevel::OK && line.verdict.level == level)
-    {
-      reason += line.name + ": " + line.verdict.reason + " ";
-    }
-    if (!line.verdict.judged)
-    {
-      unjudged.push_back(line.name + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
-    }
+    reason += groupText(group, lines);
   }
-  if (level == HealthLevel::OK && unjudged.size() < lines.size())
-  {
-    reason += "No joint departs from a sound one. ";
-  }
-  if (!unjudged.empty())
-  {
-    reason += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
-  }
+  reason += departuresOf(lines);
   reason.pop_back();
   return reason;
 }
@@ -243,26 +296,147 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
   {
     const std::string directory = directoryOf(recording, options.report, i);
     prepareDirectory(options, directory, COMPARISON_FILE);
-    joints.push_back(std::make_unique<JointComparison>(
-        recording, i, load, directory, directoryOf(recording, options.reference, i), !options.identified.empty()));
+    std::vector<std::string> references;
+    for (const std::string& reference : options.references)
+    {
+      references.push_back(directoryOf(recording, reference, i));
+    }
+    joints.push_back(std::make_unique<JointComparison>(recording, i, load, directory, references,
+                                                       !options.identified.empty()));
   }
   return joints;
+}
+
+/// The joints beside their twins after a pass through the recording.
+struct Pass
+{
+  std::vector<std::unique_ptr<JointComparison>> joints;
+  MotionFindings found;
+  std::vector<std::string> misfits;  // why the rows of each say nothing, in a sentence; empty: they fit
+  ArmFriction friction;
+  std::optional<IdentifiedPayload> payload;
+};
+
+/// Of samples that come by joints: all of one time at once.
+class PayloadCollector
+{
+public:
+  explicit PayloadCollector(const ArmRecording& recording)
+    : fit_(recording.arm(), gainsOf(recording)), waiting_(recording.joints().size())
+  {
+  }
+
+  void add(std::size_t joint, const MotionSample& sample, const JointEvidence& evidence)
+  {
+    waiting_[joint].push_back({ sample, evidence.predicted().current, evidence.isTouched() });
+    while (std::none_of(waiting_.begin(), waiting_.end(), [](const std::deque<Row>& rows) { return rows.empty(); }))
+    {
+      samples_.clear();
+      predicted_.clear();
+      bool is_touched = false;
+      for (std::deque<Row>& rows : waiting_)
+      {
+        samples_.push_back(rows.front().sample);
+        predicted_.push_back(rows.front().predicted);
+        is_touched = is_touched || rows.front().is_touched;
+        rows.pop_front();
+      }
+      if (!is_touched)
+      {
+        fit_.add(samples_, predicted_);
+      }
+    }
+  }
+
+  IdentifiedPayload solve() { return fit_.solve(); }
+
+private:
+  struct Row
+  {
+    MotionSample sample;
+    double predicted{};  // [A]
+    bool is_touched{};
+  };
+
+  static std::vector<double> gainsOf(const ArmRecording& recording)
+  {
+    std::vector<double> gains;
+    for (const Parameters& parameters : recording.parameters())
+    {
+      gains.push_back(parameters.telemetry.torque_per_current);
+    }
+    return gains;
+  }
+
+  PayloadFit fit_;
+  std::vector<std::deque<Row>> waiting_;
+  std::vector<MotionSample> samples_;
+  std::vector<double> predicted_;
+};
+
+Pass passThrough(const ComparisonOptions& options, const ArmRecording& recording)
+{
+  Pass pass;
+  pass.joints = prepareJoints(options, recording);
+  std::optional<PayloadCollector> payload;
+  if (recording.isArm() && !recording.usesRecordedLoad())
+  {
+    payload.emplace(recording);
+  }
+  RecordingFit fit(recording.parameters());
+  pass.found = recording.readSamples(
+      [&](std::size_t i, const MotionSample& sample)
+      {
+        pass.joints[i]->update(sample);
+        if (payload)
+        {
+          payload->add(i, sample, pass.joints[i]->evidence());
+        }
+      },
+      fit);
+  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>(pass.joints.size());
+  std::vector<MeasuredFriction> frictions;
+  for (std::size_t i = 0; i < pass.joints.size(); ++i)
+  {
+    pass.misfits[i] = sentence(pass.misfits[i]);
+    frictions.push_back(pass.joints[i]->friction(pass.misfits[i]));
+  }
+  pass.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
+  const bool fits = std::all_of(pass.misfits.begin(), pass.misfits.end(), [](const auto& why) { return why.empty(); });
+  for (std::string& misfit : pass.misfits)
+  {
+    misfit = misfit.empty() ? pass.friction.misfit : misfit;
+  }
+  if (payload && fits && pass.friction.misfit.empty() && !options.watch.stopped())
+  {
+    pass.payload = payload->solve();
+  }
+  return pass;
+}
+
+std::string payloadText(const IdentifiedPayload& payload)
+{
+  const Payload found = payload.payload();
+  return "The currents look like a payload of " + fixedText(found.mass, 1) + " +- " +
+         fixedText(payload.mass_half_width, 1) + " kg at the flange in place of the configured " +
+         shortNumber(payload.configured.mass) + " kg, its centre at " + fixedText(found.centre[0], 2) + ", " +
+         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
+         " m: set payload in the arm's file. The joints are judged with it. ";
 }
 
 /// Level and reason of an arm by those of its joints. `misfits`: why the rows of each say nothing.
 void judgeArm(const std::vector<std::string>& misfits, ComparedRecording& compared)
 {
-  HealthLevel level = HealthLevel::OK;
-  bool judged = false;
   for (const ComparedJoint& joint : compared.joints)
   {
-    level = std::max(level, joint.verdict.level);
-    judged = judged || joint.verdict.judged;
+    compared.health = std::max(compared.health, joint.verdict.level);
+    compared.is_judged = compared.is_judged || joint.verdict.judged;
   }
-  compared.level = judged ? levelName(level) : NOT_JUDGED;
+  compared.level = compared.is_judged ? levelName(compared.health) : NOT_JUDGED;
   const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
                                                     static_cast<std::ptrdiff_t>(misfits.size());
-  compared.reason = same ? sentence(misfits.front()) : reasonOf(compared.joints, level, compared.friction);
+  compared.reason = (compared.payload ? payloadText(*compared.payload) : "") +
+                    (same ? misfits.front() : reasonOf(compared.joints, compared.friction));
 }
 
 Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& compared)
@@ -283,6 +457,9 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "rows", compared.found.rows },
            { "duration", compared.found.duration },
            { "friction_ratio", compared.friction.median },
+           { "payload_mass", compared.payload ? std::make_optional(compared.payload->mass) : std::nullopt },
+           { "payload_half_width",
+             compared.payload ? std::make_optional(compared.payload->mass_half_width) : std::nullopt },
            { "joints", tableOf(compared).rows() } };
 }
 }  // namespace
@@ -290,40 +467,33 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
 ComparedRecording compare(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
-  const ArmRecording recording(options);
-  const std::vector<std::unique_ptr<JointComparison>> joints = prepareJoints(options, recording);
-  RecordingFit fit(recording.parameters());
+  ArmRecording recording(options);
+  Pass pass = passThrough(options, recording);
   ComparedRecording compared;
   compared.is_arm = recording.isArm();
   compared.page = (fs::path(options.report) / REPORT_PAGE).string();
-  compared.found =
-      recording.readSamples([&](std::size_t i, const MotionSample& sample) { joints[i]->update(sample); }, fit);
+  if (pass.payload && pass.payload->differs() && pass.payload->mass > pass.payload->mass_half_width)
+  {
+    compared.payload = pass.payload;
+    recording.setPayload(pass.payload->payload());
+    pass = passThrough(options, recording);
+  }
+  compared.found = pass.found;
+  compared.friction = pass.friction;
   if (options.watch.stopped())
   {
     return compared;
   }
-  const std::vector<std::string> misfits =
-      recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>(joints.size());
-  std::vector<MeasuredFriction> frictions;
-  for (std::size_t i = 0; i < joints.size(); ++i)
-  {
-    frictions.push_back(joints[i]->friction(sentence(misfits[i])));
-  }
-  compared.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
-  for (std::size_t i = 0; i < joints.size(); ++i)
+  for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {
     ComparedJoint& joint = compared.joints.emplace_back(
-        joints[i]->write(compared.found, compared.friction.factors[i], sentence(misfits[i]),
-                         recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+        pass.joints[i]->write(pass.found, pass.friction.factors[i], pass.friction.deviations[i], pass.misfits[i],
+                              recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
-    joint.friction_ratio = frictions[i].ratio;
-    joint.misfit = misfits[i].empty() && joints[i]->evidence().isTouched() ?
-                       contactText(joints[i]->evidence().contact().last()) :
-                       misfits[i];
   }
   if (recording.isArm())
   {
-    judgeArm(misfits, compared);
+    judgeArm(pass.misfits, compared);
     compared.document = documentOfArm(options, compared);
     writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
   }
@@ -331,10 +501,15 @@ ComparedRecording compare(const ComparisonOptions& options)
   {
     const Verdict& verdict = compared.joints.front().verdict;
     compared.level = verdictName(verdict);
+    compared.is_judged = verdict.judged;
+    compared.health = verdict.level;
     compared.reason = verdict.reason;
     compared.document = compared.joints.front().document;
   }
-  makePage(options.report);
+  if (options.has_page)
+  {
+    makePage(options.report);
+  }
   return compared;
 }
 

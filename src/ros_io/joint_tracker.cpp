@@ -114,7 +114,7 @@ void JointTracker::start(bool reset)
 void JointTracker::forgetAll()
 {
   tracker_.reset();
-  judgeEvidence(1.0);
+  judgeEvidence(1.0, UNWITNESSED, std::string());
 }
 
 void JointTracker::push(const MotionRow& row)
@@ -282,21 +282,22 @@ bool JointTracker::loadIsUnknown() const
          !comparison_.load_provided;
 }
 
-JointContext JointTracker::context(double arm_friction) const
+JointContext JointTracker::context(double arm_friction, double arm_deviation, const std::string& arm_misfit) const
 {
-  return { OwnReference(), is_identified_, 0.0, arm_friction, sentence(misfit_) };
+  return { OwnReference(), is_identified_, 0.0, arm_friction, misfit_.empty() ? arm_misfit : sentence(misfit_),
+           arm_deviation };
 }
 
 MeasuredFriction JointTracker::measuredFriction() const
 {
-  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0));
+  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0, UNWITNESSED, std::string()));
 }
 
-void JointTracker::judgeEvidence(double arm_friction)
+void JointTracker::judgeEvidence(double arm_friction, double arm_deviation, const std::string& arm_misfit)
 {
   const MotionReach& reach = tracker_.evidence().reach();
   const bool is_new = confirmed_ > reach.end;  // the telemetry started again
-  Verdict verdict = judge(tracker_.evidence(), parameters_, context(arm_friction));
+  Verdict verdict = judge(tracker_.evidence(), parameters_, context(arm_friction, arm_deviation, arm_misfit));
   // After JUDGED_SPAN the last verdict stands until there is another.
   const bool is_open = !verdict.judged && verdict_.judged && whyNotJudged().empty() && !is_new;
   if (!is_open && (is_new || verdict.level <= verdict_.level || reach.end - confirmed_ >= CONFIRMED_AFTER))

@@ -91,7 +91,7 @@ public:
   MeasuredFriction measuredFriction() const;
 
   /// Makes the verdict again; `arm_friction`: what all joints have in common of `measuredFriction` [-].
-  void judgeEvidence(double arm_friction);
+  void judgeEvidence(double arm_friction, double arm_deviation, const std::string& arm_misfit);
 
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
@@ -135,7 +135,7 @@ private:
   void publish();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  JointContext context(double arm_friction) const;
+  JointContext context(double arm_friction, double arm_deviation, const std::string& arm_misfit) const;
   bool loadIsUnknown() const;
   std::string whyNotJudged() const;
   bool hasStopped() const;

@@ -261,7 +261,7 @@ void TrackerNode::judge(const ros::WallTime& now)
   const ArmFriction arm = commonFriction(frictions, repeat_tolerance_);
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joints_[i]->judgeEvidence(arm.factors[i]);
+    joints_[i]->judgeEvidence(arm.factors[i], arm.deviations[i], arm.misfit);
   }
 }
 

@@ -80,7 +80,8 @@ JointEvidence::Row JointEvidence::update(const MotionSample& sample, bool fits) 
   const double residual = sample.current - predicted_.current;
   const bool was_touched = isTouched();
   contact_.update(sample, gain * residual, predicted_.friction_torque,
-                  predicted_.band > parameters_.telemetry.current_deviation);
+                  predicted_.band > parameters_.telemetry.current_deviation ? gain * predicted_.band : 0.0,
+                  predicted_.friction_limit);
   addToReach(sample);
   if (std::isfinite(sample.motor_angle))
   {
@@ -113,7 +114,16 @@ void JointEvidence::addToReach(const MotionSample& sample) noexcept
   reach.most_load = std::max(reach.most_load, sample.load);
   reach.least_angle = std::min(reach.least_angle, sample.position);
   reach.most_angle = std::max(reach.most_angle, sample.position);
-  reach.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
+  if (std::isfinite(sample.motor_angle))
+  {
+    if (reach.motor_rows++ > 0 && !sample.after_gap)
+    {
+      const double turn = sample.motor_angle - last_motor_.motor_angle;
+      reach.motor_turns += std::abs(turn);
+      reach.joint_turns += std::copysign(sample.position - last_motor_.position, turn * (sample.position - last_motor_.position));
+    }
+    last_motor_ = sample;
+  }
   reach.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
 }
 
@@ -134,7 +144,7 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   if (tellsFriction(predicted_))
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
-    now_.friction.add(sample.velocity, way * (friction + gain * residual), way * friction);
+    now_.friction.add(sample.time, sample.velocity, way * (friction + gain * residual), way * friction, sample.load);
   }
   if (std::isfinite(sample.motor_angle))
   {

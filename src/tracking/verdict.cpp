@@ -19,18 +19,8 @@ std::string rounded(double value, int digits)
   return fixedText(value, digits);
 }
 
-/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
-HealthLevel levelOf(double deviation, double tolerance, double error_factor)
-{
-  const double size = std::abs(deviation) / tolerance;
-  return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
-}
-
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
-
-/// No change of temperature makes the friction of grease and contacts larger or smaller by more.
-constexpr double MAX_ARM_FRICTION = 2.5;
 
 /// Share of its sound value by which a fault of severity 1 must change an indicator to be named.
 constexpr double MIN_CHANGE = 0.02;
@@ -41,7 +31,6 @@ struct Ratio
   const char* what;
   double value;
   double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
-  double of_arm;              ///< multiple that all joints of the arm have in common
   double of_kind;             ///< share by which sound joints differ from the twin
   ScalarIndicator indicator;  ///< that says the same
   double when_larger;         ///< the indicator moves up: +1, down: -1
@@ -54,7 +43,7 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
 {
   const bool known = std::isfinite(ratio.to_own);
   const double tolerance = known ? parameters.comparison.repeat_tolerance : ratio.of_kind;
-  const double value = (known ? ratio.to_own : ratio.value) / ratio.of_arm;
+  const double value = known ? ratio.to_own : ratio.value;
   finding.judged = true;
   finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
   // As many digits as it takes to see on which side of the bound the value lies.
@@ -69,9 +58,6 @@ void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& findi
   const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
   finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
                  (known ? " and " + rounded(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
-                 (ratio.of_arm == 1.0 ? "" :
-                                        ", " + rounded(value, digits) + " times what the " +
-                                            rounded(ratio.of_arm, digits) + " times of the whole arm make") +
                  " (" + sound + ").";
   if (finding.level != HealthLevel::OK)
   {
@@ -89,21 +75,6 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
-/// What to say of a load that is not the joint's.
-const char* wrongLoad(LoadOrigin load)
-{
-  switch (load)
-  {
-    case LoadOrigin::CONFIGURED:
-      break;
-    case LoadOrigin::RECORDED:
-      return "the load is not the one that was recorded.";
-    case LoadOrigin::ARM:
-      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
-  }
-  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
-}
-
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
 std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
 {
@@ -115,6 +86,16 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
+  constexpr double MIN_TURN = 1.0;       // of the motor [rad]
+  constexpr double RATIO_ERROR = 0.2;    // no torsion or error of an encoder makes more of it
+  const MotionReach& reach = evidence.reach();
+  const double turned = evidence.ratio() * reach.joint_turns;
+  if (reach.motor_turns > MIN_TURN && std::abs(reach.motor_turns - turned) > RATIO_ERROR * std::abs(turned))
+  {
+    return "The motor turns " + rounded(reach.motor_turns / reach.joint_turns, 1) +
+           " times as far as the joint, and " + rounded(evidence.ratio(), 0) +
+           " times by the configured gear: another ratio or sign, or the two angles are not of one joint.";
+  }
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
@@ -136,86 +117,11 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
            " A are neither predicted nor explained by another friction or a constant: " +
            wrongLoad(evidence.loadOrigin());
   }
-  if (evidence.isTouched())
+  if (evidence.reach().touched_rows > 0 && 2 * evidence.reach().touched_rows > evidence.reach().rows)
   {
-    return sentence(contactText(evidence.contact().last()));
+    return sentence(contactText(evidence.contact().largest()));
   }
   return {};
-}
-
-/// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
-double impossibleWay(const std::vector<FrictionPoint>& points)
-{
-  for (const double way : { -1.0, 1.0 })
-  {
-    double sum = 0.0;
-    for (const FrictionPoint& point : points)
-    {
-      sum += way * point.speed > 0.0 ? static_cast<double>(point.rows) * point.measured : 0.0;
-    }
-    if (sum < 0.0)
-    {
-      return way;
-    }
-  }
-  return 0.0;
-}
-
-/// Why the recording does not show the joint's friction; empty: it does.
-std::string whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin load)
-{
-  if (points.empty())
-  {
-    return "The joint never moves steadily for long enough to measure its friction.";
-  }
-  if (!movesBothWays(points) && load == LoadOrigin::CONFIGURED)
-  {
-    return "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
-  }
-  if (const double way = impossibleWay(points); way != 0.0)
-  {
-    return std::string("Friction would push the joint along in ") + (way > 0.0 ? "positive" : "negative") +
-           " motion, which it cannot: " + wrongLoad(load);
-  }
-  return {};
-}
-
-/// Friction as a multiple of the joint's own when sound; NaN: that is not known.
-double frictionToOwn(const JointEvidence& evidence, const JointContext& context)
-{
-  const FrictionPoints& friction = evidence.friction();
-  return context.own.friction.empty() && context.is_identified ? friction.ratio() :
-                                                                 friction.ratioTo(context.own.friction);
-}
-
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
-{
-  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  finding.text = whyNoFriction(points, evidence.loadOrigin());
-  if (!finding.text.empty())
-  {
-    return finding;
-  }
-  if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
-  {
-    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
-                   " times the reference's, more than temperature makes: gain or unit of the currents are not the "
-                   "configured ones.";
-    return finding;
-  }
-  judgeRatio({ "Friction", evidence.friction().ratio(), frictionToOwn(evidence, context), context.arm_friction,
-               parameters.comparison.friction_tolerance, ScalarIndicator::RUNNING_TORQUE, +1.0,
-               "grease at another temperature, another preload, a wrong gain", evidence.assessor().signatures() },
-             parameters, finding);
-  finding.text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
-  finding.text += std::isfinite(context.own.temperature) ?
-                      ", the reference at " + rounded(context.own.temperature, 0) +
-                          " degC; the twin's law of friction makes up for the difference." :
-                      ".";
-  finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
-                  " to " + rounded(points.back().speed, 2) + " rad/s.";
-  return finding;
 }
 
 Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own)
@@ -232,13 +138,21 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
     finding.text = "The load hardly varies, so the stiffness of the drive cannot be measured.";
     return finding;
   }
+  constexpr double MAX_COMPLIANCE = 20.0;  // no drive is so soft that still turns
+  if (compliance < 0.0 || compliance > MAX_COMPLIANCE)
+  {
+    finding.text = "Torsion is " + rounded(compliance, 2) +
+                   " times the twin's, which no fault makes: load, or the angles of motor and joint, are not this "
+                   "joint's, or of other signs.";
+    return finding;
+  }
   // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
   const double twin = evidence.torsion().twinAmplitude();
   const double turn = evidence.torsion().turnAmplitude();
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / evidence.ratio() / std::sqrt(2.0)) /
                               twin;
-  judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
+  judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio,
                parameters.comparison.compliance_tolerance + eccentricity, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0,
                "a wrong load, eccentric encoders", evidence.assessor().signatures() },
              parameters, finding);
@@ -434,28 +348,23 @@ std::string sentence(std::string clause)
   return clause;
 }
 
-namespace
+/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
+HealthLevel levelOf(double deviation, double tolerance, double error_factor)
 {
-/// Friction as a multiple of the joint's own when sound, else of the twin's; none: the rows do not show it.
-std::optional<double> frictionRatio(const JointEvidence& evidence, const Parameters& parameters,
-                                    const JointContext& context)
-{
-  if (!whyItDoesNotFit(evidence, parameters, context).empty() ||
-      !whyNoFriction(evidence.friction().points(), evidence.loadOrigin()).empty())
-  {
-    return std::nullopt;
-  }
-  const double to_own = frictionToOwn(evidence, context);
-  return std::isfinite(to_own) ? to_own : evidence.friction().ratio();
+  const double size = std::abs(deviation) / tolerance;
+  return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
 }
-
-}  // namespace
 
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
                                   const JointContext& context)
 {
-  return { frictionRatio(evidence, parameters, context), evidence.temperature(), evidence.reach().temperature_rows > 0,
-           [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); } };
+  const FrictionFactor factor = frictionFactor(evidence, context);
+  const bool fits = whyItDoesNotFit(evidence, parameters, context).empty();
+  return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt, evidence.temperature(),
+           evidence.reach().temperature_rows > 0,
+           [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
+           context.misfit.empty() && factor.is_below_faults,
+           context.misfit.empty() && factor.gap == FrictionGap::NO_FRICTION };
 }
 
 Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tracking/common_friction.hpp"
+#include "tracking/friction_verdict.hpp"
 #include "tracking/joint_evidence.hpp"
 
 namespace hjt
@@ -17,6 +19,10 @@ struct OwnReference
   std::vector<FrictionPoint> friction;                                  ///< none: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
   double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< judged at; NaN: not known [degC]
+  double friction_deviation{};    ///< of the friction, by its scatter, standard deviation as a share [-]
+  std::size_t recordings{ 1 };    ///< that it is of
+  double recordings_deviation{};  ///< standard deviation of one of them, as a share [-]
+  bool is_unjudged{};             ///< there is a recording, but it did not show the joint's friction
 };
 
 /// What is known of a joint besides its samples.
@@ -28,6 +34,7 @@ struct JointContext
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
   std::string misfit;  ///< why the rows say nothing of this joint; empty: it fits
+  double arm_deviation{ UNWITNESSED };  ///< of `arm_friction`, standard deviation of its logarithm
 };
 
 /// One thing that was judged, in words.
@@ -61,6 +68,9 @@ inline const char* verdictName(const Verdict& verdict)
 {
   return verdict.judged ? levelName(verdict.level) : NOT_JUDGED;
 }
+
+/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
+HealthLevel levelOf(double deviation, double tolerance, double error_factor);
 
 /// Live and offline alike.
 Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
