@@ -7,6 +7,7 @@
 #include <string>
 
 #include <kdl/chain.hpp>
+#include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
@@ -147,22 +148,52 @@ struct ArmDynamics::Solver
 {
   explicit Solver(const ArmDescription& arm)
     : chain(chainOf(arm))
-    , recursion(chain, vectorOf(arm.gravity))
+    , gravity(vectorOf(arm.gravity))
+    , recursion(chain, gravity)
+    , parameters(chain, gravity)
     , position(chain.getNrOfJoints())
     , velocity(chain.getNrOfJoints())
     , acceleration(chain.getNrOfJoints())
     , torque(chain.getNrOfJoints())
-    , no_forces(chain.getNrOfSegments(), KDL::Wrench::Zero())
+    , mass(chain.getNrOfJoints())
+    , forces(chain.getNrOfSegments(), KDL::Wrench::Zero())
   {
   }
 
+  void setPositions(const std::vector<JointMotion>& motion) noexcept
+  {
+    for (unsigned i = 0; i < motion.size(); ++i)
+    {
+      position(i) = motion[i].position;
+    }
+  }
+
+  /// Of the end of each segment, from the base on, given to `visit`.
+  template <class Visit>
+  KDL::Frame walk(const Visit& visit) const
+  {
+    KDL::Frame pose = KDL::Frame::Identity();
+    unsigned joint = 0;
+    for (const KDL::Segment& segment : chain.segments)
+    {
+      const bool moves = segment.getJoint().getType() != KDL::Joint::None;
+      pose = pose * segment.pose(moves ? position(joint) : 0.0);
+      joint += moves ? 1 : 0;
+      visit(segment, pose);
+    }
+    return pose;
+  }
+
   KDL::Chain chain;
+  KDL::Vector gravity;
   KDL::ChainIdSolver_RNE recursion;
+  KDL::ChainDynParam parameters;
   KDL::JntArray position;
   KDL::JntArray velocity;
   KDL::JntArray acceleration;
   KDL::JntArray torque;
-  KDL::Wrenches no_forces;
+  KDL::JntSpaceInertiaMatrix mass;
+  KDL::Wrenches forces;  // on each segment, in its frame
 };
 
 ArmDynamics::ArmDynamics(const ArmDescription& arm) : solver_(std::make_unique<Solver>(arm)) {}
@@ -188,16 +219,59 @@ double ArmDynamics::mass() const noexcept
 void ArmDynamics::torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept
 {
   Solver& solver = *solver_;
+  solver.setPositions(motion);
   for (unsigned i = 0; i < motion.size(); ++i)
   {
-    solver.position(i) = motion[i].position;
     solver.velocity(i) = motion[i].velocity;
     solver.acceleration(i) = motion[i].acceleration;
   }
-  solver.recursion.CartToJnt(solver.position, solver.velocity, solver.acceleration, solver.no_forces, solver.torque);
+  const KDL::Wrench wrench(vectorOf(wrench_.force), vectorOf(wrench_.moment));
+  if (wrench != KDL::Wrench::Zero())
+  {
+    const KDL::Frame tip = solver.walk([](const KDL::Segment&, const KDL::Frame&) {});
+    solver.forces.back() = tip.M.Inverse() * wrench;
+  }
+  else
+  {
+    solver.forces.back() = wrench;
+  }
+  solver.recursion.CartToJnt(solver.position, solver.velocity, solver.acceleration, solver.forces, solver.torque);
   for (unsigned i = 0; i < motion.size(); ++i)
   {
     torques[i] = solver.torque(i);
   }
+}
+
+void ArmDynamics::massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept
+{
+  Solver& solver = *solver_;
+  solver.setPositions(motion);
+  solver.parameters.JntToMass(solver.position, solver.mass);
+  mass = solver.mass.data;
+}
+
+double ArmDynamics::potentialEnergy(const std::vector<JointMotion>& motion) noexcept
+{
+  Solver& solver = *solver_;
+  solver.setPositions(motion);
+  double energy = 0.0;
+  solver.walk(
+      [&](const KDL::Segment& segment, const KDL::Frame& pose)
+      {
+        const KDL::RigidBodyInertia& body = segment.getInertia();
+        energy -= body.getMass() * KDL::dot(solver.gravity, pose * body.getCOG());
+      });
+  return energy;
+}
+
+ToolPose ArmDynamics::toolPose(const std::vector<JointMotion>& motion) noexcept
+{
+  Solver& solver = *solver_;
+  solver.setPositions(motion);
+  const KDL::Frame pose = solver.walk([](const KDL::Segment&, const KDL::Frame&) {});
+  ToolPose tool;
+  tool.position = { pose.p.x(), pose.p.y(), pose.p.z() };
+  pose.M.GetQuaternion(tool.orientation[0], tool.orientation[1], tool.orientation[2], tool.orientation[3]);
+  return tool;
 }
 }  // namespace hjt

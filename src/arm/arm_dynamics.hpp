@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "arm/arm_description.hpp"
 
@@ -15,6 +18,20 @@ struct JointMotion
   double position{};      ///< [rad]
   double velocity{};      ///< [rad/s]
   double acceleration{};  ///< [rad/s^2]
+};
+
+/// Force [N] and moment [N.m] on the tip, in the frame of the base.
+struct ArmWrench
+{
+  std::array<double, 3> force{};
+  std::array<double, 3> moment{};
+};
+
+/// Of the tip in the frame of the base: position [m]; orientation as a unit quaternion x, y, z, w [-].
+struct ToolPose
+{
+  std::array<double, 3> position{};
+  std::array<double, 4> orientation{};
 };
 
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
@@ -36,8 +53,17 @@ public:
   /// for each joint.
   void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
+  /// Force [N] and moment about the tip [N.m] on the tip from outside, in the frame of the base; counts in `torques`.
+  void setWrench(const ArmWrench& wrench) noexcept { wrench_ = wrench; }
+
+  /// Inertia of links and payload by joints, symmetric [kg.m^2]; `mass`: of the joints' size.
+  void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
+  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< of weight [J]
+  ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;
+
 private:
   struct Solver;
   std::unique_ptr<Solver> solver_;
+  ArmWrench wrench_;
 };
 }  // namespace hjt

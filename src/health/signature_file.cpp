@@ -100,7 +100,7 @@ private:
         fail(lineOf(format), "format: " + (format.IsScalar() ? format.Scalar() : "no number") + ", expected " +
                                  std::to_string(FORMAT) +
                                  ": the file is of another version; make it again with "
-                                 "`joint_twin signatures`");
+                                 "`scripts/evaluate_health --signatures`");
       }
       set_.gear = section(file, "gear").as<std::string>();
       readErrors(section(file, "errors"));
@@ -110,7 +110,7 @@ private:
     }
     catch (const YAML::Exception& error)
     {
-      fail(static_cast<std::size_t>(error.mark.line + 1), error.msg);
+      fail(static_cast<std::size_t>(error.mark.line) + 1, error.msg);
     }
   }
 

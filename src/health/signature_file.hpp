@@ -8,8 +8,8 @@
 
 namespace hjt
 {
-/// The signatures of parameter indicators.signatures: of a file as named, else beside the default configuration; NO_FILE:
-/// none. A file is read once: those who use it share it. Allocates and reads: not for the real-time loop.
+/// The signatures of parameter indicators.signatures: of a file as named, else beside the default configuration;
+/// NO_FILE: none. A file is read once: those who use it share it. Allocates and reads: not for the real-time loop.
 /// @throws ParameterError naming file, line and key of what is wrong: damaged, of another format, with an indicator or
 /// unit that this software has not.
 std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -49,8 +50,8 @@ public:
   /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
   /// not fit. Without any load the rows' is 0. @throws InputError.
   MotionFindings read(const VisitRows& visit) const;
-  /// The same without notices; `fit` receives all rows of an arm.
-  MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
+  /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
+  MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
 
   /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
   /// what it is configured to. @throws InputError.
@@ -61,8 +62,8 @@ private:
   using Read = std::function<MotionFindings(const VisitRows&)>;
 
   MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
-  MotionFindings readJoint(const VisitRows& visit) const;
-  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit) const;
+  MotionFindings readJoint(const VisitRows& visit, double end) const;
+  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings differentiate(const Read& read, const VisitSample& visit) const;
   void noticeOf(const RecordingFit& fit) const;
   void noticeOf(const MotionFindings& found) const;
@@ -70,6 +71,7 @@ private:
   Watch watch_;
   const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file
   std::string joint_namespace_;
+  JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
   std::vector<Parameters> parameters_;

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -234,7 +234,8 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     if (!line.verdict.judged)
     {
       const std::string& why = line.verdict.findings.front().text;
-      const auto same = std::find_if(unjudged.begin(), unjudged.end(), [&](const auto& one) { return one.first == why; });
+      const auto same =
+          std::find_if(unjudged.begin(), unjudged.end(), [&](const auto& one) { return one.first == why; });
       (same == unjudged.end() ? unjudged.emplace_back(why, std::vector<std::string>()) : *same)
           .second.push_back(line.name);
     }
@@ -301,8 +302,8 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
     {
       references.push_back(directoryOf(recording, reference, i));
     }
-    joints.push_back(std::make_unique<JointComparison>(recording, i, load, directory, references,
-                                                       !options.identified.empty()));
+    joints.push_back(
+        std::make_unique<JointComparison>(recording, i, load, directory, references, !options.identified.empty()));
   }
   return joints;
 }
@@ -394,7 +395,7 @@ Pass passThrough(const ComparisonOptions& options, const ArmRecording& recording
         }
       },
       fit);
-  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>(pass.joints.size());
+  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>{ pass.found.misfit };
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {

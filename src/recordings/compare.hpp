@@ -50,10 +50,10 @@ struct ComparedRecording
   HealthLevel health{};  ///< the worst of the joints
   MotionFindings found;
   std::optional<IdentifiedPayload> payload;  ///< that the joints are judged with in place of the configured one
-  ArmFriction friction;               ///< what the joints have in common
-  std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
-  Json document;                      ///< the data of the page
-  std::string page;                   ///< its path
+  ArmFriction friction;                      ///< what the joints have in common
+  std::vector<ComparedJoint> joints;         ///< from the base on; none: stopped
+  Json document;                             ///< the data of the page
+  std::string page;                          ///< its path
 };
 
 /// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.

@@ -229,8 +229,8 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
   double temperatures = 0.0;
   for (const std::string& directory : directories)
   {
-    const std::vector<double> numbers = readJsonNumbers(
-        directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature", "friction_deviation" });
+    const std::vector<double> numbers =
+        readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature", "friction_deviation" });
     compliances += numbers[0];
     temperatures += numbers[1];
     if (std::isfinite(numbers[2]))

@@ -93,7 +93,7 @@ WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, 
   if (!options.models.empty())
   {
     SignalOptions twin;
-    static_cast<ConfigurationOptions&>(twin) = options;
+    static_cast<ConfigurationOptions&>(twin) = static_cast<const ConfigurationOptions&>(options);
     twin.joint_namespace = options.joint_namespace;
     twin.at_hand = options.at_hand;
     model = readOne(options.models[index], twin, options).windows;

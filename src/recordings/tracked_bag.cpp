@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bags/bag_file.hpp"
+#include "bags/recording_format.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 
@@ -38,7 +39,7 @@ TrackedBag::TrackedBag(const std::string& path, const MotionSource& source, cons
   {
     start_ += SIMULATION_EPOCH;  // a controller counts from its own start
   }
-  else
+  else if (formatOfRecording(source.path) == RecordingFormat::BAG)
   {
     openForReading(source_, source.path);
     for (const Joint& joint : joints)

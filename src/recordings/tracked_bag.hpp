@@ -16,7 +16,7 @@
 namespace hjt
 {
 /// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
-/// too, it holds all of its messages as they are.
+/// of ROS 1 too, it holds all of its messages as they are.
 class TrackedBag
 {
 public:

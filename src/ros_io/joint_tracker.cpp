@@ -241,7 +241,7 @@ void JointTracker::look(const ros::WallTime& now)
   const StreamTimingReport timing = stream_.timing.report();
   const TrackerCounters counters = tracker_.counters();
   recent_refusals_.update(refusals_.incomplete + refusals_.not_finite + refusals_.load + refusals_.temperature +
-                              stream_.far_stamps + stream_.too_large,
+                              stream_.far_stamps + stream_.too_large + stream_.without_effort,
                           now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);
@@ -333,13 +333,16 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
   const bool refused = recent_refusals_.areRecent();
   return firstOf(
       { { ros::Time::isSimTime() && ros::Time::now().isZero(), { D::WARN, "No time on /clock yet" } },
+        { !stream_.lack.empty() && (timing.rows == 0 || hasStopped()),
+          { D::WARN, "Messages arrive on " + stream_.topic + " without a usable row: " + stream_.lack } },
         { timing.rows == 0,
           { D::WARN, refused ? "No usable row of " + names_.joint + " yet" : "No telemetry yet on " + stream_.topic } },
         { hasStopped(), { D::WARN, "The telemetry has stopped" } },
         { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
         { refused,
           { D::WARN,
-            "Messages refused: incomplete, not finite, too large, stamped far off, a temperature that no drive has, or "
+            "Messages refused: incomplete, not finite, efforts all zero, too large, stamped far off, a temperature "
+            "that no drive has, or "
             "a load beside the arm's" } },
         { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
@@ -394,6 +397,8 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Unknown joint, refused", refusals_.unknown_joint);
   status.add("Names in the last of those", stream_.found_names);
   status.add("Without position or effort, refused", refusals_.incomplete);
+  status.add("Efforts all zero, refused", stream_.without_effort);
+  status.add("Jumps of angles by a turn, taken out", stream_.folds);
   status.add("Not finite, refused", refusals_.not_finite);
   status.add("Too large, refused", stream_.too_large.load());
   status.add("Stamp far from the clock, refused", stream_.far_stamps);

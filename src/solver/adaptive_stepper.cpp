@@ -187,7 +187,7 @@ void AdaptiveStepper::endAtEvent() noexcept
     // The sliders are turned from end to end of a step. Where the rim goes beyond an end by more than counts, the step
     // ends there.
     const double beyond = 0.5 * whole_ * std::min(std::abs(turned), std::abs(cup_rate_));
-    const double kick = stiffness * by_output * beyond * whole_ / dynamics_.model().inertia()[1];
+    const double kick = stiffness * by_output * beyond * whole_ / dynamics_.inertia()[1];
     if (kick > speed_tolerance_)
     {
       const auto forward = [&](double time)
@@ -379,7 +379,7 @@ void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double t
     const int mode = mode_[static_cast<std::size_t>(i)];
     drag[i] -= mode != 0 ? mode * strength_[i] : std::clamp(push_[i], -strength_[i], strength_[i]);
     rate[MOTOR_ANGLE + i] = speeds[i];
-    rate[MOTOR_SPEED + i] = mode != 0 ? (torque[i] + drag[i]) / dynamics_.model().inertia()[i] : 0.0;
+    rate[MOTOR_SPEED + i] = mode != 0 ? (torque[i] + drag[i]) / dynamics_.inertia()[i] : 0.0;
   }
   rate[MOTOR_WORK] = dynamics_.driveTorque() * speeds[0];
   rate[LOAD_WORK] = dynamics_.inputs.load_torque * speeds[1];

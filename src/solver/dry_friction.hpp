@@ -24,6 +24,8 @@ public:
   /// The same with another inertia of the motor [kg.m^2].
   DryFriction withMotor(double inertia) const { return { Eigen::Vector2d(inertia, inertia_[1]), width_ }; }
 
+  void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< another inertia of the output [kg.m^2]
+
   /// `follow`: output speed over motor speed in plain running; scales the regularisation of slips at the output.
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;

@@ -10,6 +10,7 @@ namespace hjt
 {
 JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& parameters)
   : model_(model)
+  , inertia_(model.inertia())
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
@@ -257,7 +258,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;
   const Eigen::Vector2d presliding(preslidingTorque(), 0.0);
-  rate.segment<2>(MOTOR_SPEED) = (torque() + presliding + drag).cwiseQuotient(model_.inertia());
+  rate.segment<2>(MOTOR_SPEED) = (torque() + presliding + drag).cwiseQuotient(inertia_);
   rate[DRIVE_TORQUE] =
       model_.motor.currentRate() * (model_.motor.limited(inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
   rate[MOTOR_WORK] = driveTorque() * speeds[0];

@@ -99,6 +99,13 @@ public:
   void operator()(const JointState& x, JointState& rate, double t) noexcept;
 
   const JointModel& model() const noexcept { return model_; }
+  /// Of motor and output: the model's, or with that of an arm around the joint [kg.m^2].
+  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }
+  void setOutputInertia(double inertia) noexcept
+  {
+    inertia_[1] = inertia;
+    dry_.setOutput(inertia);
+  }
   const RingEquilibrium& ring() const noexcept { return ring_; }
   double outputAngle() const noexcept { return output_angle_; }  ///< of the present equilibrium [rad]
   const RingResponse& response() const noexcept { return response_; }
@@ -133,6 +140,7 @@ private:
   };
 
   const JointModel& model_;
+  Eigen::Vector2d inertia_;
   RingEquilibrium ring_;
   RingResponse response_;  // present
   double motor_angle_{};   // of it [rad]

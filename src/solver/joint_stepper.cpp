@@ -38,7 +38,7 @@ double JointStepper::divideStep(const Parameters& parameters)
   constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
   constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
   // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
-  const Eigen::Vector2d inertia = dynamics_.model().inertia();
+  const Eigen::Vector2d inertia = dynamics_.inertia();
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
   const double stiffness = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
   const double ratio = nominalRatio(parameters.gear);
@@ -81,10 +81,11 @@ void JointStepper::useSurface(const ResponseSurface* surface) noexcept
   dynamics_.useSurface(surface);
 }
 
-bool JointStepper::reset() noexcept
+bool JointStepper::reset(double load_torque) noexcept
 {
   marches_ = false;
   dynamics_.inputs = {};
+  dynamics_.inputs.load_torque = load_torque;
   dynamics_.drive_torque = 0.0;
   const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
@@ -92,11 +93,20 @@ bool JointStepper::reset() noexcept
   speeds_.setZero();
   friction_.setZero();
   balance_ = 0.0;
+  leapfrog_.reset(load_torque);
   rest_steps_ = 0;
   throughput_ = 0.0;
   released_ = 0.0;
   stored_at_start_ = dynamics_.storedEnergy();
   return settled;
+}
+
+void JointStepper::setOutputInertia(double inertia) noexcept
+{
+  // The speed stays, and with it the energy of the output changes: what the arm does to it.
+  const double speed = x_[OUTPUT_SPEED];
+  x_[LOAD_WORK] -= 0.5 * (inertia - dynamics_.inertia()[1]) * speed * speed;
+  dynamics_.setOutputInertia(inertia);
 }
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
@@ -172,7 +182,7 @@ bool JointStepper::march(const JointInputs& inputs, double& left) noexcept
     return false;
   }
   friction_ = adaptive_->frictionTorque();
-  const double kinetic = 0.5 * speeds_.dot(dynamics_.model().inertia().cwiseProduct(speeds_));
+  const double kinetic = 0.5 * speeds_.dot(dynamics_.inertia().cwiseProduct(speeds_));
   balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - dissipatedEnergy() - kinetic;
   const JointInputs& last = dynamics_.inputs;
   if (inputs.motor_torque != last.motor_torque || inputs.load_torque != last.load_torque ||
@@ -220,7 +230,7 @@ Eigen::Vector2d JointStepper::swingSquares() const noexcept
   const Eigen::Vector2d friction = dynamics_.frictionStiffness().diagonal();
   return (Eigen::Vector2d(ring.motor_stiffness + dynamics_.model().motor.coggingStiffness(), ring.output_stiffness) +
           friction)
-      .cwiseQuotient(dynamics_.model().inertia());
+      .cwiseQuotient(dynamics_.inertia());
 }
 
 double JointStepper::phaseAdvance() const noexcept
@@ -233,7 +243,7 @@ double JointStepper::phaseAdvance() const noexcept
   const Eigen::Vector2d squares = swingSquares();
   const double cross = ring.velocity_ratio * ring.output_stiffness - dynamics_.frictionStiffness()(0, 1);
   const double fastest = 0.5 * squares.sum() + std::sqrt(0.25 * (squares[0] - squares[1]) * (squares[0] - squares[1]) +
-                                                         cross * cross / dynamics_.model().inertia().prod());
+                                                         cross * cross / dynamics_.inertia().prod());
   return substep_ * std::sqrt(std::max(fastest, 0.0));
 }
 

@@ -30,8 +30,8 @@ public:
   JointStepper(const JointStepper&) = delete;
   JointStepper& operator=(const JointStepper&) = delete;
 
-  /// At rest where the joint has settled. @returns false if it has not.
-  bool reset() noexcept;
+  /// At rest where the joint has settled under a load [N.m]. @returns false if it has not.
+  bool reset(double load_torque = 0.0) noexcept;
 
   /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
   /// the ring did not converge; the last good angles stay, at rest.
@@ -48,6 +48,9 @@ public:
   /// or taken up, by the fault. False: the ring did not converge and is still the old one.
   bool updateModel() noexcept;
   double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
+
+  /// Inertia of the output from the next step on [kg.m^2]; not with the adaptive stepper.
+  void setOutputInertia(double inertia) noexcept;
 
   /// See JointDynamics.
   void useSurface(const ResponseSurface* surface) noexcept;
@@ -74,6 +77,10 @@ public:
   /// their own length, whose error is controlled [rad].
   double phaseAdvance() const noexcept;
   bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
+  /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy; of the leapfrog
+  /// [J].
+  double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
+  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -35,7 +35,7 @@ Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, doubl
   const auto kick = [&](double torque, double slope)
   {
     // A torque that falls with the speed at the end is a larger inertia.
-    Eigen::Vector2d inertia = system.model().inertia();
+    Eigen::Vector2d inertia = system.inertia();
     const Eigen::Vector2d momentum = inertia.cwiseProduct(before) + dt * (others + Eigen::Vector2d(gain * torque, 0.0));
     inertia[0] += dt * gain * slope;
     return rub(system, system.dryFriction().withMotor(inertia[0]), before, momentum.cwiseQuotient(inertia), dt);
@@ -62,7 +62,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
     return;
   }
   const Motor& motor = system.model().motor;
-  const Eigen::Vector2d inertia = system.model().inertia();
+  const Eigen::Vector2d inertia = system.inertia();
   const double slipped = system.accept();
   const double wanted = system.inputs.motor_torque;
   const double lag = motor.currentLeft(dt);
@@ -93,6 +93,8 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x[DISSIPATED] += slipped;
   const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
   balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic;
+  delivered_ = x[LOAD_WORK] + 0.5 * load_work + 0.25 * inertia[1] * (before[1] * before[1] + after[1] * after[1]);
+  link_torque_ = inertia[1] * (after[1] - before[1]) / dt + system.inputs.load_torque;
   work_ = { motor_work, load_work, dissipated };
   x.segment<3>(MOTOR_WORK) += work_;
 }
@@ -102,7 +104,7 @@ void Leapfrog::goAhead(JointDynamics& system, JointState& x, double dt) noexcept
   using namespace joint_state;
   const double half = 0.5 * dt;
   const Eigen::Vector2d before = x.segment<2>(MOTOR_SPEED);
-  const Eigen::Vector2d inertia = system.model().inertia();
+  const Eigen::Vector2d inertia = system.inertia();
   system.updateFriction(before);
   const double presliding = system.preslidingTorque();
   Eigen::Vector2d torque = system.torque();

@@ -44,10 +44,25 @@ public:
   /// Motor work - load work - dissipated - kinetic energy at the instant of the angles [J].
   double balance() const noexcept { return balance_; }
 
+  /// Work on the load and kinetic energy of the output, at the instant of the angles [J].
+  double deliveredEnergy() const noexcept { return delivered_; }
+
+  /// Of the gear and all friction on what hangs on the output, at the instant of the angles [N.m].
+  double linkTorque() const noexcept { return link_torque_; }
+
+  /// Before a first step, at rest under a load [N.m]: nothing is delivered.
+  void reset(double load_torque) noexcept
+  {
+    delivered_ = 0.0;
+    link_torque_ = load_torque;
+  }
+
 private:
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};
+  double delivered_{};
+  double link_torque_{};
   Eigen::Vector3d work_{ 0.0, 0.0, 0.0 };  // of the last kick, in the order of the state [J]
 };
 }  // namespace hjt

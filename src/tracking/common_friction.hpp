@@ -31,9 +31,9 @@ struct MeasuredFriction
 struct JointGroup
 {
   std::size_t begin{};
-  std::size_t end{};      ///< one past the last
-  double median{ 1.0 };   ///< of the joints' friction, apart from that of the arm
-  bool is_known{};        ///< most of at least three agree on it
+  std::size_t end{};     ///< one past the last
+  double median{ 1.0 };  ///< of the joints' friction, apart from that of the arm
+  bool is_known{};       ///< most of at least three agree on it
 };
 
 /// What the friction of an arm's joints has in common.

@@ -132,10 +132,10 @@ private:
 
   double largest_load_;
   double time_{};
-  int way_{};         // +1, -1; 0: at rest
-  double moved_{};    // that way [s]
-  double mean_{};     // of the difference [N.m]
-  double beyond_{};   // how long [s]
+  int way_{};                     // +1, -1; 0: at rest
+  double moved_{};                // that way [s]
+  double mean_{};                 // of the difference [N.m]
+  double beyond_{};               // how long [s]
   std::array<Usual, 2> usual_{};  // by direction
   Seen moving_;
   Seen resting_;

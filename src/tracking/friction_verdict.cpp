@@ -114,8 +114,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   if (const double way = impossibleWay(points); way != 0.0)
   {
     return { FrictionGap::PUSHES, std::string("Friction would push the joint along in ") +
-                                      (way > 0.0 ? "positive" : "negative") + " motion, which it cannot: " +
-                                      wrongLoad(load) };
+                                      (way > 0.0 ? "positive" : "negative") +
+                                      " motion, which it cannot: " + wrongLoad(load) };
   }
   if (!(factor.high() < factor.value * std::exp(WIDEST)))
   {
@@ -131,9 +131,9 @@ double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;
   const auto count = static_cast<double>(own.recordings);
-  const double of_one = (STATED_COUNT * 0.5 * stated * stated +
-                         (count - 1.0) * own.recordings_deviation * own.recordings_deviation) /
-                        (STATED_COUNT + count - 1.0);
+  const double of_one =
+      (STATED_COUNT * 0.5 * stated * stated + (count - 1.0) * own.recordings_deviation * own.recordings_deviation) /
+      (STATED_COUNT + count - 1.0);
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
@@ -144,8 +144,8 @@ double deviationOf(const FrictionRatio& ratio, const JointContext& context, bool
   const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
   const double twin = backward.twin + forward.twin;
   const double load = LOAD_SHARE * std::abs(forward.load - backward.load) / twin;
-  const double repeat = repeatDeviation(std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin)),
-                                        is_to_own ? context.own : OwnReference());
+  const double repeat =
+      repeatDeviation(std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin)), is_to_own ? context.own : OwnReference());
   const double of_reference = is_to_own ? context.own.friction_deviation : 0.0;
   const double size = std::max(std::abs(ratio.value), NO_FRICTION);
   return std::sqrt(std::pow(ratio.deviation / size, 2) + repeat * repeat + std::pow(load / size, 2) +
@@ -261,21 +261,21 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
   const double more = factor.is_to_own ? MORE_THAN_OWN : of_kind;
   const double less = factor.is_to_own ? LESS_THAN_OWN : of_kind;
   finding.judged = true;
-  finding.level =
-      levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
+  finding.level = levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
   const double value = factor.value / context.arm_friction;
-  finding.text = "Friction is " + factorText(factor) + " times " +
-                 (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
-                 (context.arm_friction == 1.0 ? "" :
-                                                ", " + rounded(value, 2) + " times what the " +
-                                                    rounded(context.arm_friction, 2) +
-                                                    " times that joints of the arm have in common make") +
-                 " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
-                 " counts as sound).";
+  finding.text =
+      "Friction is " + factorText(factor) + " times " +
+      (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
+      (context.arm_friction == 1.0 ? "" :
+                                     ", " + rounded(value, 2) + " times what the " + rounded(context.arm_friction, 2) +
+                                         " times that joints of the arm have in common make") +
+      " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
+      " counts as sound).";
   if (finding.level != HealthLevel::OK)
   {
     constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
-    finding.causes = causesThatMove(evidence.assessor().signatures(), ScalarIndicator::RUNNING_TORQUE, value > 1.0 ? 1.0 : -1.0, MIN_CHANGE);
+    finding.causes = causesThatMove(evidence.assessor().signatures(), ScalarIndicator::RUNNING_TORQUE,
+                                    value > 1.0 ? 1.0 : -1.0, MIN_CHANGE);
     finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
                                               " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
                     " Other causes: grease at another temperature, another preload, a wrong gain.";

@@ -114,16 +114,7 @@ void JointEvidence::addToReach(const MotionSample& sample) noexcept
   reach.most_load = std::max(reach.most_load, sample.load);
   reach.least_angle = std::min(reach.least_angle, sample.position);
   reach.most_angle = std::max(reach.most_angle, sample.position);
-  if (std::isfinite(sample.motor_angle))
-  {
-    if (reach.motor_rows++ > 0 && !sample.after_gap)
-    {
-      const double turn = sample.motor_angle - last_motor_.motor_angle;
-      reach.motor_turns += std::abs(turn);
-      reach.joint_turns += std::copysign(sample.position - last_motor_.position, turn * (sample.position - last_motor_.position));
-    }
-    last_motor_ = sample;
-  }
+  reach.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
   reach.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
 }
 

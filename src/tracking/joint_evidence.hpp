@@ -39,8 +39,6 @@ struct MotionReach
   double most_load{};                ///< [N.m]
   double least_angle{};              ///< [rad]
   double most_angle{};               ///< [rad]
-  double motor_turns{};              ///< of the motor's angle, sum of magnitudes [rad]
-  double joint_turns{};              ///< of the joint's with the sign of the motor's turning, in the same rows [rad]
 };
 
 /// Where the load of the samples comes from.
@@ -160,7 +158,6 @@ private:
   MotionDriven twin_;
   MotionPrediction predicted_;
   TorsionCourse course_;
-  MotionSample last_motor_;  // last row with a motor angle
   double twin_torsion_{};  // under the load of the last row with a motor angle [rad]
   ContactWatch contact_;
   SignalWatch health_;

@@ -86,16 +86,6 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
-  constexpr double MIN_TURN = 1.0;       // of the motor [rad]
-  constexpr double RATIO_ERROR = 0.2;    // no torsion or error of an encoder makes more of it
-  const MotionReach& reach = evidence.reach();
-  const double turned = evidence.ratio() * reach.joint_turns;
-  if (reach.motor_turns > MIN_TURN && std::abs(reach.motor_turns - turned) > RATIO_ERROR * std::abs(turned))
-  {
-    return "The motor turns " + rounded(reach.motor_turns / reach.joint_turns, 1) +
-           " times as far as the joint, and " + rounded(evidence.ratio(), 0) +
-           " times by the configured gear: another ratio or sign, or the two angles are not of one joint.";
-  }
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
@@ -360,7 +350,8 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
 {
   const FrictionFactor factor = frictionFactor(evidence, context);
   const bool fits = whyItDoesNotFit(evidence, parameters, context).empty();
-  return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt, evidence.temperature(),
+  return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt,
+           evidence.temperature(),
            evidence.reach().temperature_rows > 0,
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
            context.misfit.empty() && factor.is_below_faults,

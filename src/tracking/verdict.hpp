@@ -33,7 +33,7 @@ struct JointContext
   double duration{};     ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  std::string misfit;  ///< why the rows say nothing of this joint; empty: it fits
+  std::string misfit;                   ///< why the rows say nothing of this joint; empty: it fits
   double arm_deviation{ UNWITNESSED };  ///< of `arm_friction`, standard deviation of its logarithm
 };
 

@@ -80,6 +80,22 @@ void Twin::push(const Input& input) noexcept
   impl_->counters.input = impl_->queue.counters();
 }
 
+void Twin::coupleArm(double inertia, double torque) noexcept
+{
+  impl_->stepper.setOutputInertia(impl_->parameters.output.circular_spline_inertia + inertia);
+  impl_->arm_torque = torque;
+}
+
+double Twin::linkTorque() const noexcept
+{
+  return impl_->stepper.linkTorque();
+}
+
+double Twin::deliveredEnergy() const noexcept
+{
+  return impl_->stepper.deliveredEnergy();
+}
+
 bool Twin::step(Stamp until) noexcept
 {
   if (impl_->now + impl_->step_length > until)

@@ -148,7 +148,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();
-  const bool settled = stepper.reset();
+  const bool settled = stepper.reset(arm_torque);
   observed_ring.restart();
   queue.clear();
   counters = {};
@@ -297,7 +297,7 @@ void Twin::Impl::step() noexcept
   takeSurface();
   const double wanted = commandInForce();
   const double within_limit = model.motor.clamped(wanted);
-  converged = stepper.step({ within_limit, load_torque, brake_engaged, greaseTemperature() }) && followed;
+  converged = stepper.step({ within_limit, load_torque + arm_torque, brake_engaged, greaseTemperature() }) && followed;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
   counters.torque_clamped += within_limit != wanted ? 1 : 0;
@@ -375,7 +375,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = stepper.dynamics().shaftTorque();
-  outputs.load_torque = load_torque;
+  outputs.load_torque = load_torque + arm_torque;
   outputs.temperature = greaseTemperature();
   outputs.housing_temperature = housingTemperature();
   outputs.wave_generator_torque = -ring.wave_generator_torque;
@@ -418,7 +418,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.output_angle = readings.output_angle;
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
-  sample.load_torque = load_torque;
+  sample.load_torque = load_torque + arm_torque;
   sample.temperature = housingTemperature();
   if (signals.update(sample))
   {

@@ -63,6 +63,7 @@ struct Twin::Impl
   bool commanded{};      // a command is in force, not timed out
   double load_torque{};  // last load torque, clamped [N.m]
   bool load_clamped{};
+  double arm_torque{};   // of an arm around the joint, beside its inertia [N.m]
   double temperature{};  // received or configured: of the drive, or of its surroundings [degC]
   std::optional<DriveHeat> heat;
   Stamp heat_stamp{};    // up to where the losses are in it

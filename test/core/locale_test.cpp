@@ -57,13 +57,14 @@ private:
   std::locale before_;
 };
 
-/// All that is read from the shipped files, and how the parameters are written.
+/// All that is read from the shipped files of joints, and how the parameters are written.
 std::map<std::string, std::string> configurationTexts()
 {
   std::map<std::string, std::string> texts;
   for (const auto& entry : fs::recursive_directory_iterator(CONFIG))
   {
-    if (entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "arms")
+    const fs::path folder = entry.path().parent_path().filename();
+    if (entry.path().extension() == ".yaml" && folder != "arms" && folder != "signatures")
     {
       ParameterMap map;
       readDefaultConfiguration(CONFIG, map);

@@ -81,8 +81,7 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
   { return testing::StartsWith("indicators.signatures: mine.yaml" + what); };
   EXPECT_THAT(refusal(replaced("format: 1", "format: 2")), says(":1: format: 2, expected 1"));
   EXPECT_THAT(refusal(replaced("gear: mine\n", "")), says(": gear: missing"));
-  EXPECT_THAT(refusal(replaced("weight: 0.2", "weight: -0.2")),
-              says(":3: errors.weight: -0.2, expected 0 ... 1000"));
+  EXPECT_THAT(refusal(replaced("weight: 0.2", "weight: -0.2")), says(":3: errors.weight: -0.2, expected 0 ... 1000"));
   EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_bell: N.m")),
               says(":6: indicator torque_bell: no such indicator (did you mean torque_ball?)"));
   EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_ball: rad")),

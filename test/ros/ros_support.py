@@ -151,9 +151,9 @@ def configuration_files(joint="elbow", overlays=()):
 
 
 def all_configuration_files():
-    """Of a joint; files of arms have keys of their own."""
+    """Of a joint; files of arms and signatures have keys of their own."""
     files = glob.glob(package_path("config", "**", "*.yaml"), recursive=True)
-    return sorted(file for file in files if os.path.basename(os.path.dirname(file)) != "arms")
+    return sorted(file for file in files if os.path.basename(os.path.dirname(file)) not in ("arms", "signatures"))
 
 
 def load_parameters(node, files, changes=None):

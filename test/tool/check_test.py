@@ -29,7 +29,7 @@ MAX_LINES, MAX_COLUMNS = 25, 100
 
 
 def swinging(seconds=40.0, period=0.008):
-    """A made-up arm: columns as those of a controller. The shoulder and the elbow carry a weight."""
+    """A made-up arm's motion, with friction alone: columns as those of a controller."""
     time = np.arange(0.0, seconds, period)
     columns = {"timestamp": time}
     noise = np.random.default_rng(3)
@@ -39,6 +39,21 @@ def swinging(seconds=40.0, period=0.008):
         columns[f"actual_qd_{joint}"] = 0.6 * rate * np.cos(rate * time)
         friction = 10.0 * np.sign(columns[f"actual_qd_{joint}"])
         columns[f"actual_current_{joint}"] = friction / GAINS[joint] + noise.normal(0.0, 0.05, len(time))
+    return columns
+
+
+def sound(test, seconds=40.0, period=0.008):
+    """The same with the currents that the twins of a UR5 predict, and some noise."""
+    columns = swinging(seconds, period)
+    write_csv(test.path("motion.csv"), columns)
+    test.succeed("follow", "motion.csv", "--arm", "ur5", "--out", "predicted", "--force")
+    noise = np.random.default_rng(7)
+    for joint, name in enumerate(NAMES):
+        with open(test.path(f"predicted/{name}.csv"), encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        current = np.interp(columns["timestamp"], [float(row["time"]) for row in rows],
+                            [float(row["current_predicted"]) for row in rows])
+        columns[f"actual_current_{joint}"] = current + noise.normal(0.0, 0.02, len(current))
     return columns
 
 
@@ -112,7 +127,7 @@ class Check(tool.ToolTest):
             self.assertTrue(done.returncode == 0 or "identif" in done.stdout + done.stderr, (command, done.stderr))
 
     def test_a_sound_recording_is_usable_as_it_is(self):
-        write_csv(self.path("arm.csv"), swinging())
+        write_csv(self.path("arm.csv"), sound(self))
         found = self.check("arm.csv")
         self.assertTrue(found["usable"])
         self.assertEqual((found["arm"], found["load"]), ("ur5", "arm"))
@@ -129,7 +144,7 @@ class Check(tool.ToolTest):
         self.assertEqual(sum(line.startswith(tuple(f"{name} " for name in NAMES)) for line in printed), 6)
 
     def test_stamps_of_another_period_are_named_and_mended(self):
-        columns = swinging(period=0.016)
+        columns = sound(self, period=0.016)
         columns["timestamp"] = columns["timestamp"] / 2.0
         write_csv(self.path("fast.csv"), columns)
         found = self.check("fast.csv", exit_code=1)
@@ -149,7 +164,7 @@ class Check(tool.ToolTest):
         self.assertNotIn("--time-scale", self.succeed("follow", "fast.csv", "--arm", "ur5", "--time-scale", 2).stderr)
 
     def test_a_joint_that_does_not_fit_is_named_and_not_judged(self):
-        columns = swinging()
+        columns = sound(self)
         columns["actual_current_0"][:] = 0.0
         columns["actual_qd_1"] *= -1.0
         columns["actual_qd_2"] = np.roll(columns["actual_qd_2"], 20)
@@ -172,7 +187,7 @@ class Check(tool.ToolTest):
             self.assertIn(part, done.stderr)
 
     def test_a_bag_without_effort_or_without_a_known_arm(self):
-        columns = swinging(seconds=12.0)
+        columns = sound(self)
         write_driver_bag(self.path("mute.bag"), columns, rate=125.0, with_effort=False)
         found = self.check("mute.bag", exit_code=1)
         self.assertEqual((found["joints"], found["usable"], found["next"]), ([], False, []))
@@ -193,7 +208,7 @@ class Check(tool.ToolTest):
         self.fail_with(1, ["no messages on /states", "/joint_states"], "check", "short.bag", "--topic", "/states")
 
     def test_velocity_may_be_empty_and_a_temperature_is_found(self):
-        write_driver_bag(self.path("arm.bag"), swinging(seconds=12.0), rate=125.0, with_velocity=False)
+        write_driver_bag(self.path("arm.bag"), sound(self), rate=125.0, with_velocity=False)
         with rosbag.Bag(self.path("arm.bag"), "a") as bag:
             bag.write("/elbow/temperature", Temperature(temperature=31.0), genpy.Time(tool.START))
         found = self.check("arm.bag")

@@ -63,7 +63,6 @@ class Options(tool.ToolTest):
                 ("DUTY: File is actually a directory: .", ["life", "age", "."]),
                 ("--duration: '-1' is not more than 0", ["simulate", "--duration", "-1"]),
                 ("--format: foo not in {urdf,sdf,mjcf}", ["export", "--format", "foo"]),
-                ("recording: 'a.txt' must end in .bag or .csv", ["check", "a.txt"]),
                 ("--train: At least 2 required but received 1", [*PAIR, "1"]),
                 ("--train: At Most 2 required but received 3", [*PAIR, "1,2,3"]),
                 ("--identified: Directory does not exist: none", ["identify", "a.bag", "--identified", "none"]),

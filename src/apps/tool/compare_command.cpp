@@ -130,8 +130,7 @@ void declare(Command& command, Options& options)
            "directory of the page, its figures and data; of an arm a directory for each joint; --json goes without")
       .type("DIR");
   command
-      .add("--reference", options.references,
-           "earlier reports of this joint or arm in sound condition, for comparison")
+      .add("--reference", options.references, "earlier reports of this joint or arm in sound condition, for comparison")
       .follow()
       .type("DIR")
       .existingDirectory();

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Of the motor, seen from the joint [kg.m^2].
+double motorInertia(const Parameters& drive)
+{
+  const double ratio = nominalRatio(drive.gear);
+  return ratio * ratio * (drive.motor.rotor_inertia + drive.motor.wave_generator_inertia);
+}
+}  // namespace
+
+JointGains ArmController::defaultGains(const Parameters& drive)
+{
+  constexpr double SPEED_BANDWIDTH = 25.0;  // on the motor's inertia alone [Hz]
+  JointGains gains;
+  gains.position = 20.0;
+  gains.speed = TWO_PI * SPEED_BANDWIDTH * motorInertia(drive);
+  gains.integral_time = 0.2;
+  return gains;
+}
+
+ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate)
+  : dynamics_(arm)
+  , gains_(std::move(gains))
+  , period_(std::llround(1e9 / rate))
+  , rigid_(twin.joints())
+  , feed_forward_(twin.joints())
+  , integral_(twin.joints())
+{
+}
+
+bool ArmController::isDue(const ArmTwin& twin) const noexcept
+{
+  return (twin.stamp() + twin.stepLength()) % period_ == 0;
+}
+
+void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
+{
+  dynamics_.torques(set_point, rigid_);
+  for (std::size_t i = 0; i < twin.joints(); ++i)
+  {
+    Twin& drive = twin.drive(i);
+    const JointGains& gain = gains_[i];
+    const JointMotion& wanted = set_point[i];
+    const double ratio = nominalRatio(drive.parameters().gear);
+    const EncoderReadings read = drive.encoders();
+    const double direction = wanted.velocity == 0.0 ? 0.0 : std::copysign(1.0, wanted.velocity);
+    feed_forward_[i] = rigid_[i] + motorInertia(drive.parameters()) * wanted.acceleration + gain.coulomb * direction +
+                       gain.viscous * wanted.velocity;
+    const double speed = wanted.velocity + gain.position * (wanted.position - twin.startAngle(i) - read.output_angle);
+    const double error = speed - read.motor_velocity / ratio;
+    const double torque = feed_forward_[i] + gain.speed * error + integral_[i];
+    const double limit = ratio * drive.parameters().motor.torque_limit;
+    if (std::abs(torque) < limit && !drive.outputs().brake_engaged)
+    {
+      integral_[i] += toSeconds(period_) * gain.speed / gain.integral_time * error;
+    }
+    drive.commandMotorTorque(twin.stamp() + twin.stepLength(), std::clamp(torque, -limit, limit) / ratio);
+  }
+}
+}  // namespace hjt

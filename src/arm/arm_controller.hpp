@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "arm/arm_twin.hpp"
+
+namespace hjt
+{
+/// Control of one joint, all seen from the joint.
+struct JointGains
+{
+  double position{};       ///< speed wanted for an error of the angle [1/s]
+  double speed{};          ///< torque for an error of the speed [N.m.s/rad]
+  double integral_time{};  ///< of the speed control [s]
+  double coulomb{};        ///< friction that is fed forward: constant [N.m]
+  double viscous{};        ///< and by speed [N.m.s/rad]
+};
+
+/// Cascaded control of an arm's joints, as in UR's: the angle by the encoder at the output, the speed by that at the
+/// motor, the current's torque; rigid-body torque and friction of the set point fed forward.
+///
+///   v_c = v_s + k_p (q_s - q)      q by the output's encoder, v by the motor's, over the ratio
+///   T   = T_s + k_v (v_c - v) + k_v / T_i integral (v_c - v)
+///
+/// The integral stands while T is beyond the motor's limit, and while the brake is engaged.
+class ArmController
+{
+public:
+  /// For a drive without gains of its own: speed control of 25 Hz on the motor, position of 3 Hz, no friction.
+  static JointGains defaultGains(const Parameters& drive);
+
+  /// `rate`: of the control [Hz], a divisor of solver.rate.
+  ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
+
+  /// To be called before each step that is due: commands each drive towards the set point of the step's end.
+  void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
+
+  bool isDue(const ArmTwin& twin) const noexcept;  ///< the next step ends at an instant of the control
+
+  /// Torque fed forward for the last set point: rigid-body, and with friction [N.m].
+  const std::vector<double>& rigidTorques() const noexcept { return rigid_; }
+  double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
+
+private:
+  ArmDynamics dynamics_;
+  std::vector<JointGains> gains_;
+  Stamp period_;
+  std::vector<double> rigid_;
+  std::vector<double> feed_forward_;
+  std::vector<double> integral_;  // of the torque [N.m]
+};
+}  // namespace hjt

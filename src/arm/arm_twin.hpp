@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "arm/arm_dynamics.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+
+namespace hjt
+{
+/// The drives of an arm, each a Twin, coupled by the rigid-body dynamics of its links:
+///
+///   (M(q) + D) a = tau - h(q, v)
+///
+/// where  M, h  inertia, and torques of weight, Coriolis and the wrench at the tip (ArmDynamics)  [kg.m^2], [N.m]
+///        D     inertia of the circular splines, on the diagonal                                  [kg.m^2]
+///        tau   of gears and output friction on the links                                         [N.m]
+///
+/// Solved for one joint at a time. With W the inverse of M + D a drive sees, exactly, the inertia 1/W_ii and the load
+///
+///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
+///
+/// All drives step together. h is taken at every step, at the predicted instant; tau of the other drives is
+/// extrapolated from the two steps before; M, which changes with the pose alone, is taken at `mass_rate`. The rotors
+/// belong to the drives: what their casings' mass is in the links counts there.
+///
+/// After construction nothing throws or allocates unless stated.
+class ArmTwin
+{
+public:
+  static constexpr double MASS_RATE = 1000.0;  ///< by default [Hz]
+
+  /// `drives`: one for each joint of `arm`, all of one solver.rate, with solver.stepper = leapfrog and no gravity of
+  /// their own; their output.load_inertia is replaced by the least that the arm shows them. `start`: angles of the
+  /// joints, where the arm stands, its brakes engaged [rad]. `mass_rate`: at most solver.rate [Hz].
+  /// @throws ParameterError naming the joint and the key.
+  ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
+          const SurfaceSource& surface_source = {}, double mass_rate = MASS_RATE);
+
+  std::size_t joints() const noexcept { return drives_.size(); }
+  Twin& drive(std::size_t joint) noexcept { return drives_[joint]; }
+  const Twin& drive(std::size_t joint) const noexcept { return drives_[joint]; }
+
+  /// Back to the start at `stamp`. False: the stamp is beyond +-MAX_STAMP.
+  bool reset(Stamp stamp) noexcept;
+
+  /// One solver step of all drives, if the next instant is not after `until`. False: nothing was done.
+  bool step(Stamp until) noexcept;
+
+  Stamp stamp() const noexcept { return drives_.front().stamp(); }
+  Stamp stepLength() const noexcept { return drives_.front().stepLength(); }
+
+  /// Angles, speeds and accelerations of the links at the present instant.
+  const std::vector<JointMotion>& motion() const noexcept { return motion_; }
+  /// Of the encoders' zero: joint angle less output angle of the drive [rad].
+  double startAngle(std::size_t joint) const noexcept { return start_[joint]; }
+  ToolPose toolPose() noexcept { return dynamics_.toolPose(motion_); }
+
+  /// On the tip, from the next step on, in the frame of the base.
+  void setWrench(const ArmWrench& wrench) noexcept { dynamics_.setWrench(wrench); }
+
+  /// What the drives delivered less what the arm holds, since reset [J]: the error of the coupling. Not meaningful once
+  /// a wrench was set.
+  double energyResidual() noexcept;
+  double deliveredEnergy() const noexcept;  ///< by all drives to the links since reset [J]
+
+private:
+  double armEnergy() noexcept;
+  void setMass(const std::vector<JointMotion>& pose) noexcept;
+  void takeMass() noexcept;
+  void couple() noexcept;
+  void observe() noexcept;
+
+  ArmDynamics dynamics_;
+  std::vector<double> start_;
+  std::vector<Twin> drives_;
+  std::vector<double> spline_inertia_;  // [kg.m^2]
+  std::int64_t mass_steps_;             // from one mass matrix to the next
+  std::int64_t steps_{};
+  std::vector<JointMotion> motion_;
+  std::vector<JointMotion> next_;  // predicted
+  std::vector<double> bias_;       // h [N.m]
+  Eigen::MatrixXd mass_;           // M + D [kg.m^2]
+  Eigen::LLT<Eigen::MatrixXd> factors_;
+  Eigen::MatrixXd inverse_;      // W [1/(kg.m^2)]
+  Eigen::VectorXd link_torque_;  // tau of the last step [N.m]
+  Eigen::VectorXd link_torque_before_;
+  Eigen::VectorXd excess_;  // tau - h, extrapolated [N.m]
+  double energy_at_start_{};
+};
+}  // namespace hjt

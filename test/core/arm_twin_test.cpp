@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_twin.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "arm/arm_configuration.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* CONFIG = HJT_TEST_CONFIG_DIR;
+
+/// One joint about `axis` with a rod of 4 kg whose centre lies 0.3 m from it; a second one, of 2 kg, at its end.
+std::string urdf(const std::string& axis, int joints, const std::string& base_rpy = "0 0 0")
+{
+  std::string text =
+      "<robot name='rods'><link name='world'/><link name='base'/>"
+      "<joint name='stand' type='fixed'><parent link='world'/><child link='base'/><origin rpy='" +
+      base_rpy + "'/></joint>";
+  std::string parent = "base";
+  for (int i = 0; i < joints; ++i)
+  {
+    const std::string number = std::to_string(i);
+    text += "<joint name='joint_" + number + "' type='revolute'><parent link='" + parent + "'/><child link='rod_" +
+            number + "'/><origin xyz='" + (i == 0 ? "0 0 0" : "0.5 0 0") + "'/><axis xyz='" + axis +
+            "'/><limit effort='1' velocity='1' lower='-9' upper='9'/></joint><link name='rod_" + number +
+            "'><inertial><origin xyz='0.3 0 0'/><mass value='" + (i == 0 ? "4" : "2") +
+            "'/><inertia ixx='0.01' iyy='0.08' izz='0.08' ixy='0' ixz='0' iyz='0'/></inertial></link>";
+    parent = "rod_" + number;
+  }
+  return text + "</robot>";
+}
+
+ArmDescription rods(const std::string& axis, int joints)
+{
+  ArmDescription arm;
+  arm.origin = "rods";
+  arm.urdf = urdf(axis, joints);
+  arm.base = "world";
+  arm.tip = "rod_" + std::to_string(joints - 1);
+  arm.gravity = { 0.0, 0.0, -9.81 };
+  for (int i = 0; i < joints; ++i)
+  {
+    ArmJoint joint;
+    joint.name = "joint_" + std::to_string(i);
+    joint.short_name = joint.name;
+    arm.joints.push_back(joint);
+  }
+  return arm;
+}
+
+Parameters drive(double rate = 10e3)
+{
+  ParameterMap map;
+  readDefaultConfiguration(CONFIG, map);
+  Parameters parameters = parseParameters(map);
+  parameters.output.gravity_torque = 0.0;
+  parameters.solver.rate = rate;
+  parameters.brake.delay = 0.0;
+  return parameters;
+}
+
+/// Motor torque that comes in smoothly [N.m].
+double torqueAt(double time)
+{
+  constexpr double RISE = 0.05;
+  return 0.35 * (time < RISE ? 0.5 - 0.5 * std::cos(M_PI * time / RISE) : 1.0);
+}
+
+void run(ArmTwin& arm, double duration, const std::function<void(double)>& each = {})
+{
+  const Stamp end = toStampLength(duration);
+  for (std::size_t i = 0; i < arm.joints(); ++i)
+  {
+    arm.drive(i).commandBrake(0, false);
+  }
+  while (arm.stamp() + arm.stepLength() <= end)
+  {
+    const double time = toSeconds(arm.stamp() + arm.stepLength());
+    for (std::size_t i = 0; i < arm.joints(); ++i)
+    {
+      arm.drive(i).commandMotorTorque(arm.stamp() + arm.stepLength(), (i == 0 ? 1.0 : -0.6) * torqueAt(time));
+    }
+    ASSERT_TRUE(arm.step(end));
+    if (each)
+    {
+      each(time);
+    }
+  }
+}
+
+TEST(ArmTwin, OneJointOfConstantInertiaIsATwin)
+{
+  constexpr double DURATION = 0.2;
+  ArmTwin arm(rods("0 0 1", 1), { drive() }, { 0.4 });
+  Parameters parameters = drive();
+  parameters.output.load_inertia = 0.08 + 4.0 * 0.3 * 0.3;
+  parameters.brake.engaged_at_start = true;
+  Twin twin(parameters);
+  twin.commandBrake(0, false);
+  run(arm, DURATION,
+      [&](double time)
+      {
+        twin.commandMotorTorque(twin.stamp() + twin.stepLength(), torqueAt(time));
+        ASSERT_TRUE(twin.step(toStampLength(DURATION)));
+        ASSERT_NEAR(arm.motion()[0].position - 0.4, twin.outputs().output_angle, 1e-12);
+        ASSERT_NEAR(arm.motion()[0].velocity, twin.outputs().output_velocity, 1e-9);
+      });
+  EXPECT_GT(twin.outputs().output_angle, 0.1);
+}
+
+/// Largest error of the coupling [J] while two joints of the shipped drive swing a double pendulum.
+double couplingError(double rate, double mass_rate)
+{
+  ArmTwin arm(rods("0 1 0", 2), { drive(rate), drive(rate) }, { 0.3, -0.8 }, {}, mass_rate);
+  double largest = 0.0;
+  run(arm, 0.3, [&](double) { largest = std::max(largest, std::abs(arm.energyResidual())); });
+  EXPECT_GT(std::abs(arm.deliveredEnergy()), 1.0);
+  return largest;
+}
+
+TEST(ArmTwin, WhatTheDrivesDeliverIsWhatTheArmHoldsUpToTheSquareOfTheStep)
+{
+  const double coarse = couplingError(10e3, 10e3);
+  const double fine = couplingError(20e3, 20e3);
+  EXPECT_GT(coarse / fine, 3.5);
+  EXPECT_LT(coarse / fine, 4.5);
+}
+
+TEST(ArmTwin, AMassMatrixTakenLessOftenCostsInProportion)
+{
+  const double seldom = couplingError(10e3, 500.0);
+  const double often = couplingError(10e3, 1000.0);
+  EXPECT_GT(seldom / often, 1.5);
+  EXPECT_LT(seldom / often, 2.5);
+}
+
+TEST(ArmTwin, FrameAndGravityTurnedTogetherChangeNothing)
+{
+  const auto angles = [](const std::string& rpy, const std::array<double, 3>& gravity)
+  {
+    ArmDescription description = rods("0 1 0", 2);
+    description.urdf = urdf("0 1 0", 2, rpy);
+    description.gravity = gravity;
+    ArmTwin arm(description, { drive(), drive() }, { 0.3, -0.8 });
+    run(arm, 0.1);
+    return std::array<double, 2>{ arm.motion()[0].position, arm.motion()[1].position };
+  };
+  const std::array<double, 2> upright = angles("0 0 0", { 0.0, 0.0, -9.81 });
+  const std::array<double, 2> hanging = angles("3.141592653589793 0 0", { 0.0, 0.0, 9.81 });
+  EXPECT_NEAR(upright[0], hanging[0], 1e-9);
+  EXPECT_NEAR(upright[1], hanging[1], 1e-9);
+}
+
+TEST(ArmTwin, StandsInItsBrakesAsItHangs)
+{
+  ArmTwin arm(rods("0 1 0", 2), { drive(), drive() }, { 0.3, -0.8 });
+  for (int i = 0; i < 1000; ++i)
+  {
+    ASSERT_TRUE(arm.step(toStampLength(1.0)));
+  }
+  constexpr double CREEP = 2e-6;  // of an output that regularised friction holds, in this time [rad]
+  EXPECT_NEAR(arm.motion()[0].position, 0.3, CREEP);
+  EXPECT_NEAR(arm.motion()[1].position, -0.8, CREEP);
+  // Weight of both rods about the first joint.
+  const double torque = 9.81 * (4.0 * 0.3 * std::cos(0.3) + 2.0 * (0.5 * std::cos(0.3) + 0.3 * std::cos(-0.5)));
+  EXPECT_NEAR(std::abs(arm.drive(0).linkTorque()), torque, CREEP * arm.drive(0).outputs().torsional_stiffness);
+}
+
+TEST(ArmTwin, AllocatesNothingInAStep)
+{
+  ArmTwin arm(rods("0 1 0", 2), { drive(), drive() }, { 0.3, -0.8 });
+  arm.step(toStampLength(1.0));
+  const std::size_t before = allocationCount();
+  for (int i = 0; i < 100; ++i)
+  {
+    arm.step(toStampLength(1.0));
+  }
+  EXPECT_EQ(allocationCount(), before);
+}
+
+TEST(ArmTwin, RefusesWhatDoesNotFit)
+{
+  const auto message = [](std::vector<Parameters> drives, double mass_rate = 1000.0)
+  {
+    try
+    {
+      ArmTwin(rods("0 1 0", 2), std::move(drives), { 0.0, 0.0 }, {}, mass_rate);
+    }
+    catch (const ParameterError& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_THAT(message({ drive() }), testing::HasSubstr("has 2 joints"));
+  EXPECT_THAT(message({ drive(), drive(5e3) }), testing::HasSubstr("joint_1: solver.rate = 5000.0 Hz"));
+  Parameters heavy = drive();
+  heavy.output.gravity_torque = 3.0;
+  EXPECT_THAT(message({ heavy, drive() }), testing::HasSubstr("joint_0: output.gravity_torque = 3.0"));
+  EXPECT_THAT(message({ drive(), drive() }, 2e4), testing::HasSubstr("mass matrix"));
+}
+}  // namespace
+}  // namespace hjt

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""`joint_twin arm`: an arm in closed loop follows its set points, and a fault in a joint shows in that joint's current.
+
+Argument: the tool.
+"""
+import csv
+import math
+
+import tool
+
+JOINTS = 6
+START = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
+
+
+def write_motion(path, duration=1.6, elbow_speed=0.6):
+    """Set points at 125 Hz: the elbow goes there and back, the others stand still."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(["timestamp"] + [f"target_q_{i}" for i in range(JOINTS)])
+        for k in range(int(duration * 125) + 1):
+            angles = list(START)
+            angles[2] += elbow_speed * duration / (2 * math.pi) * (1 - math.cos(2 * math.pi * k / 125 / duration))
+            rows.writerow([k / 125] + angles)
+
+
+class ArmTwin(tool.ToolTest):
+    def run_arm(self, *options):
+        return self.succeed_json("arm", "motion.csv", "--arm", "ur5", "--out", "run.csv", "--force", "--set",
+                                 "solver.scene=full_ring", *options)
+
+    def test_it_follows_its_set_points_and_a_fault_shows_in_its_joint(self):
+        write_motion(self.path("motion.csv"))
+        sound = self.run_arm()
+        with open(self.path("run.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 201)
+        moved = max(float(row["actual_q_2"]) for row in rows) - START[2]
+        self.assertAlmostEqual(moved, 0.6 * 1.6 / math.pi, delta=0.002)
+        for joint in sound["joints"]:
+            self.assertLess(joint["angle_error_max"], 5.0, joint)  # [mrad]
+        self.assertLess(sound["tool_error_rms"], 1.0)  # [mm]
+        worn = self.run_arm("--fault", "elbow:lubricant_degradation:1.0")
+        change = {joint["joint"]: joint["current_rms"] - before["current_rms"]
+                  for joint, before in zip(worn["joints"], sound["joints"])}
+        elbow = change.pop("elbow")
+        self.assertGreater(elbow, 0.02)  # [A]
+        self.assertLess(max(map(abs, change.values())), 0.1 * elbow, change)
+
+    def test_what_is_wrong_is_named(self):
+        write_motion(self.path("motion.csv"), duration=0.1)
+        for options, text in ((["--fault", "knee:tooth_wear:0.5"], "JOINT one of base, shoulder, elbow"),
+                              (["--fault", "tooth_wear:0.5"], "JOINT one of base"),
+                              (["--fault", "elbow:tooth_wear:5"], "severity")):
+            self.fail_with(1, [text], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv", *options)
+        self.write("few.csv", "timestamp,target_q_0\n0,0\n")
+        self.fail_with(1, ["no column target_q_1 or shoulder_position, target_q_2 or elbow_position"], "arm", "few.csv",
+                       "--arm", "ur5", "--out", "no.csv")
+
+
+if __name__ == "__main__":
+    tool.main()
