@@ -9,30 +9,22 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "output/output_file.hpp"
 #include "output/text_table.hpp"
-#include "recordings/arm_recording.hpp"
-#include "recordings/comparison_files.hpp"
-#include "recordings/recording_comparison.hpp"
+#include "recordings/comparison_pass.hpp"
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "messages/conversions.hpp"
 #include "messages/topics.hpp"
 #include "params/configuration_files.hpp"
-#include "tracking/common_friction.hpp"
-#include "tracking/verdict.hpp"
 
 extern char** environ;
 
@@ -43,35 +35,6 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* PYTHON = "/usr/bin/python3";
-constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
-
-constexpr const char* ARM_FILE = "arm.json";
-
-const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
-  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
-  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
-  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
-  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
-  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
-  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
-  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
-};
-
-/// @throws InputError if one of the files that the page is made of cannot be written to `directory`.
-void prepareDirectory(const ComparisonOptions& options, const std::string& directory, const char* data_file)
-{
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-  {
-    throw InputError(directory + " cannot be made a directory: " + error.message());
-  }
-  for (const char* name : { data_file, REPORT_PAGE })
-  {
-    requireWritable((fs::path(directory) / name).string(), options.force, options.recording);
-  }
-}
-
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
   for (const std::string& reference : options.references)
@@ -108,79 +71,6 @@ void makePage(const std::string& directory)
                      "` makes the page of them");
   }
 }
-
-/// A joint that is being compared, its source, and the directory of its report.
-class JointComparison
-{
-public:
-  /// `references`: directories of earlier reports; empty: none. `is_identified`: the parameters are of this very joint.
-  JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load, const std::string& directory,
-                  const std::vector<std::string>& references, bool is_identified)
-    : parameters_(recording.parameters(joint))
-    , source_(recording.source(joint))
-    , is_file_(recording.isFile())
-    , directory_(directory)
-    , sound_(references.empty() ? SoundJoint() : readSoundJoint(references, parameters_))
-    , is_identified_(is_identified)
-    , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
-    , comparison_(parameters_, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
-  {
-  }
-
-  void update(const MotionSample& sample) { comparison_.update(sample); }
-
-  const JointEvidence& evidence() const { return comparison_.evidence(); }
-
-  MeasuredFriction friction(const std::string& misfit) const
-  {
-    return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
-  }
-
-  /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparedJoint write(const MotionFindings& found, double arm_friction, double arm_deviation, const std::string& misfit,
-                      const std::string& twin_topic)
-  {
-    windows_.close();
-    ComparisonRecord record;
-    record.recording = source_.path;
-    record.joint = source_.joint;
-    record.made_with = MADE_WITH;
-    record.found = found;
-    const MotionReach& reach = evidence().reach();
-    if (is_file_)
-    {
-      record.contents =
-          readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
-      record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
-    }
-    const JointContext context{ sound_.own, is_identified_, found.duration, arm_friction, misfit, arm_deviation };
-    record.verdict = judge(evidence(), parameters_, context);
-    record.friction = frictionFactor(evidence(), context);
-    record.is_friction_judged = record.verdict.findings.front().judged;
-    ComparedJoint compared;
-    compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
-    compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
-    compared.document = writeComparison(directory_, comparison_, parameters_, record);
-    compared.temperature = evidence().temperature();
-    compared.temperature_source = temperatureSource(evidence());
-    compared.rows = reach.rows;
-    compared.current_rms = evidence().currentRms();
-    compared.residual_rms = evidence().residualRms();
-    compared.contents = std::move(record.contents);
-    compared.verdict = std::move(record.verdict);
-    return compared;
-  }
-
-private:
-  const Parameters parameters_;
-  const MotionSource source_;
-  const bool is_file_;
-  const std::string directory_;
-  const SoundJoint sound_;
-  const bool is_identified_;
-  TableFile<JudgedWindow> windows_;
-  RecordingComparison comparison_;
-};
 
 template <typename Member>
 std::optional<double> number(const ComparedJoint& line, Member member)
@@ -275,146 +165,6 @@ std::string reasonOf(const std::vector<ComparedJoint>& lines, const ArmFriction&
   return reason;
 }
 
-/// The directory of a joint's report, or of its reference, in that of the whole.
-std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
-{
-  return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
-                                               whole;
-}
-
-std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
-                                                            const ArmRecording& recording)
-{
-  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED :
-                          recording.isArm()            ? LoadOrigin::ARM :
-                                                         LoadOrigin::CONFIGURED;
-  if (recording.isArm())
-  {
-    prepareDirectory(options, options.report, ARM_FILE);
-  }
-  std::vector<std::unique_ptr<JointComparison>> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
-  {
-    const std::string directory = directoryOf(recording, options.report, i);
-    prepareDirectory(options, directory, COMPARISON_FILE);
-    std::vector<std::string> references;
-    for (const std::string& reference : options.references)
-    {
-      references.push_back(directoryOf(recording, reference, i));
-    }
-    joints.push_back(
-        std::make_unique<JointComparison>(recording, i, load, directory, references, !options.identified.empty()));
-  }
-  return joints;
-}
-
-/// The joints beside their twins after a pass through the recording.
-struct Pass
-{
-  std::vector<std::unique_ptr<JointComparison>> joints;
-  MotionFindings found;
-  std::vector<std::string> misfits;  // why the rows of each say nothing, in a sentence; empty: they fit
-  ArmFriction friction;
-  std::optional<IdentifiedPayload> payload;
-};
-
-/// Of samples that come by joints: all of one time at once.
-class PayloadCollector
-{
-public:
-  explicit PayloadCollector(const ArmRecording& recording)
-    : fit_(recording.arm(), gainsOf(recording)), waiting_(recording.joints().size())
-  {
-  }
-
-  void add(std::size_t joint, const MotionSample& sample, const JointEvidence& evidence)
-  {
-    waiting_[joint].push_back({ sample, evidence.predicted().current, evidence.isTouched() });
-    while (std::none_of(waiting_.begin(), waiting_.end(), [](const std::deque<Row>& rows) { return rows.empty(); }))
-    {
-      samples_.clear();
-      predicted_.clear();
-      bool is_touched = false;
-      for (std::deque<Row>& rows : waiting_)
-      {
-        samples_.push_back(rows.front().sample);
-        predicted_.push_back(rows.front().predicted);
-        is_touched = is_touched || rows.front().is_touched;
-        rows.pop_front();
-      }
-      if (!is_touched)
-      {
-        fit_.add(samples_, predicted_);
-      }
-    }
-  }
-
-  IdentifiedPayload solve() { return fit_.solve(); }
-
-private:
-  struct Row
-  {
-    MotionSample sample;
-    double predicted{};  // [A]
-    bool is_touched{};
-  };
-
-  static std::vector<double> gainsOf(const ArmRecording& recording)
-  {
-    std::vector<double> gains;
-    for (const Parameters& parameters : recording.parameters())
-    {
-      gains.push_back(parameters.telemetry.torque_per_current);
-    }
-    return gains;
-  }
-
-  PayloadFit fit_;
-  std::vector<std::deque<Row>> waiting_;
-  std::vector<MotionSample> samples_;
-  std::vector<double> predicted_;
-};
-
-Pass passThrough(const ComparisonOptions& options, const ArmRecording& recording)
-{
-  Pass pass;
-  pass.joints = prepareJoints(options, recording);
-  std::optional<PayloadCollector> payload;
-  if (recording.isArm() && !recording.usesRecordedLoad())
-  {
-    payload.emplace(recording);
-  }
-  RecordingFit fit(recording.parameters());
-  pass.found = recording.readSamples(
-      [&](std::size_t i, const MotionSample& sample)
-      {
-        pass.joints[i]->update(sample);
-        if (payload)
-        {
-          payload->add(i, sample, pass.joints[i]->evidence());
-        }
-      },
-      fit);
-  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>{ pass.found.misfit };
-  std::vector<MeasuredFriction> frictions;
-  for (std::size_t i = 0; i < pass.joints.size(); ++i)
-  {
-    pass.misfits[i] = sentence(pass.misfits[i]);
-    frictions.push_back(pass.joints[i]->friction(pass.misfits[i]));
-  }
-  pass.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
-  const bool fits = std::all_of(pass.misfits.begin(), pass.misfits.end(), [](const auto& why) { return why.empty(); });
-  for (std::string& misfit : pass.misfits)
-  {
-    misfit = misfit.empty() ? pass.friction.misfit : misfit;
-  }
-  if (payload && fits && pass.friction.misfit.empty() && !options.watch.stopped())
-  {
-    pass.payload = payload->solve();
-  }
-  return pass;
-}
-
 std::string payloadText(const IdentifiedPayload& payload)
 {
   const Payload found = payload.payload();
@@ -469,7 +219,7 @@ ComparedRecording compare(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
-  Pass pass = passThrough(options, recording);
+  ComparisonPass pass = passThrough(options, recording);
   ComparedRecording compared;
   compared.is_arm = recording.isArm();
   compared.page = (fs::path(options.report) / REPORT_PAGE).string();
@@ -477,6 +227,7 @@ ComparedRecording compare(const ComparisonOptions& options)
   {
     compared.payload = pass.payload;
     recording.setPayload(pass.payload->payload());
+    pass.joints.clear();  // closes the files that the next pass opens
     pass = passThrough(options, recording);
   }
   compared.found = pass.found;
@@ -487,9 +238,8 @@ ComparedRecording compare(const ComparisonOptions& options)
   }
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(
-        pass.joints[i]->write(pass.found, pass.friction.factors[i], pass.friction.deviations[i], pass.misfits[i],
-                              recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(pass.joints[i]->write(
+        pass.found, pass.friction, pass.misfits[i], recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
   }
   if (recording.isArm())

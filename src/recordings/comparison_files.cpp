@@ -215,9 +215,11 @@ double frictionDeviation(const ComparisonRecord& record)
 Json factorJson(const ComparisonRecord& record)
 {
   const FrictionFactor& factor = record.friction;
-  return record.is_friction_judged ?
-             Json{ { "value", factor.value }, { "low", factor.low() }, { "high", factor.high() } } :
-             Json(std::optional<double>());
+  return record.is_friction_judged ? Json{ { "value", factor.value },
+                                           { "low", factor.low() },
+                                           { "high", factor.high() },
+                                           { "is_to_own", factor.is_to_own } } :
+                                     Json(std::optional<double>());
 }
 }  // namespace
 

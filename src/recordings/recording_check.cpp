@@ -299,19 +299,19 @@ public:
   void judgeAll(double duration, CheckedArm& arm)
   {
     std::vector<MeasuredFriction> frictions;
-    const auto context = [&](std::size_t i, double factor) {
-      return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].why_not };
-    };
+    const auto context = [&](std::size_t i, double factor, double deviation)
+    { return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].why_not, deviation }; };
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       forward(i, true);
-      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0)));
+      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED)));
     }
     const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      const Verdict verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i]));
       CheckedJoint& joint = arm.joints[i];
+      joint.why_not = joint.why_not.empty() ? common.misfit : joint.why_not;
+      const Verdict verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i]));
       joint.is_judged = verdict.judged;
       joint.why_not = verdict.judged ? "" : joint.why_not.empty() ? verdict.reason : joint.why_not;
     }

@@ -137,9 +137,11 @@ void addGroup(const std::vector<MeasuredFriction>& joints, double tolerance, std
     group.is_known = median > 0.0 && 2 * agree > left.size();
     group.median = group.is_known ? median : 1.0;
   }
+  constexpr double CHANCE = 0.05;  // share that three joints may have in common by chance
+  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - CHANCE);
   for (std::size_t i = begin; i < end && group.is_known; ++i)
   {
-    arm.factors[i] *= group.median;
+    arm.factors[i] *= 1.0 + std::copysign(beyond, group.median - 1.0);
     arm.deviations[i] = 0.0;
   }
   arm.groups.push_back(group);

@@ -51,7 +51,7 @@ struct ArmFriction
 /// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
 /// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
 /// are the median joint's, so that one faulty joint changes neither. What is left then and most of the three joints of a
-/// group agree on is the group's: three drives do not fail alike. Two joints or more whose friction is below what any
+/// group agree on is the group's, less 5 % that may be chance: three drives do not fail alike. Two joints or more whose friction is below what any
 /// fault leaves: something else carries the arm, and no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 

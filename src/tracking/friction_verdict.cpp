@@ -71,10 +71,13 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   {
     return { FrictionGap::AT_REST, "The joint does not move." };
   }
+  if (points.empty() && !evidence.friction().points().empty())
+  {
+    return { FrictionGap::OTHER_SPEEDS, "The reference has none of the speeds of this recording." };
+  }
   if (points.empty())
   {
-    return { FrictionGap::NO_STEADY_MOTION,
-             "The joint never moves steadily for long enough" + common + " to measure its friction." };
+    return { FrictionGap::NO_STEADY_MOTION, "The joint never moves steadily for long enough to measure its friction." };
   }
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {

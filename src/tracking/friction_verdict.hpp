@@ -20,6 +20,7 @@ enum class FrictionGap
   NONE,  ///< it is
   AT_REST,
   NO_STEADY_MOTION,
+  OTHER_SPEEDS,  ///< the reference has none of these speeds
   ONE_DIRECTION,
   ONE_SPEED,
   TOO_SHORT,

@@ -107,7 +107,8 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
            " A are neither predicted nor explained by another friction or a constant: " +
            wrongLoad(evidence.loadOrigin());
   }
-  if (evidence.reach().touched_rows > 0 && 2 * evidence.reach().touched_rows > evidence.reach().rows)
+  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction, apart from what was touched
+  if (evidence.reach().touched_rows > 0 && evidence.friction().blocks().count() < MIN_BLOCKS)
   {
     return sentence(contactText(evidence.contact().largest()));
   }

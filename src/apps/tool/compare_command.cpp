@@ -97,11 +97,12 @@ int run(const Options& given)
 {
   Options options = given;
   options.watch = consoleWatch();
-  std::optional<TemporaryDirectory> directory;
   if (options.report.empty() && !options.json)
   {
-    throw InputError("--report is missing: the directory of the page; --json goes without");
+    std::cerr << "--report is required: the directory of the page; --json goes without\n";
+    return EXIT_USAGE;
   }
+  std::optional<TemporaryDirectory> directory;
   if (options.report.empty())
   {
     options.report = directory.emplace().path();

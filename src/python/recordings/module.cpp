@@ -395,14 +395,7 @@ Answer compareIn(const py::dict& arguments)
   ComparisonOptions options;
   takeRecording(given, options);
   given.take("report", options.report);
-  if (const py::object reference = given["reference"]; py::isinstance<py::str>(reference))
-  {
-    options.references = { reference.cast<std::string>() };
-  }
-  else
-  {
-    given.take("reference", options.references);
-  }
+  given.take("reference", options.references);
   return call(
       given, options, [](const ComparisonOptions& asked) { return compare(asked); },
       [](const ComparedRecording& found) { return toPython(found.document); });
