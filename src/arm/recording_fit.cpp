@@ -103,8 +103,7 @@ FittedFactor RecordingFit::LoadRegression::slope(double& content) const
 {
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
   constexpr double MIN_SECONDS = 3.0;
-  constexpr double MIN_CONTENT =
-      0.1;  // of the load that is left, rms: what friction and inertia are off leaves less [A]
+  constexpr double MIN_CONTENT = 0.1;  // of the load that is left, rms: errors of friction and inertia leave less [A]
   const double seconds = sums_(0, 0);
   FittedFactor slope;
   if (seconds < MIN_SECONDS)
@@ -240,8 +239,9 @@ FittedFactor RecordingFit::stampFactor() const
 
 EffortFit RecordingFit::effort() const
 {
-  constexpr double WIDE = 2.0;             // a payload or another gain make no more of it
-  constexpr double MAX_UNCERTAINTY = 0.2;  // of the factor itself
+  constexpr double WIDE = 2.0;  // a payload or another gain make no more of it
+  constexpr double MAX_UNCERTAINTY =
+      1.0 / DEVIATIONS;  // of the factor itself: beyond, the load may not be in the effort
   EffortFit fit;
   fit.unit = joints_.front().effort;
   double weights = 0.0;
@@ -353,7 +353,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                              ": set telemetry.effort: " + effortKeyword(found.unit),
                          true });
   }
-  else if (std::isfinite(found.factor.value) && !found.is_known)
+  else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
   {
     findings.push_back({ "gain",
                          "effort changes " + rounded(found.factor.value) +

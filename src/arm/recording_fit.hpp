@@ -82,6 +82,8 @@ public:
   {
     double current{};  ///< what constant, friction and rotor inertia fitted leave of the current [A]
     double left{};     ///< and the load as it is too [A]
+
+    double share() const { return left / current; }  ///< of the current that the load leaves; not finite: no motion [-]
   };
   /// If the efforts were of this unit.
   LoadRest loadRest(EffortUnit unit) const;

@@ -2,12 +2,14 @@
 #include "recordings/arm_recording.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "arm/arm_configuration.hpp"
 #include "base/number_text.hpp"
 #include "elements/load.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/stated_gains.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/ratio_fit.hpp"
@@ -16,9 +18,14 @@ namespace hjt
 {
 namespace
 {
-Parameters parametersOf(const ArmJoint& joint, const RecordingOptions& options)
+/// `gain`: that the recording states; NaN: none. What is identified or set counts in its place.
+Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
+  if (std::isfinite(gain) && options.identified.empty())
+  {
+    readAssignment("telemetry.torque_per_current=" + numberText(gain), map);
+  }
   readAssignment("telemetry.load=" + options.load, map);
   addOverlays(options, map);
   Parameters parameters = parseParameters(map);
@@ -66,9 +73,14 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
   , source_(motionSource(options))
 {
-  for (const ArmJoint& joint : arm_.joints)
+  stated_gains_.assign(arm_.joints.size(), std::numeric_limits<double>::quiet_NaN());
+  if (is_arm_ && isFile())
   {
-    parameters_.push_back(is_arm_ ? parametersOf(joint, options) : loadParameters(options));
+    stated_gains_ = readStatedGains(source_, arm_.joints.size());
+  }
+  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  {
+    parameters_.push_back(is_arm_ ? parametersOf(arm_.joints[i], stated_gains_[i], options) : loadParameters(options));
   }
   has_load_ = isFile() ? recordsLoad(source_) : options.rows_have_load;
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;

@@ -43,6 +43,9 @@ public:
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
+  /// Torque per current that an arm's recording states, see readStatedGains; it counts unless another was identified or
+  /// set [N.m/A].
+  const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
@@ -74,6 +77,7 @@ private:
   JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
+  std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
   std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
   MotionSource source_;

@@ -3,16 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "arm/arm_configuration.hpp"
-#include "bags/recorded_messages.hpp"
-#include "base/csv_rows.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/recorded_arms.hpp"
 #include "tracking/common_friction.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
@@ -22,187 +19,8 @@ namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 /// Taken where no arm explains the currents clearly better than others.
 constexpr const char* DEFAULT_ARM = "ur5";
-
-bool holds(const std::vector<std::string>& names, const std::string& name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-CheckedContents readTableContents(const MotionSource& source)
-{
-  CheckedContents contents;
-  contents.is_csv = true;
-  const std::string temperatures = "joint_temperatures_";
-  const CsvRows table(source.path);
-  for (const std::string& name : table.header())
-  {
-    contents.temperature =
-        name.compare(0, temperatures.size(), temperatures) == 0 ? temperatures + "N" : contents.temperature;
-  }
-  return contents;
-}
-
-CheckedContents readMessageContents(const MotionSource& source)
-{
-  constexpr int MESSAGES = 1000;  // by then every publisher of the topic was heard
-  CheckedContents contents;
-  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
-  recording->requireStates(source.topic);
-  for (const auto& [name, topic] : recording->topics())
-  {
-    contents.temperature = topic.type == TEMPERATURE_TYPE ? name : contents.temperature;
-  }
-  int read = 0;
-  recording->visit(
-      { source.topic }, false,
-      [&](const RecordedMessage& message)
-      {
-        if (message.state == nullptr)
-        {
-          return true;
-        }
-        const sensor_msgs::JointState& state = *message.state;
-        for (std::size_t i = 0; i < state.name.size(); ++i)
-        {
-          if (!holds(contents.named, state.name[i]))
-          {
-            contents.named.push_back(state.name[i]);
-          }
-          if (i < std::min(state.position.size(), state.effort.size()) && !holds(contents.usable, state.name[i]))
-          {
-            contents.usable.push_back(state.name[i]);
-          }
-        }
-        return ++read < MESSAGES;
-      },
-      [](double) {});
-  contents.named = withoutMotors(contents.named);
-  contents.usable = withoutMotors(contents.usable);
-  return contents;
-}
-
-std::vector<std::string> jointNames(const ArmDescription& arm)
-{
-  std::vector<std::string> names;
-  for (const ArmJoint& joint : arm.joints)
-  {
-    names.push_back(joint.name);
-  }
-  return names;
-}
-
-std::vector<fs::path> armFiles(const RecordingOptions& options)
-{
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(configDirectory(options) / "arms"))
-  {
-    if (entry.path().extension() == ".yaml")
-    {
-      files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// Of the joints at hand those of an arm that is not complete; all of them if there is none.
-void takeParts(const std::vector<std::string>& names, const CheckedContents& contents, CheckedArm& arm)
-{
-  for (const std::string& name : names)
-  {
-    (holds(contents.usable, arm.affixes(name)) ? arm.joints_at_hand : arm.missing).push_back(arm.affixes(name));
-  }
-}
-
-CheckedArm withoutArm(const std::vector<fs::path>& files, const CheckedContents& contents)
-{
-  CheckedArm none;
-  for (const fs::path& file : files)
-  {
-    const std::vector<std::string> names = jointNames(readArmDescription(file.string()));
-    const auto at_hand =
-        std::count_if(names.begin(), names.end(), [&](const std::string& name) { return holds(contents.named, name); });
-    if (2 * static_cast<std::size_t>(at_hand) > names.size())
-    {
-      takeParts(names, contents, none);
-      return none;
-    }
-  }
-  none.joints_at_hand = contents.usable;
-  return none;
-}
-
-/// The arms whose joints the recording names, by the names' prefixes and suffixes.
-std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
-{
-  const std::vector<fs::path> files = armFiles(options);
-  const auto affixes_of = [&](const ArmDescription& arm)
-  {
-    return contents.is_csv || !options.affixes.empty() ? std::vector<JointAffixes>{ options.affixes } :
-                                                         findAffixes(jointNames(arm), contents.named);
-  };
-  std::vector<CheckedArm> arms;
-  const auto add = [&](const JointAffixes& affixes, const std::string& name)
-  {
-    auto arm = std::find_if(arms.begin(), arms.end(), [&](const CheckedArm& one) { return one.affixes == affixes; });
-    if (arm == arms.end())
-    {
-      arm = arms.insert(arms.end(), CheckedArm{ affixes });
-    }
-    arm->fitting.push_back(name);
-  };
-  for (const fs::path& file : files)
-  {
-    const ArmDescription arm = readArmDescription(file.string());
-    for (const JointAffixes& affixes : affixes_of(arm))
-    {
-      const std::vector<std::string> names = jointNames(arm);
-      if (contents.is_csv || std::all_of(names.begin(), names.end(),
-                                         [&](const std::string& name) { return holds(contents.named, affixes(name)); }))
-      {
-        add(affixes, file.stem().string());
-      }
-    }
-  }
-  if (!options.arm.empty())
-  {
-    const ArmDescription given = readArmDescription(findArm(options.arm, configDirectory(options)));
-    std::vector<CheckedArm> taken;
-    for (JointAffixes affixes : affixes_of(given))
-    {
-      const auto known =
-          std::find_if(arms.begin(), arms.end(), [&](const CheckedArm& one) { return one.affixes == affixes; });
-      taken.push_back(known == arms.end() ? CheckedArm{ affixes } : *known);
-      taken.back().taken = options.arm;
-    }
-    if (taken.empty())
-    {
-      taken.emplace_back();
-      takeParts(jointNames(given), contents, taken.back());
-      return taken;
-    }
-    arms = taken;
-  }
-  if (arms.empty())
-  {
-    arms.push_back(withoutArm(files, contents));
-  }
-  for (CheckedArm& arm : arms)
-  {
-    const std::string name = arm.taken.empty() ? (arm.fitting.empty() ? "" : arm.fitting.front()) : arm.taken;
-    if (!name.empty() && !contents.is_csv)
-    {
-      takeParts(jointNames(readArmDescription(findArm(name, configDirectory(options)))), contents, arm);
-      arm.taken = arm.missing.empty() ? arm.taken : "";
-      arm.fitting = arm.missing.empty() ? arm.fitting : std::vector<std::string>();
-    }
-  }
-  return arms;
-}
 
 RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
 {
@@ -232,11 +50,12 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const CheckedArm& 
     {
       const ArmFit other{ name, fit.loadRest(unit), unit };
       constexpr double CLEARLY = 0.5;
-      best = !unit_is_given && other.share() < CLEARLY * best.share() ? other : best;
+      best = !unit_is_given && other.rest.share() < CLEARLY * best.rest.share() ? other : best;
     }
     fits.push_back(best);
   }
-  std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.share() < b.share(); });
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const ArmFit& a, const ArmFit& b) { return a.rest.share() < b.rest.share(); });
   return fits;
 }
 
@@ -252,7 +71,7 @@ std::string choice(const CheckedArm& arm)
     return arm.ranked.front().arm;
   }
   const ArmFit& best = arm.ranked.front();
-  return best.share() < EXPLAINED && best.share() < CLEARLY * preset->share() ? best.arm : preset->arm;
+  return best.rest.share() < EXPLAINED && best.rest.share() < CLEARLY * preset->rest.share() ? best.arm : preset->arm;
 }
 
 void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters, CheckedArm& arm)
@@ -268,6 +87,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   {
     CheckedJoint& joint = arm.joints[i];
     joint.reach = fit.reach(i);
+    joint.gain = parameters[i].telemetry.torque_per_current;
     joint.has_velocity = fit.hasVelocity(i);
     joint.time_factor = fit.timeFit(i).factor();
     joint.lag = fit.timeFit(i).lag();
@@ -331,6 +151,13 @@ private:
   std::vector<std::unique_ptr<JointEvidence>> joints_;
 };
 
+void addJoint(const std::string& name, const std::string& in_messages, CheckedArm& arm)
+{
+  CheckedJoint& joint = arm.joints.emplace_back();
+  joint.name = name;
+  joint.joint = in_messages;
+}
+
 void readArm(const RecordingOptions& options, CheckedArm& arm)
 {
   const RecordingOptions own = optionsFor(options, arm, arm.taken);
@@ -352,7 +179,8 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   arm.joints.clear();
   for (const ArmJoint& joint : recording.joints())
   {
-    arm.joints.push_back({ joint.short_name, arm.affixes(joint.name) });
+    addJoint(joint.short_name, arm.affixes(joint.name), arm);
+    arm.joints.back().stated_gain = recording.statedGains()[arm.joints.size() - 1];
   }
   takeFit(fit, recording.parameters(), arm);
   judging.judgeAll(arm.found.duration, arm);
@@ -413,7 +241,8 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   arm.timing = timing.report();
   for (const std::string& name : names)
   {
-    arm.joints.push_back({ name, name });
+    addJoint(name, name, arm);
+    arm.joints.back().stated_gain = std::nan("");
   }
   fit.refuse(arm.found.misfit);
   takeFit(fit, parameters, arm);
@@ -465,8 +294,8 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   CheckedArm mended = arm;
   mended.joints.clear();
   readArm(changed, mended);
-  remedy.before = arm.rest.left;
-  remedy.after = mended.rest.left;
+  remedy.before = arm.rest.share();
+  remedy.after = mended.rest.share();
   remedy.helps = !hasFinding(mended, kind) && remedy.after < remedy.before;
   arm.tried.push_back(remedy);
 }
@@ -484,9 +313,8 @@ bool RecordingCheck::isUsable() const
 
 RecordingCheck checkRecording(const RecordingOptions& options)
 {
-  const MotionSource source = motionSource(options);
   RecordingCheck check;
-  check.contents = isCsv(source) ? readTableContents(source) : readMessageContents(source);
+  check.contents = readCheckedContents(motionSource(options));
   check.arms = findArms(options, check.contents);
   for (CheckedArm& arm : check.arms)
   {

@@ -26,6 +26,8 @@ struct CheckedJoint
   std::string joint;  ///< in the messages
   JointReach reach;
   bool has_velocity{};
+  double gain{};         ///< telemetry.torque_per_current that counts [N.m/A]
+  double stated_gain{};  ///< that the recording states; NaN: none [N.m/A]
   FittedFactor time_factor;
   FittedFactor lag;
   std::vector<RecordingFinding> findings;
@@ -39,15 +41,13 @@ struct ArmFit
   std::string arm;
   RecordingFit::LoadRest rest;
   EffortUnit unit{};
-
-  double share() const { return rest.left / rest.current; }  ///< that it leaves of the currents [-]
 };
 
 /// A change of how the recording is read, and what came of it on this very recording.
 struct TriedRemedy
 {
   std::string options;  ///< to add to a command
-  double before{};      ///< current that the load leaves, rms [A]
+  double before{};      ///< share of the currents that the load leaves, rms [-]
   double after{};
   bool helps{};
 };

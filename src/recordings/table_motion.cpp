@@ -59,13 +59,16 @@ public:
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
   }
 
-  bool isWithoutEffort() const
-  {
-    const auto is_zero = [](double value) { return value == 0.0; };
-    return std::all_of(values_.begin() + 1, values_.begin() + column(MOMENT, 0), is_zero);
-  }
+  bool isAllZero() const { return areZero(ANGLE, MOMENT); }
+  bool isWithoutCurrent() const { return areZero(CURRENT, MOMENT); }
 
 private:
+  bool areZero(Quantity first, Quantity end) const
+  {
+    const auto is_zero = [](double value) { return value == 0.0; };
+    return std::all_of(values_.begin() + column(first, 0), values_.begin() + column(end, 0), is_zero);
+  }
+
   static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * Count + joint; }
 
   static typename NumberTable<COLUMNS>::Names names(const std::vector<int>& numbers)
@@ -85,21 +88,42 @@ private:
   std::array<double, COLUMNS> values_{};
 };
 
+/// False of a motion that was made up without currents: its rows at zero are no failed reading.
+template <std::size_t Count>
+bool recordsCurrent(const std::string& path, const std::vector<int>& numbers)
+{
+  JointTable<Count> table(path, numbers);
+  while (table.read())
+  {
+    if (!table.isWithoutCurrent())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 template <std::size_t Count>
 class TableMotion
 {
 public:
   TableMotion(const MotionSource& source, const std::vector<int>& numbers)
-    : source_(source), table_(source.path, numbers), angles_(Count), rows_(Count), temperatures_(Count)
+    : source_(source)
+    , numbers_(numbers)
+    , table_(source.path, numbers)
+    , angles_(Count)
+    , rows_(Count)
+    , temperatures_(Count)
   {
   }
 
   MotionCount read(const VisitRows& visit)
   {
+    const bool zero_is_failure = Count > 1 && recordsCurrent<Count>(source_.path, numbers_);
     bool more = true;
     while (more && table_.read())
     {
-      if (!table_.isWhole() || (Count > 1 && table_.isWithoutEffort()))
+      if (!table_.isWhole() || (zero_is_failure && table_.isAllZero()))
       {
         ++count_.corrupt;
         continue;
@@ -168,6 +192,7 @@ private:
   }
 
   const MotionSource& source_;
+  const std::vector<int>& numbers_;
   JointTable<Count> table_;
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;

@@ -150,7 +150,7 @@ class Arm(tool.ToolTest):
         self.fail_with(1, ["never contains angle and effort of wrist_2_joint", "elbow_joint"], "follow", "short.bag",
                        "--arm", "ur5")
         self.write("short.csv", arm_csv(without=("actual_q_3", "actual_current_0")))
-        self.fail_with(1, ["wrist_1_joint (actual_q_3", "shoulder_pan_joint (actual_q_0"], "follow", "short.csv",
+        self.fail_with(1, ["short.csv:1", "columns 'actual_q_3', 'actual_current_0' are missing"], "follow", "short.csv",
                        "--arm", "ur5")
         self.write("arm.csv", arm_csv())
         self.fail_with(1, ["holds no load"], "follow", "arm.csv", "--arm", "ur5", "--load", "target_moment")

@@ -93,17 +93,19 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
   {
     return "not known; joints: " + joined(contents.named);
   }
-  std::string text = joined(arm.fitting) + " have these joints" + names + "; taken: " + arm.taken;
+  std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
-  if (taken != arm.ranked.end() && std::isfinite(taken->share()))
+  if (taken != arm.ranked.end() && std::isfinite(taken->rest.share()))
   {
-    text += ", whose load leaves " + roundedText(100.0 * taken->share(), 2) + " % of the currents" +
-            (other == arm.ranked.end() ? "" : " (" + other->arm + " " + roundedText(100.0 * other->share(), 2) + " %)");
+    text +=
+        ": its load leaves " + roundedText(100.0 * taken->rest.share(), 2) + " % of the currents" +
+        (other == arm.ranked.end() ? "" :
+                                     ", " + other->arm + "'s " + roundedText(100.0 * other->rest.share(), 2) + " %");
   }
-  return text + "; --arm takes another";
+  return text;
 }
 
 std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
@@ -124,6 +126,20 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
              std::string(effortUnitName(effort.unit)) + "; with the load it changes " + factor +
                  " times as configured" :
              "changes with the load " + factor + " times as " + effortUnitName(arm.configured_effort) + " would";
+}
+
+/// Of the joints whose gains the recording states.
+std::string textOfGains(const CheckedArm& arm)
+{
+  std::string text;
+  for (const CheckedJoint& joint : arm.joints)
+  {
+    if (std::isfinite(joint.stated_gain))
+    {
+      text += (text.empty() ? "" : ", ") + joint.name + " " + roundedText(joint.stated_gain, 4);
+    }
+  }
+  return text + " N.m/A: target_moment over target_current at rest";
 }
 
 std::string textOfStamps(const CheckedArm& arm)
@@ -201,7 +217,8 @@ void printJudged(const CheckedArm& arm)
   std::map<std::string, std::vector<std::string>> open;
   for (const CheckedJoint& joint : arm.joints)
   {
-    (joint.is_judged ? judged : open[joint.why_not]).push_back(joint.name);
+    const bool is_said = stops(arm.findings) || stops(joint.findings);
+    (joint.is_judged ? judged : open[is_said ? "as said above" : joint.why_not]).push_back(joint.name);
   }
   printLine("judged", judged.empty() ? "nothing" : "friction and current of " + joined(judged));
   for (const auto& [reason, names] : open)
@@ -223,6 +240,11 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   printLine("velocities", textOfVelocities(arm));
   printLine("effort", textOfEffort(contents, arm));
+  if (std::any_of(arm.joints.begin(), arm.joints.end(),
+                  [](const CheckedJoint& joint) { return std::isfinite(joint.stated_gain); }))
+  {
+    printLine("gains", textOfGains(arm));
+  }
   printLine("load", textOfLoad(arm));
   printLine("temperature", contents.temperature.empty() ?
                                (arm.joints.empty() ? std::string("not recorded") :
@@ -235,9 +257,9 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(remedy.after, 2) +
-                           " A rms instead of " + roundedText(remedy.before, 2) +
-                           (remedy.helps ? " A" : " A: this is not what is wrong"));
+    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
+                           " % of the currents instead of " + roundedText(100.0 * remedy.before, 2) +
+                           (remedy.helps ? " %" : " %: this is not what is wrong"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
@@ -278,6 +300,8 @@ std::vector<Json> jointsOf(const CheckedArm& arm)
                            { "least_current", joint.reach.least_current },
                            { "most_current", joint.reach.most_current },
                            { "has_velocity", joint.has_velocity },
+                           { "torque_per_current", joint.gain },
+                           { "torque_per_current_stated", joint.stated_gain },
                            { "time_factor", joint.time_factor.value },
                            { "velocity_lag", joint.lag.value },
                            { "judged", joint.is_judged },
