@@ -139,7 +139,7 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
     report: directory that gets report.html, its figures and its data. reference: earlier reports, in sound condition.
     Others as of identify.
 
-    Returns the report's data as a dict: 'level', 'reason', of an arm 'joints'. InputError, ParameterError.
+    Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
     """
     if isinstance(reference, (str, os.PathLike)):
         reference = [reference]

@@ -46,17 +46,18 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "velocity zero: taken from the angles", false };
+    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
   }
   if (own.value < 0.0)
   {
-    return { "velocity_sign", "angle and velocity of opposite sign", true };
+    return { "velocity_sign", "angle and velocity of opposite sign", Reason::VELOCITY_SIGN };
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "velocity in deg/s: taken from angles", false };
+    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
   }
-  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity", true };
+  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity",
+           Reason::VELOCITY_SCALE };
 }
 }  // namespace
 
@@ -309,9 +310,9 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
-  if (!refusal_.empty())
+  if (refusal_.exists())
   {
-    findings.push_back({ "reading", refusal_, true });
+    findings.push_back({ "reading", refusal_.clause, refusal_.reason });
     return findings;
   }
   if (rows_ >= MIN_ROWS && 2 * slow_rows_ > rows_)
@@ -322,7 +323,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
                              " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
                              (period > LONG ? " (are they in ms? of a recording --time-scale 0.001)" : ""),
-                         true });
+                         Reason::ROW_RATE });
     return findings;
   }
   const FittedFactor stamps = stampFactor();
@@ -334,7 +335,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                              " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
                              "recording `joint_twin check` tries --time-scale " +
                              factor + ")",
-                         true });
+                         Reason::STAMPS });
     return findings;  // the load is wrong too
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
@@ -342,7 +343,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back(
         { "angle_unit",
           "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
-          true });
+          Reason::ANGLE_UNIT });
   }
   const EffortFit found = effort();
   if (found.is_known && found.unit != joints_.front().effort)
@@ -351,7 +352,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
                              effortUnitName(joints_.front().effort) +
                              ": set telemetry.effort: " + effortKeyword(found.unit),
-                         true });
+                         Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
   {
@@ -359,7 +360,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          "effort changes " + rounded(found.factor.value) +
                              " times as much with the load as telemetry.torque_per_current says: another arm, gain or "
                              "payload than configured",
-                         false });
+                         std::nullopt });
   }
   return findings;
 }
@@ -374,12 +375,12 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (joint.reach.least_current == joint.reach.most_current || joint.unchanged > UNCHANGED)
   {
-    findings.push_back(
-        { "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes", true });
+    findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
+                         Reason::EFFORT_CONSTANT });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {
-    findings.push_back({ "ratio", text, true });
+    findings.push_back({ "ratio", text, Reason::GEAR_RATIO });
   }
   const FittedFactor stamps = stampFactor();
   const double of_stamps = std::isfinite(stamps.value) ? stamps.value : 1.0;
@@ -395,15 +396,15 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
     findings.push_back(
         { "lag",
           "velocity " + rounded(std::abs(lag.value)) + " s " + (lag.value > 0.0 ? "after" : "before") + " the angle",
-          true });
+          Reason::VELOCITY_LAG });
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "velocity taken from the angles", false });
+    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < MOVED)
   {
-    findings.push_back({ "at_rest", "does not move", false });
+    findings.push_back({ "at_rest", "does not move", std::nullopt });
   }
   return findings;
 }
@@ -416,20 +417,20 @@ bool RecordingFit::isSettled() const
   return moving_ > PATIENCE || (knows_stamps && std::isfinite(effort().factor.value));
 }
 
-std::vector<std::string> RecordingFit::whyNotJudged() const
+std::vector<Misfit> RecordingFit::whyNotJudged() const
 {
   const auto first = [](const std::vector<RecordingFinding>& findings)
   {
-    const auto stops =
-        std::find_if(findings.begin(), findings.end(), [](const RecordingFinding& finding) { return finding.stops; });
-    return stops == findings.end() ? std::string() : stops->text;
+    const auto stops = std::find_if(findings.begin(), findings.end(),
+                                    [](const RecordingFinding& finding) { return finding.stops.has_value(); });
+    return stops == findings.end() ? Misfit() : Misfit{ *stops->stops, stops->text };
   };
-  const std::string of_arm = first(ofArm());
-  std::vector<std::string> reasons;
+  const Misfit of_arm = first(ofArm());
+  std::vector<Misfit> misfits;
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    reasons.push_back(of_arm.empty() ? first(ofJoint(i)) : of_arm);
+    misfits.push_back(of_arm.exists() ? of_arm : first(ofJoint(i)));
   }
-  return reasons;
+  return misfits;
 }
 }  // namespace hjt

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "arm/arm_load.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/ratio_fit.hpp"
+#include "tracking/reason.hpp"
 #include "tracking/time_fit.hpp"
 
 namespace hjt
@@ -18,11 +20,11 @@ namespace hjt
 /// Something in a recording of an arm that does not fit.
 struct RecordingFinding
 {
-  std::string
-      kind;  ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
-             ///< velocity_sign, velocity_unit, velocity_scale, lag, no_velocity, at_rest
-  std::string text;  ///< a clause without a full stop
-  bool stops{};      ///< nothing can be judged with it
+  std::string kind;             ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain,
+                                ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
+                                ///< no_velocity, at_rest
+  std::string text;             ///< a clause without a full stop
+  std::optional<Reason> stops;  ///< nothing can be judged with it
 };
 
 /// What a joint does in a recording; empty ranges before the first row.
@@ -74,8 +76,8 @@ public:
   /// Of angle and velocity of the joint.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
 
-  /// Nothing can be judged for this reason, a clause; empty: there is none.
-  void refuse(const std::string& reason) { refusal_ = reason; }
+  /// Nothing can be judged of any joint; none: nothing stands against it.
+  void refuse(const Misfit& misfit) { refusal_ = misfit; }
 
   /// Of the moving joints, rms; NaN: nothing moved.
   struct LoadRest
@@ -94,8 +96,8 @@ public:
   /// It has seen enough for its findings, or PATIENCE of motion without.
   bool isSettled() const;
 
-  /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
-  std::vector<std::string> whyNotJudged() const;
+  /// For each joint the first finding of arm or joint with which nothing can be judged.
+  std::vector<Misfit> whyNotJudged() const;
 
 private:
   /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current of
@@ -135,7 +137,7 @@ private:
 
   std::vector<FittedFactor> timeFactors() const;
 
-  std::string refusal_;
+  Misfit refusal_;
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
   double moving_{};     // time in which a joint moved [s]

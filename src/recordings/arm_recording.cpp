@@ -230,7 +230,10 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
   static_cast<MotionCount&>(found) = isFile() ?
                                          readMotion(source(0), take, watch_.progress("reading")) :
                                          readRows([&](const std::vector<MotionRow>& row) { return take(row.front()); });
-  found.misfit = found.misfit.empty() ? ratio.text() : found.misfit;
+  if (!found.misfit.exists())
+  {
+    found.misfit = { Reason::GEAR_RATIO, ratio.text() };
+  }
   return found;
 }
 
@@ -284,7 +287,6 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
   return findings;
 }
 
-/// Why a joint of an arm cannot be judged. Wrong stamps are said of the whole.
 void ArmRecording::noticeOf(const RecordingFit& fit) const
 {
   const auto say = [this](const std::string& of, const std::vector<RecordingFinding>& findings)
@@ -317,9 +319,9 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
   {
     watch_.notice(source_.path + ": " + remark);
   }
-  if (!is_arm_ && !found.misfit.empty())  // an arm's is of its fit
+  if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
   {
-    watch_.notice(source_.path + ": " + found.misfit);
+    watch_.notice(source_.path + ": " + found.misfit.clause);
   }
 }
 }  // namespace hjt

@@ -56,6 +56,11 @@ public:
   /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
   MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
 
+  /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
+  void noticeOf(const RecordingFit& fit) const;
+  /// And of the whole recording.
+  void noticeOf(const MotionFindings& found) const;
+
   /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
   /// what it is configured to. @throws InputError.
   MotionFindings readSamples(const VisitSample& visit) const;
@@ -68,8 +73,6 @@ private:
   MotionFindings readJoint(const VisitRows& visit, double end) const;
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings differentiate(const Read& read, const VisitSample& visit) const;
-  void noticeOf(const RecordingFit& fit) const;
-  void noticeOf(const MotionFindings& found) const;
 
   Watch watch_;
   const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file

@@ -80,8 +80,8 @@ std::optional<double> number(const ComparedJoint& line, Member member)
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
-  { "level", [](const ComparedJoint& line) { return verdictName(line.verdict); }, "verdict" },
-  { "reason", [](const ComparedJoint& line) { return line.verdict.reason; } },
+  { "level", [](const ComparedJoint& line) { return levelName(line.verdict.level); }, "verdict" },
+  { "verdict", [](const ComparedJoint& line) { return verdictFields(line.verdict); } },
   { "friction_ratio", [](const ComparedJoint& line) { return number(line, &FrictionFactor::value); } },
   { "friction_low", [](const ComparedJoint& line) { return number(line, &FrictionFactor::low); } },
   { "friction_high", [](const ComparedJoint& line) { return number(line, &FrictionFactor::high); } },
@@ -109,21 +109,21 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
 /// Every joint that departs or is not judged, and why.
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
-  std::string reason;
+  std::string text;
   std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
   bool departs = false;
   bool judged = false;
   for (const ComparedJoint& line : lines)
   {
-    judged = judged || line.verdict.judged;
-    if (line.verdict.level != HealthLevel::OK)
+    judged = judged || line.verdict.isJudged();
+    if (severityOf(line.verdict.level) != HealthLevel::OK)
     {
-      reason += line.name + ": " + line.verdict.reason + " ";
+      text += line.name + ": " + verdictText(line.verdict) + " ";
       departs = true;
     }
-    if (!line.verdict.judged)
+    if (!line.verdict.isJudged())
     {
-      const std::string& why = line.verdict.findings.front().text;
+      const std::string why = findingText(line.verdict, line.verdict.findings.front());
       const auto same =
           std::find_if(unjudged.begin(), unjudged.end(), [&](const auto& one) { return one.first == why; });
       (same == unjudged.end() ? unjudged.emplace_back(why, std::vector<std::string>()) : *same)
@@ -131,38 +131,38 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     }
     else if (!line.contact.empty())
     {
-      reason += line.name + ": " + line.contact + " Judged by the rest. ";
+      text += line.name + ": " + line.contact + " Judged by the rest. ";
     }
   }
-  reason += judged && !departs ? "No joint departs from a sound one. " : "";
+  text += judged && !departs ? "No joint departs from a sound one. " : "";
   for (const auto& [why, joints] : unjudged)
   {
-    reason += "Not judged: " + joined(joints) + ". " + why + " ";
+    text += "Not judged: " + joined(joints) + ". " + why + " ";
   }
-  return reason;
+  return text;
 }
 
 /// What the joints have in common, and each that departs or is not judged.
-std::string reasonOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm)
+std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm)
 {
-  std::string reason;
+  std::string text;
   if (arm.median != 1.0)
   {
-    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-             " times the reference's: another temperature or gain, not a fault of one joint. ";
+    text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
+           " times the reference's: another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
-      reason += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
-                " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
+      text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
+              " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
   for (const JointGroup& group : arm.groups)
   {
-    reason += groupText(group, lines);
+    text += groupText(group, lines);
   }
-  reason += departuresOf(lines);
-  reason.pop_back();
-  return reason;
+  text += departuresOf(lines);
+  text.pop_back();
+  return text;
 }
 
 std::string payloadText(const IdentifiedPayload& payload)
@@ -175,19 +175,20 @@ std::string payloadText(const IdentifiedPayload& payload)
          " m: set payload in the arm's file. The joints are judged with it. ";
 }
 
-/// Level and reason of an arm by those of its joints. `misfits`: why the rows of each say nothing.
-void judgeArm(const std::vector<std::string>& misfits, ComparedRecording& compared)
+/// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
+void judgeArm(const std::vector<Misfit>& misfits, ComparedRecording& compared)
 {
   for (const ComparedJoint& joint : compared.joints)
   {
-    compared.health = std::max(compared.health, joint.verdict.level);
-    compared.is_judged = compared.is_judged || joint.verdict.judged;
+    compared.health = std::max(compared.health, severityOf(joint.verdict.level));
+    compared.is_judged = compared.is_judged || joint.verdict.isJudged();
   }
-  compared.level = compared.is_judged ? levelName(compared.health) : NOT_JUDGED;
-  const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
-                                                    static_cast<std::ptrdiff_t>(misfits.size());
-  compared.reason = (compared.payload ? payloadText(*compared.payload) : "") +
-                    (same ? misfits.front() : reasonOf(compared.joints, compared.friction));
+  compared.level = compared.is_judged ? levelName(compared.health) : levelName(VerdictLevel::NOT_JUDGED);
+  const bool same = misfits.front().exists() &&
+                    std::all_of(misfits.begin(), misfits.end(),
+                                [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
+  compared.text = (compared.payload ? payloadText(*compared.payload) : "") +
+                  (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction));
 }
 
 Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& compared)
@@ -201,7 +202,7 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "arm", options.arm },
            { "made_with", MADE_WITH },
            { "level", compared.level },
-           { "reason", compared.reason },
+           { "text", compared.text },
            { "load", options.load },
            { "temperature", temperatures / static_cast<double>(compared.joints.size()) },
            { "temperature_estimate", compared.friction.temperature },
@@ -251,10 +252,10 @@ ComparedRecording compare(const ComparisonOptions& options)
   else
   {
     const Verdict& verdict = compared.joints.front().verdict;
-    compared.level = verdictName(verdict);
-    compared.is_judged = verdict.judged;
-    compared.health = verdict.level;
-    compared.reason = verdict.reason;
+    compared.level = levelName(verdict.level);
+    compared.is_judged = verdict.isJudged();
+    compared.health = severityOf(verdict.level);
+    compared.text = verdictText(verdict);
     compared.document = compared.joints.front().document;
   }
   if (options.has_page)

@@ -45,7 +45,7 @@ struct ComparedRecording
 {
   bool is_arm{};
   std::string level;
-  std::string reason;
+  std::string text;  ///< a sentence or two
   bool is_judged{};
   HealthLevel health{};  ///< the worst of the joints
   MotionFindings found;

@@ -139,20 +139,20 @@ ComparisonPass passThrough(const ComparisonOptions& options, const ArmRecording&
         }
       },
       fit);
-  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>{ pass.found.misfit };
+  pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ pass.found.misfit };
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {
-    pass.misfits[i] = sentence(pass.misfits[i]);
     frictions.push_back(pass.joints[i]->friction(pass.misfits[i]));
   }
   pass.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
-  const bool fits = std::all_of(pass.misfits.begin(), pass.misfits.end(), [](const auto& why) { return why.empty(); });
-  for (std::string& misfit : pass.misfits)
+  const bool fits =
+      std::all_of(pass.misfits.begin(), pass.misfits.end(), [](const Misfit& misfit) { return !misfit.exists(); });
+  for (Misfit& misfit : pass.misfits)
   {
-    misfit = misfit.empty() ? pass.friction.misfit : misfit;
+    misfit = misfit.exists() ? misfit : pass.friction.misfit;
   }
-  if (payload && fits && pass.friction.misfit.empty() && !options.watch.stopped())
+  if (payload && fits && !pass.friction.misfit.exists() && !options.watch.stopped())
   {
     pass.payload = payload->solve();
   }

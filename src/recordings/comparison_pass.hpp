@@ -17,7 +17,7 @@ struct ComparisonPass
 {
   std::vector<std::unique_ptr<JointComparison>> joints;
   MotionFindings found;
-  std::vector<std::string> misfits;  // why the rows of each say nothing, in a sentence; empty: they fit
+  std::vector<Misfit> misfits;  // of each
   ArmFriction friction;
   std::optional<IdentifiedPayload> payload;
 };

@@ -39,12 +39,12 @@ JointComparison::JointComparison(const ArmRecording& recording, std::size_t join
 {
 }
 
-MeasuredFriction JointComparison::friction(const std::string& misfit) const
+MeasuredFriction JointComparison::friction(const Misfit& misfit) const
 {
   return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
 }
 
-ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFriction& arm, const std::string& misfit,
+ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFriction& arm, const Misfit& misfit,
                                      const std::string& twin_topic)
 {
   windows_.close();
@@ -64,7 +64,7 @@ ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFrict
                               arm.factors[joint_], misfit,         arm.deviations[joint_] };
   record.verdict = judge(evidence(), parameters_, context);
   record.friction = frictionFactor(evidence(), context);
-  record.is_friction_judged = record.verdict.findings.front().judged;
+  record.is_friction_judged = record.verdict.findings.front().level != VerdictLevel::NOT_JUDGED;
   ComparedJoint compared;
   compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
   compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();

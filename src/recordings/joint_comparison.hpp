@@ -27,12 +27,11 @@ public:
 
   const JointEvidence& evidence() const { return comparison_.evidence(); }
 
-  /// `misfit`: why the rows say nothing, in a sentence; empty: they fit.
-  MeasuredFriction friction(const std::string& misfit) const;
+  MeasuredFriction friction(const Misfit& misfit) const;
 
   /// Judges, and writes the data of the page. `arm`: what the joints have in common. `twin_topic`: of a twin that was
   /// recorded beside the robot. @throws InputError.
-  ComparedJoint write(const MotionFindings& found, const ArmFriction& arm, const std::string& misfit,
+  ComparedJoint write(const MotionFindings& found, const ArmFriction& arm, const Misfit& misfit,
                       const std::string& twin_topic);
 
 private:

@@ -326,7 +326,10 @@ private:
       without_effort += rows.withoutEffort();
       folds += rows.folds();
       count_.refused_temperatures += rows.refusedTemperatures();
-      count_.misfit = count_.misfit.empty() ? sources_[i].text() : count_.misfit;
+      if (!count_.misfit.exists())
+      {
+        count_.misfit = { Reason::TWO_SOURCES, sources_[i].text() };
+      }
     }
     count_.rows = side_by_side_.complete();
     count_.corrupt += side_by_side_.dropped() + without_effort;

@@ -9,6 +9,7 @@
 
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
@@ -39,7 +40,7 @@ struct MotionCount
   /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
   std::vector<std::string> remarks;  ///< what was mended or left out in reading, clauses without a full stop
-  std::string misfit;                ///< a clause: with this nothing can be judged; empty: nothing stands against it
+  Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
 };
 
 /// What was found, and what stood in the way.

@@ -82,7 +82,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   arm.rest = fit.loadRest(arm.configured_effort);
   arm.temperature = parameters.front().input.temperature;
   arm.findings = fit.ofArm();
-  const std::vector<std::string> reasons = fit.whyNotJudged();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     CheckedJoint& joint = arm.joints[i];
@@ -92,7 +92,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
     joint.time_factor = fit.timeFit(i).factor();
     joint.lag = fit.timeFit(i).lag();
     joint.findings = fit.ofJoint(i);
-    joint.why_not = reasons[i].empty() ? "" : sentence(reasons[i]);
+    joint.misfit = misfits[i];
   }
 }
 
@@ -101,7 +101,7 @@ class Judging
 {
 public:
   Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
-    : parameters_(parameters), differentiators_(parameters.size())
+    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM), differentiators_(parameters.size())
   {
     for (const Parameters& of : parameters)
     {
@@ -115,25 +115,27 @@ public:
     forward(joint, false);
   }
 
-  /// Says of each joint whether it is judged; `why_not` is that of the reading before.
+  /// Takes the misfits as the reading before left them.
   void judgeAll(double duration, CheckedArm& arm)
   {
     std::vector<MeasuredFriction> frictions;
-    const auto context = [&](std::size_t i, double factor, double deviation)
-    { return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].why_not, deviation }; };
+    const auto context = [&](std::size_t i, double factor, double deviation, const Misfit& of_arm)
+    {
+      const Misfit& own = arm.joints[i].misfit;
+      return JointContext{
+        OwnReference(), false, duration, factor, own.exists() || !is_arm_ ? own : of_arm, deviation
+      };
+    };
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       forward(i, true);
-      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED)));
+      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED, {})));
     }
     const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      CheckedJoint& joint = arm.joints[i];
-      joint.why_not = joint.why_not.empty() ? common.misfit : joint.why_not;
-      const Verdict verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i]));
-      joint.is_judged = verdict.judged;
-      joint.why_not = verdict.judged ? "" : joint.why_not.empty() ? verdict.reason : joint.why_not;
+      arm.joints[i].verdict =
+          judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i], common.misfit));
     }
   }
 
@@ -147,6 +149,7 @@ private:
   }
 
   const std::vector<Parameters>& parameters_;
+  const bool is_arm_;  // else joints by themselves
   std::vector<MotionDifferentiator> differentiators_;
   std::vector<std::unique_ptr<JointEvidence>> joints_;
 };
@@ -307,7 +310,7 @@ bool RecordingCheck::isUsable() const
                      [](const CheckedArm& arm)
                      {
                        return std::any_of(arm.joints.begin(), arm.joints.end(),
-                                          [](const CheckedJoint& joint) { return joint.is_judged; });
+                                          [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
                      });
 }
 

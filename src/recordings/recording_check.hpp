@@ -7,6 +7,7 @@
 #include "recordings/arm_recording.hpp"
 
 #include "tracking/stream_timing.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -31,8 +32,8 @@ struct CheckedJoint
   FittedFactor time_factor;
   FittedFactor lag;
   std::vector<RecordingFinding> findings;
-  bool is_judged{};     ///< as `joint_twin compare` judges it
-  std::string why_not;  ///< in a sentence; empty: it is judged
+  Misfit misfit;    ///< of its rows
+  Verdict verdict;  ///< as that of `joint_twin compare`
 };
 
 /// How well the load of an arm explains the currents.

@@ -262,10 +262,10 @@ void TrackerNode::updateFit(const ArmSample& sample)
   }
   next_fit_ = time + FIT_PERIOD;
   const bool settled = fit_->isSettled();
-  const std::vector<std::string> reasons = fit_->whyNotJudged();
+  const std::vector<Misfit> misfits = fit_->whyNotJudged();
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joints_[i]->setMisfit(reasons[i], settled);
+    joints_[i]->setMisfit(misfits[i], settled);
   }
 }
 
@@ -302,16 +302,12 @@ void TrackerNode::judge(const ros::WallTime& now)
     return;
   }
   next_verdict_ = now + ros::WallDuration(VERDICT_PERIOD);
-  std::vector<MeasuredFriction> frictions;
+  std::vector<VerdictWatch*> verdicts;
   for (const auto& joint : joints_)
   {
-    frictions.push_back(joint->measuredFriction());
+    verdicts.push_back(&joint->verdict());
   }
-  const ArmFriction arm = commonFriction(frictions, repeat_tolerance_);
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints_[i]->judgeEvidence(arm.factors[i], arm.deviations[i], arm.misfit);
-  }
+  judgeTogether(verdicts, repeat_tolerance_);
 }
 
 void TrackerNode::look()

@@ -160,14 +160,15 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
       number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
-    arm.misfit =
-        "The effort of several joints holds no friction: it is a modelled or commanded torque, not a measured one.";
+    arm.misfit = { Reason::NO_FRICTION,
+                   "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "
+                   "measured one" };
   }
   else if (number(&MeasuredFriction::is_below_faults) >= MIN_BELOW_FAULTS)
   {
-    arm.misfit =
-        "Several joints show less friction than any fault leaves: the arm is led by hand or carried, or gains or "
-        "ratios are others than configured.";
+    arm.misfit = { Reason::LESS_THAN_FAULTS,
+                   "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
+                   "gains or ratios are others than configured" };
   }
   return arm;
 }

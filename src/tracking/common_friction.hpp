@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tracking/reason.hpp"
+
 namespace hjt
 {
 class Tracker;
@@ -44,7 +46,7 @@ struct ArmFriction
   double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
   std::vector<JointGroup> groups;
-  std::string misfit;  ///< why nothing can be judged of any joint, in a sentence; empty: it can
+  Misfit misfit;  ///< of all joints
 };
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that

@@ -60,41 +60,40 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
   return 0.0;
 }
 
-using Gap = std::pair<FrictionGap, std::string>;  // and in a sentence
+using Gap = std::pair<Reason, std::string>;  // and in a sentence
 
 /// Why points show no factor.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  constexpr double LEAST_MOTION = 0.02;  // [rad]
   const std::string common = is_to_own ? " at the speeds that the reference has too" : "";
   if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
   {
-    return { FrictionGap::AT_REST, "The joint does not move." };
+    return { Reason::AT_REST, "The joint does not move." };
   }
   if (points.empty() && !evidence.friction().points().empty())
   {
-    return { FrictionGap::OTHER_SPEEDS, "The reference has none of the speeds of this recording." };
+    return { Reason::NO_REFERENCE, "The reference has none of the speeds of this recording." };
   }
   if (points.empty())
   {
-    return { FrictionGap::NO_STEADY_MOTION, "The joint never moves steadily for long enough to measure its friction." };
+    return { Reason::NO_STEADY_MOTION, "The joint never moves steadily for long enough to measure its friction." };
   }
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
-    return { FrictionGap::ONE_DIRECTION,
+    return { Reason::ONE_DIRECTION,
              "The joint moves one way only" + common + ": friction and load cannot be separated." };
   }
   if (points.size() < MIN_POINTS)
   {
-    return { FrictionGap::ONE_SPEED,
+    return { Reason::ONE_SPEED,
              "The joint moves at one speed only" + common + ": how sure its friction is cannot be told." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {
-    return { FrictionGap::TOO_SHORT, "Too few rows show the joint's friction: it moves steadily for less than " +
-                                         rounded(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
+    return { Reason::TOO_SHORT, "Too few rows show the joint's friction: it moves steadily for less than " +
+                                    rounded(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
   }
-  return {};
+  return { Reason::SOUND, "" };
 }
 
 /// Why a factor that the points show is not that of a drive.
@@ -102,30 +101,30 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
 {
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
   {
-    return { FrictionGap::NO_FRICTION,
+    return { Reason::NO_FRICTION,
              "The effort holds no friction (" + rounded(factor.value, 2) +
                  " times the expected one): it is a modelled or commanded torque, or something else carries the "
                  "joint." };
   }
   if (factor.is_below_faults)
   {
-    return { FrictionGap::BELOW_FAULTS,
+    return { Reason::LESS_THAN_FAULTS,
              "Friction is " + factorText(factor) +
                  " times the expected one, less than any fault leaves of it: the arm is led by hand or held, or gain "
                  "or ratio are others than configured." };
   }
   if (const double way = impossibleWay(points); way != 0.0)
   {
-    return { FrictionGap::PUSHES, std::string("Friction would push the joint along in ") +
-                                      (way > 0.0 ? "positive" : "negative") +
-                                      " motion, which it cannot: " + wrongLoad(load) };
+    return { Reason::LOAD_WRONG, std::string("Friction would push the joint along in ") +
+                                     (way > 0.0 ? "positive" : "negative") +
+                                     " motion, which it cannot: " + wrongLoad(load) };
   }
   if (!(factor.high() < factor.value * std::exp(WIDEST)))
   {
-    return { FrictionGap::SCATTER, "The rows scatter too much to know the friction: " + factorText(factor) +
-                                       " times the expected one; " + wrongLoad(load) };
+    return { Reason::FRICTION_SCATTER, "The rows scatter too much to know the friction: " + factorText(factor) +
+                                           " times the expected one; " + wrongLoad(load) };
   }
-  return {};
+  return { Reason::SOUND, "" };
 }
 
 /// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as many
@@ -189,7 +188,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
   FrictionRatio ratio = has_own ? evidence.friction().ratioTo(context.own.friction) : evidence.friction().ratio();
   FrictionFactor factor;
   factor.is_to_own = has_own || context.is_identified;
-  std::tie(factor.gap, factor.why_not) = whyNone(ratio.points, evidence, has_own);
+  std::tie(factor.reason, factor.why_not) = whyNone(ratio.points, evidence, has_own);
   if (!factor.isJudged())
   {
     return factor;
@@ -200,7 +199,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
   constexpr double SURE = 2.0;  // standard deviations
   factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
                            factor.value + SURE * factor.deviation * std::max(factor.value, NO_FRICTION) < 1.0;
-  std::tie(factor.gap, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());
+  std::tie(factor.reason, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());
   return factor;
 }
 
@@ -244,57 +243,96 @@ OwnReference ownReference(const std::vector<SoundFriction>& recordings)
   return own;
 }
 
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
+namespace
 {
-  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
+std::string frictionText(const FrictionFactor& factor, const JointEvidence& evidence, const JointContext& context,
+                         const Finding& finding, double less, double more)
+{
+  std::string text = "Friction is " + factorText(factor) + " times " +
+                     (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
+                     (context.arm_friction == 1.0 ?
+                          "" :
+                          ", " + rounded(factor.value / context.arm_friction, 2) + " times what the " +
+                              rounded(context.arm_friction, 2) + " times that joints of the arm have in common make") +
+                     " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
+                     " counts as sound).";
+  if (finding.level != VerdictLevel::OK)
+  {
+    const auto name = [](const WeightedCause& cause) { return causeName(cause.cause); };
+    text += (evidence.assessor().signatures().signatures.empty() ? std::string() :
+             finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
+                                      " Possible faults: " + joined(finding.causes, ", ", name) + ".") +
+            " Other causes: grease at another temperature, another preload, a wrong gain.";
+  }
+  if (context.own.is_unjudged)
+  {
+    text += " The reference did not judge this joint's friction, so it is no reference of it.";
+  }
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
+  text += std::isfinite(context.own.temperature) ?
+              ", the reference at " + rounded(context.own.temperature, 0) +
+                  " degC; the twin's law of friction makes up for the difference." :
+              ".";
+  return text + " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
+         " to " + rounded(points.back().speed, 2) + " rad/s.";
+}
+
+void nameCauses(const SignatureSet& signatures, double way, Finding& finding)
+{
+  constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
+  const std::vector<Cause> causes = causesThatMove(signatures, ScalarIndicator::RUNNING_TORQUE, way, MIN_CHANGE);
+  for (const Cause cause : causes)
+  {
+    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
+  }
+}
+}  // namespace
+
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
+                      Verdict& verdict)
+{
+  Finding finding;
+  finding.subject = FindingSubject::FRICTION;
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
+  if (!points.empty())
+  {
+    verdict[Figure::LOWEST_SPEED] = points.front().speed;
+    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
+  }
+  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
   const FrictionFactor factor = frictionFactor(evidence, context);
-  finding.text = factor.why_not;
+  verdict.friction_text = factor.why_not;
+  finding.reason = factor.reason;
   if (!factor.isJudged())
   {
     return finding;
   }
   if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
   {
-    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
-                   " times the reference's, more than temperature makes: gain or unit of the currents are not the "
-                   "configured ones.";
+    finding.reason = Reason::COMMON_FRICTION;
+    verdict.friction_text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
+                            " times the reference's, more than temperature makes: gain or unit of the currents are not "
+                            "the configured ones.";
     return finding;
   }
   const double of_kind = parameters.comparison.friction_tolerance;
   const double more = factor.is_to_own ? MORE_THAN_OWN : of_kind;
   const double less = factor.is_to_own ? LESS_THAN_OWN : of_kind;
-  finding.judged = true;
   finding.level = levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
   const double value = factor.value / context.arm_friction;
-  finding.text =
-      "Friction is " + factorText(factor) + " times " +
-      (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
-      (context.arm_friction == 1.0 ? "" :
-                                     ", " + rounded(value, 2) + " times what the " + rounded(context.arm_friction, 2) +
-                                         " times that joints of the arm have in common make") +
-      " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
-      " counts as sound).";
-  if (finding.level != HealthLevel::OK)
+  if (finding.level != VerdictLevel::OK)
   {
-    constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
-    finding.causes = causesThatMove(evidence.assessor().signatures(), ScalarIndicator::RUNNING_TORQUE,
-                                    value > 1.0 ? 1.0 : -1.0, MIN_CHANGE);
-    finding.text += (finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
-                                              " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
-                    " Other causes: grease at another temperature, another preload, a wrong gain.";
+    finding.reason = Reason::FRICTION;
+    nameCauses(evidence.assessor().signatures(), value > 1.0 ? 1.0 : -1.0, finding);
   }
-  if (context.own.is_unjudged)
-  {
-    finding.text += " The reference did not judge this joint's friction, so it is no reference of it.";
-  }
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  finding.text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
-  finding.text += std::isfinite(context.own.temperature) ?
-                      ", the reference at " + rounded(context.own.temperature, 0) +
-                          " degC; the twin's law of friction makes up for the difference." :
-                      ".";
-  finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
-                  " to " + rounded(points.back().speed, 2) + " rad/s.";
+  verdict[factor.is_to_own ? Figure::FRICTION_OF_OWN : Figure::FRICTION_OF_TWIN] = factor.value;
+  verdict[Figure::FRICTION_SCATTER] = factor.scatter;
+  verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
+  verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;
+  verdict.friction = { value, factor.low() / context.arm_friction, factor.high() / context.arm_friction, true };
+  verdict.friction_text = frictionText(factor, evidence, context, finding, less, more);
   return finding;
 }
 }  // namespace hjt

@@ -7,28 +7,16 @@
 #include <vector>
 
 #include "tracking/joint_evidence.hpp"
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
 struct JointContext;
 struct Finding;
+struct Verdict;
 struct OwnReference;
 
-/// Why the friction of a joint is not judged.
-enum class FrictionGap
-{
-  NONE,  ///< it is
-  AT_REST,
-  NO_STEADY_MOTION,
-  OTHER_SPEEDS,  ///< the reference has none of these speeds
-  ONE_DIRECTION,
-  ONE_SPEED,
-  TOO_SHORT,
-  NO_FRICTION,   ///< the effort holds none: a modelled torque
-  BELOW_FAULTS,  ///< less than any fault leaves: led by hand, held, another gain
-  PUSHES,        ///< it would push the joint along
-  SCATTER        ///< the rows scatter too much: the load is another
-};
+constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
 
 /// Friction of a joint as a multiple of its own when sound, or of the twin's, with what is known of its error
 /// (docs/compare.md).
@@ -39,10 +27,10 @@ struct FrictionFactor
   double scatter{};                                          ///< the part of it that the rows' scatter makes [-]
   bool is_to_own{};                                          ///< a multiple of the joint's own, else of the twin's
   bool is_below_faults{};                                    ///< less than any fault leaves of it
-  FrictionGap gap{};
-  std::string why_not;  ///< the gap in a sentence; empty: none
+  Reason reason{ Reason::SOUND };                            ///< why it is not judged; SOUND: it is
+  std::string why_not;                                       ///< the same in a sentence; empty: it is judged
 
-  bool isJudged() const { return gap == FrictionGap::NONE; }
+  bool isJudged() const { return reason == Reason::SOUND; }
   /// Ends of the 95 % interval.
   double low() const { return value * std::exp(-halfWidth()); }
   double high() const { return value * std::exp(halfWidth()); }
@@ -71,8 +59,9 @@ struct SoundFriction
 /// Means at the speeds of all, and by how much the recordings differ. None: it is not known.
 OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
-/// WARN where the interval clears the bound.
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
+/// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
+                      Verdict& verdict);
 
 /// What to say of a load that is not the joint's.
 const char* wrongLoad(LoadOrigin load);

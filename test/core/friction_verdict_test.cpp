@@ -17,9 +17,11 @@ namespace hjt
 {
 namespace
 {
+using testing::Contains;
 using testing::DoubleEq;
 using testing::Each;
 using testing::ElementsAre;
+using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -93,11 +95,15 @@ public:
 
   Finding judged(double factor, const JointContext& context)
   {
-    return judgeFriction(evidence(swing, 60.0, factor), parameters_, context);
+    verdict_ = Verdict();
+    return judgeFriction(evidence(swing, 60.0, factor), parameters_, context, verdict_);
   }
+
+  const Verdict& verdict() const { return verdict_; }  ///< that holds what was judged last
 
 private:
   Parameters parameters_;
+  Verdict verdict_;
   MotionDriven twin_;
   JointEvidence evidence_;
 };
@@ -123,26 +129,27 @@ protected:
     return context;
   }
 
-  FrictionGap gap(const Motion& motion, double seconds, double factor, const JointContext& context = {},
-                  double more = 0.0)
+  Reason gap(const Motion& motion, double seconds, double factor, const JointContext& context = {}, double more = 0.0)
   {
     return gapOf(joint_.evidence(motion, seconds, factor, more), context);
   }
 
   /// That of evidence, which is never a fault.
-  FrictionGap gapOf(const JointEvidence& evidence, const JointContext& context)
+  Reason gapOf(const JointEvidence& evidence, const JointContext& context)
   {
     const FrictionFactor factor = frictionFactor(evidence, context);
-    const Finding finding = judgeFriction(evidence, joint_.parameters(), context);
-    EXPECT_EQ(finding.judged, factor.gap == FrictionGap::NONE);
-    if (!finding.judged)
+    Verdict verdict;
+    const Finding finding = judgeFriction(evidence, joint_.parameters(), context, verdict);
+    EXPECT_EQ(finding.reason, factor.reason);
+    EXPECT_EQ(finding.level == VerdictLevel::NOT_JUDGED, factor.reason != Reason::SOUND);
+    if (!factor.isJudged())
     {
-      EXPECT_EQ(finding.level, HealthLevel::OK);
       EXPECT_THAT(finding.causes, IsEmpty());
-      EXPECT_EQ(finding.text, factor.why_not);
-      EXPECT_THAT(finding.text, Not(IsEmpty()));
+      EXPECT_EQ(verdict.friction_text, factor.why_not);
+      EXPECT_THAT(verdict.friction_text, Not(IsEmpty()));
+      EXPECT_FALSE(verdict.friction.has_interval);
     }
-    return factor.gap;
+    return factor.reason;
   }
 
   WornJoint& joint_;
@@ -160,25 +167,31 @@ TEST_F(FrictionVerdict, WarnsWhereTheIntervalClearsTheBound)
 {
   const JointContext context = witnessed(ownReference({ sound() }));
   const auto level = [&](double factor) { return joint_.judged(factor, context).level; };
-  EXPECT_EQ(level(1.0), HealthLevel::OK);
-  EXPECT_EQ(level(1.10), HealthLevel::OK);
-  EXPECT_EQ(level(0.90), HealthLevel::OK);
+  EXPECT_EQ(level(1.0), VerdictLevel::OK);
+  EXPECT_EQ(level(1.10), VerdictLevel::OK);
+  EXPECT_EQ(level(0.90), VerdictLevel::OK);
   const Finding more = joint_.judged(1.30, context);
-  EXPECT_EQ(more.level, HealthLevel::WARN);
-  EXPECT_THAT(more.text, HasSubstr("times this joint's own when it was sound"));
-  EXPECT_THAT(more.causes, testing::Contains(causeOf(FaultKind::LUBRICANT_DEGRADATION)));
-  EXPECT_EQ(level(0.70), HealthLevel::WARN);
-  EXPECT_EQ(level(3.0), HealthLevel::ERROR);
+  EXPECT_EQ(more.level, VerdictLevel::WARN);
+  EXPECT_EQ(more.reason, Reason::FRICTION);
+  EXPECT_THAT(joint_.verdict().friction_text, HasSubstr("times this joint's own when it was sound"));
+  EXPECT_THAT(more.causes, Contains(Field(&WeightedCause::cause, causeOf(FaultKind::LUBRICANT_DEGRADATION))));
+  const JudgedFriction& friction = joint_.verdict().friction;
+  EXPECT_NEAR(friction.factor, 1.30, 0.01);
+  EXPECT_TRUE(friction.has_interval);
+  EXPECT_GT(friction.lower, 1.05);
+  EXPECT_GT(friction.upper, friction.factor);
+  EXPECT_EQ(level(0.70), VerdictLevel::WARN);
+  EXPECT_EQ(level(3.0), VerdictLevel::ERROR);
 }
 
 TEST_F(FrictionVerdict, WithoutAReferenceDrivesOfOneKindDiffer)
 {
-  EXPECT_EQ(joint_.judged(1.30, {}).level, HealthLevel::OK);
-  EXPECT_EQ(joint_.judged(0.75, {}).level, HealthLevel::OK);
-  EXPECT_EQ(joint_.judged(1.70, {}).level, HealthLevel::WARN);
+  EXPECT_EQ(joint_.judged(1.30, {}).level, VerdictLevel::OK);
+  EXPECT_EQ(joint_.judged(0.75, {}).level, VerdictLevel::OK);
+  EXPECT_EQ(joint_.judged(1.70, {}).level, VerdictLevel::WARN);
   JointContext context;
   context.is_identified = true;
-  EXPECT_EQ(joint_.judged(1.30, context).level, HealthLevel::WARN) << "the twin's friction is this joint's own";
+  EXPECT_EQ(joint_.judged(1.30, context).level, VerdictLevel::WARN) << "the twin's friction is this joint's own";
 }
 
 TEST_F(FrictionVerdict, TheIntervalHoldsWhatIsUncertain)
@@ -231,8 +244,8 @@ TEST_F(FrictionVerdict, ReferencesThatDifferWidenTheInterval)
   EXPECT_EQ(agreeing.recordings, 3U);
   EXPECT_NEAR(agreeing.recordings_deviation, 0.01, 0.002);
   EXPECT_NEAR(differing.recordings_deviation, 0.2, 0.02);
-  EXPECT_EQ(joint_.judged(1.25, witnessed(agreeing)).level, HealthLevel::WARN);
-  EXPECT_EQ(joint_.judged(1.25, witnessed(differing)).level, HealthLevel::OK);
+  EXPECT_EQ(joint_.judged(1.25, witnessed(agreeing)).level, VerdictLevel::WARN);
+  EXPECT_EQ(joint_.judged(1.25, witnessed(differing)).level, VerdictLevel::OK);
   // Three that agree tell more than one.
   const JointEvidence& evidence = joint_.evidence(swing, 60.0, 1.25);
   EXPECT_LT(frictionFactor(evidence, witnessed(agreeing)).deviation,
@@ -249,30 +262,30 @@ TEST_F(FrictionVerdict, MotionThatShowsNoFrictionIsNotJudged)
     sample.position = 0.4 * time + 0.2 / 2.3 * std::sin(2.3 * time) - 10.0;
     return sample;
   };
-  EXPECT_EQ(gap(still, 60.0, 1.0), FrictionGap::AT_REST);
-  EXPECT_EQ(gap(swing, 0.2, 1.0), FrictionGap::NO_STEADY_MOTION);
-  EXPECT_EQ(gap(forward, 60.0, 2.0), FrictionGap::ONE_DIRECTION);
-  EXPECT_EQ(gap(between(0.5), 60.0, 2.0), FrictionGap::ONE_SPEED);
-  EXPECT_EQ(gap(swing, 3.9, 2.0), FrictionGap::TOO_SHORT);
-  EXPECT_EQ(gap(swing, 60.0, 1.0), FrictionGap::NONE);
+  EXPECT_EQ(gap(still, 60.0, 1.0), Reason::AT_REST);
+  EXPECT_EQ(gap(swing, 0.2, 1.0), Reason::NO_STEADY_MOTION);
+  EXPECT_EQ(gap(forward, 60.0, 2.0), Reason::ONE_DIRECTION);
+  EXPECT_EQ(gap(between(0.5), 60.0, 2.0), Reason::ONE_SPEED);
+  EXPECT_EQ(gap(swing, 3.9, 2.0), Reason::TOO_SHORT);
+  EXPECT_EQ(gap(swing, 60.0, 1.0), Reason::SOUND);
 }
 
 TEST_F(FrictionVerdict, SpeedsThatTheReferenceLacksAreNotJudged)
 {
   const JointContext slow = witnessed(ownReference({ sound(1.0, between(0.02)) }));
-  EXPECT_EQ(gap(between(1.5), 60.0, 2.0, slow), FrictionGap::OTHER_SPEEDS);
-  EXPECT_EQ(gap(swing, 60.0, 1.0, witnessed(ownReference({ sound() }))), FrictionGap::NONE);
+  EXPECT_EQ(gap(between(1.5), 60.0, 2.0, slow), Reason::NO_REFERENCE);
+  EXPECT_EQ(gap(swing, 60.0, 1.0, witnessed(ownReference({ sound() }))), Reason::SOUND);
 }
 
 TEST_F(FrictionVerdict, WhatNoFaultMakesIsNoFault)
 {
-  EXPECT_EQ(gap(swing, 60.0, 0.0), FrictionGap::NO_FRICTION);
-  EXPECT_EQ(gap(swing, 60.0, 0.3), FrictionGap::BELOW_FAULTS);
-  EXPECT_EQ(gap(swing, 60.0, -1.0), FrictionGap::BELOW_FAULTS);
+  EXPECT_EQ(gap(swing, 60.0, 0.0), Reason::NO_FRICTION);
+  EXPECT_EQ(gap(swing, 60.0, 0.3), Reason::LESS_THAN_FAULTS);
+  EXPECT_EQ(gap(swing, 60.0, -1.0), Reason::LESS_THAN_FAULTS);
   const FrictionPoint point = joint_.evidence(swing, 60.0, 1.0).friction().points().back();
-  EXPECT_EQ(gap(swing, 60.0, 1.0, {}, 1.5 * point.measured / joint_.gain()), FrictionGap::PUSHES);
+  EXPECT_EQ(gap(swing, 60.0, 1.0, {}, 1.5 * point.measured / joint_.gain()), Reason::LOAD_WRONG);
   const auto chance = [](double time) { return std::fmod(time, 20.0) < 10.0 ? 0.1 : 1.9; };
-  EXPECT_EQ(gapOf(joint_.evidence(swing, 20.0, chance), {}), FrictionGap::SCATTER);
+  EXPECT_EQ(gapOf(joint_.evidence(swing, 20.0, chance), {}), Reason::FRICTION_SCATTER);
 }
 
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
@@ -280,8 +293,8 @@ TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
   JointContext context;
   context.own.is_unjudged = true;
   const Finding finding = joint_.judged(1.3, context);
-  EXPECT_EQ(finding.level, HealthLevel::OK);
-  EXPECT_THAT(finding.text, HasSubstr("The reference did not judge this joint's friction"));
+  EXPECT_EQ(finding.level, VerdictLevel::OK);
+  EXPECT_THAT(joint_.verdict().friction_text, HasSubstr("The reference did not judge this joint's friction"));
 }
 
 std::vector<MeasuredFriction> jointsWith(const std::vector<double>& ratios)
@@ -304,7 +317,7 @@ TEST(CommonFriction, WhatAGroupSharesIsNoJointsFault)
   EXPECT_THAT(arm.factors, ElementsAre(1.0, 1.0, 1.0, DoubleEq(1.17), DoubleEq(1.17), DoubleEq(1.17)))
       << "5 % may be chance";
   EXPECT_THAT(arm.deviations, Each(0.0)) << "each joint has its group as witness";
-  EXPECT_THAT(arm.misfit, IsEmpty());
+  EXPECT_THAT(arm.misfit.clause, IsEmpty());
 }
 
 TEST(CommonFriction, OneFaultyJointMovesNoGroup)
@@ -321,11 +334,13 @@ TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
 {
   std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 });
   joints[0].is_below_faults = true;
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit, IsEmpty()) << "one alone may have another gain";
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, IsEmpty()) << "one alone may have another gain";
   joints[2].is_below_faults = true;
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit, HasSubstr("led by hand"));
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("led by hand"));
   joints[0].is_none = joints[2].is_none = true;
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit, HasSubstr("modelled or commanded torque"));
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::NO_FRICTION);
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));
 }
 }  // namespace
 }  // namespace hjt

@@ -158,7 +158,7 @@ class Check(tool.ToolTest):
         self.assertIn("--time-scale 2", mended["next"][0])
         arm = self.succeed_json("compare", "fast.csv", "--arm", "ur5", "--report", "report")
         self.assertEqual((arm["level"], {joint["level"] for joint in arm["joints"]}), ("NOT JUDGED", {"NOT JUDGED"}))
-        self.assertIn("--time-scale 2", arm["reason"])
+        self.assertIn("--time-scale 2", arm["text"])
         done = self.succeed("follow", "fast.csv", "--arm", "ur5")
         self.assertIn("--time-scale 2", done.stderr)
         self.assertNotIn("--time-scale", self.succeed("follow", "fast.csv", "--arm", "ur5", "--time-scale", 2).stderr)
@@ -176,12 +176,17 @@ class Check(tool.ToolTest):
         self.assertEqual([[finding["kind"] for finding in joint["findings"]] for joint in found["joints"]],
                          [["effort_constant"], ["velocity_sign"], ["lag"], ["velocity_zero"], [], ["at_rest"]])
         self.assertEqual([joint["judged"] for joint in found["joints"]], [False, False, False, True, True, False])
+        reasons = ["EFFORT_CONSTANT", "VELOCITY_SIGN", "VELOCITY_LAG", "SOUND", "SOUND", "NO_STEADY_MOTION"]
+        self.assertEqual([joint["verdict"]["reason"] for joint in found["joints"]], reasons)
         self.assertAlmostEqual(found["joints"][2]["velocity_lag"], 0.16, delta=0.01)
         self.lines("arm.csv")
         arm = self.succeed_json("compare", "arm.csv", "--arm", "ur5", "--report", "report")
         levels = [joint["level"] for joint in arm["joints"]]
         self.assertEqual(levels[:3], ["NOT JUDGED"] * 3)
-        self.assertIn("effort is zero", arm["reason"] + arm["joints"][0]["reason"])
+        self.assertEqual([joint["verdict"]["reason"] for joint in arm["joints"]], reasons)
+        self.assertEqual([joint["verdict"]["friction_measured"] for joint in arm["joints"]],
+                         [False] * 3 + [True] * 2 + [False])
+        self.assertIn("effort is zero", arm["text"] + arm["joints"][0]["verdict"]["text"])
         done = self.succeed("follow", "arm.csv", "--arm", "ur5")
         for part in ("base: effort is zero", "shoulder: angle and velocity of opposite sign", "elbow: velocity 0.1"):
             self.assertIn(part, done.stderr)

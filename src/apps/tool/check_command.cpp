@@ -12,6 +12,7 @@
 #include "output/interrupt.hpp"
 #include "output/json.hpp"
 #include "output/text_table.hpp"
+#include "recordings/comparison_files.hpp"
 #include "recordings/recording_check.hpp"
 
 #include "base/joined.hpp"
@@ -23,12 +24,14 @@ namespace
 {
 bool stops(const std::vector<RecordingFinding>& findings)
 {
-  return std::any_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) { return finding.stops; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const RecordingFinding& finding) { return finding.stops.has_value(); });
 }
 
 bool isUsable(const CheckedArm& arm)
 {
-  return std::any_of(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& joint) { return joint.is_judged; });
+  return std::any_of(arm.joints.begin(), arm.joints.end(),
+                     [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
 }
 
 /// Commands to run next, ready to paste: with nothing that was not tried.
@@ -50,8 +53,8 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
   const std::string& file = options.recording;
   if (arm.taken.empty())
   {
-    const auto joint =
-        std::find_if(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& one) { return one.is_judged; });
+    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
+                                    [](const CheckedJoint& one) { return one.verdict.isJudged(); });
     return joint == arm.joints.end() ? std::vector<std::string>() :
                                        std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
                                                                  joint->name + reading + " --report report" };
@@ -175,7 +178,7 @@ void printLine(const char* label, const std::string& text)
 std::string textOfFinding(const CheckedArm& arm, const CheckedJoint& joint)
 {
   const auto first = std::find_if(joint.findings.begin(), joint.findings.end(),
-                                  [](const RecordingFinding& finding) { return finding.stops; });
+                                  [](const RecordingFinding& finding) { return finding.stops.has_value(); });
   if (first != joint.findings.end())
   {
     return first->text;
@@ -184,7 +187,8 @@ std::string textOfFinding(const CheckedArm& arm, const CheckedJoint& joint)
   {
     return "see above";
   }
-  return joint.findings.empty() ? (joint.is_judged ? "fits" : "not judged, see below") : joint.findings.front().text;
+  return joint.findings.empty() ? (joint.verdict.isJudged() ? "fits" : "not judged, see below") :
+                                  joint.findings.front().text;
 }
 
 void printJoints(const CheckedArm& arm)
@@ -217,8 +221,10 @@ void printJudged(const CheckedArm& arm)
   std::map<std::string, std::vector<std::string>> open;
   for (const CheckedJoint& joint : arm.joints)
   {
+    const Verdict& verdict = joint.verdict;
     const bool is_said = stops(arm.findings) || stops(joint.findings);
-    (joint.is_judged ? judged : open[is_said ? "as said above" : joint.why_not]).push_back(joint.name);
+    (verdict.isJudged() ? judged : open[is_said ? "as said above" : findingText(verdict, verdict.findings.front())])
+        .push_back(joint.name);
   }
   printLine("judged", judged.empty() ? "nothing" : "friction and current of " + joined(judged));
   for (const auto& [reason, names] : open)
@@ -280,7 +286,7 @@ Json findingsOf(const std::vector<RecordingFinding>& findings)
   std::vector<Json> all;
   for (const RecordingFinding& finding : findings)
   {
-    all.push_back(Json{ { "kind", finding.kind }, { "text", finding.text }, { "stops", finding.stops } });
+    all.push_back(Json{ { "kind", finding.kind }, { "text", finding.text }, { "stops", finding.stops.has_value() } });
   }
   return all;
 }
@@ -304,8 +310,8 @@ std::vector<Json> jointsOf(const CheckedArm& arm)
                            { "torque_per_current_stated", joint.stated_gain },
                            { "time_factor", joint.time_factor.value },
                            { "velocity_lag", joint.lag.value },
-                           { "judged", joint.is_judged },
-                           { "why_not", joint.why_not },
+                           { "judged", joint.verdict.isJudged() },
+                           { "verdict", verdictFields(joint.verdict) },
                            { "findings", findingsOf(joint.findings) } });
   }
   return joints;
