@@ -101,7 +101,7 @@ class Judging
 {
 public:
   Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
-    : parameters_(parameters), differentiators_(parameters.size())
+    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM), differentiators_(parameters.size())
   {
     for (const Parameters& of : parameters)
     {
@@ -130,10 +130,10 @@ public:
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       CheckedJoint& joint = arm.joints[i];
-      joint.why_not = joint.why_not.empty() ? common.misfit : joint.why_not;
+      joint.why_not = is_arm_ && joint.why_not.empty() ? common.misfit : joint.why_not;
       const Verdict verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i]));
       joint.is_judged = verdict.judged;
-      joint.why_not = verdict.judged ? "" : joint.why_not.empty() ? verdict.reason : joint.why_not;
+      joint.why_not = verdict.judged ? "" : joint.why_not.empty() ? verdict.findings.front().text : joint.why_not;
     }
   }
 
@@ -147,6 +147,7 @@ private:
   }
 
   const std::vector<Parameters>& parameters_;
+  const bool is_arm_;  // else joints by themselves
   std::vector<MotionDifferentiator> differentiators_;
   std::vector<std::unique_ptr<JointEvidence>> joints_;
 };

@@ -65,7 +65,6 @@ using Gap = std::pair<FrictionGap, std::string>;  // and in a sentence
 /// Why points show no factor.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  constexpr double LEAST_MOTION = 0.02;  // [rad]
   const std::string common = is_to_own ? " at the speeds that the reference has too" : "";
   if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
   {

@@ -14,6 +14,8 @@ struct JointContext;
 struct Finding;
 struct OwnReference;
 
+constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
+
 /// Why the friction of a joint is not judged.
 enum class FrictionGap
 {

@@ -108,7 +108,9 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
            wrongLoad(evidence.loadOrigin());
   }
   constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction, apart from what was touched
-  if (evidence.reach().touched_rows > 0 && evidence.friction().blocks().count() < MIN_BLOCKS)
+  const MotionReach& reach = evidence.reach();
+  if (reach.touched_rows > 0 && reach.most_angle - reach.least_angle > LEAST_MOTION &&
+      evidence.friction().blocks().count() < MIN_BLOCKS)
   {
     return sentence(contactText(evidence.contact().largest()));
   }
