@@ -140,7 +140,7 @@ class Compare(tool.ToolTest):
             found = self.succeed_json("compare", name, *OPTIONS, *GAIN, "--reference", *references)
             return found["friction_factor"], found["verdict"]["level"]
 
-        for name, friction in (("low", 0.85), ("usual", 1.0), ("high", 1.15), ("again", 1.01), ("worn", 1.4)):
+        for name, friction in (("low", 0.75), ("usual", 1.0), ("high", 1.25), ("again", 1.01), ("worn", 1.4)):
             robot.write_bag(self.path(f"{name}.bag"), 60.0, friction)
             self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name)
         one, level = factor_of("worn.bag", "usual")
