@@ -96,6 +96,19 @@ def draw_course(width, data):
     return figure
 
 
+def draw_factor(axes, points, record):
+    """Band of the factor's interval about the mean of the measured friction, each way."""
+    factor = record["friction_factor"]
+    if factor is None:
+        return
+    mean = record["friction_ratio"] / factor["value"] * points["twin"]
+    label = "95 % interval of the mean"
+    for rows in (points["speed"] < 0.0, points["speed"] > 0.0):
+        axes.fill_between(points["speed"][rows], factor["low"] * mean[rows], factor["high"] * mean[rows], color=RED,
+                          alpha=0.15, lw=0, label=label)
+        label = None
+
+
 def draw_friction(width, data):
     points, curve = data["friction"], data["friction_twin"]
     if points is None:
@@ -115,9 +128,10 @@ def draw_friction(width, data):
               label="twin, same rows")
     axes.errorbar(points["speed"], points["measured"], yerr=points["deviation"], ls="", marker="o", ms=4, color=RED,
                   elinewidth=0.7, label="measured, and its scatter")
+    draw_factor(axes, points, data["record"])
     axes.set_ylim(bottom=min(0.0, np.min(points["measured"] - points["deviation"])))
     axes.set_xlabel("speed [rad/s]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17 if width > 6 else -0.15), ncol=3 if width > 6 else 1)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17 if width > 6 else -0.15), ncol=2 if width > 6 else 1)
     return figure
 
 

@@ -206,6 +206,16 @@ std::size_t ArmDynamics::joints() const noexcept
   return solver_->chain.getNrOfJoints();
 }
 
+double ArmDynamics::mass() const noexcept
+{
+  double mass = 0.0;
+  for (const KDL::Segment& segment : solver_->chain.segments)
+  {
+    mass += segment.getInertia().getMass();
+  }
+  return mass;
+}
+
 void ArmDynamics::torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept
 {
   Solver& solver = *solver_;

@@ -47,6 +47,7 @@ public:
   ArmDynamics(ArmDynamics&&) noexcept;
 
   std::size_t joints() const noexcept;
+  double mass() const noexcept;  ///< of the links from the first to the tip, and the payload [kg]
 
   /// `torques` at the output of each joint that make the motion, > 0 resists positive motion [N.m]. Both have an entry
   /// for each joint.

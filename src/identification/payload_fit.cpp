@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -19,6 +20,7 @@ namespace
 constexpr double MOVING = 0.05;  // [rad/s]
 constexpr double BLOCK = 0.1;    // [s]
 constexpr double OUTLIER = 3.0;  // deviations
+constexpr int PARTS = 10;        // of the time, of which one after the other is left out
 constexpr int PAYLOAD = 4;       // mass and its three moments
 constexpr int NUISANCES = 4;     // of each joint: gain, Coulomb and viscous friction, offset
 /// What each is known to before: mass [kg], moment [kg.m]; gain [-], Coulomb friction [A], viscous [A.s/rad], offset
@@ -50,6 +52,8 @@ public:
       }
     }
   }
+
+  double linksMass() const { return bare_->mass(); }  ///< [kg]
 
   /// Of mass and moments, at each joint, by column [N.m/kg], [N.m/(kg.m)].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns)
@@ -92,7 +96,26 @@ struct Rows
 {
   std::vector<Eigen::Matrix<double, PAYLOAD + NUISANCES, 1>> columns;
   std::vector<double> residuals;
+  std::vector<double> times;  // [s]
 };
+
+/// All but those of one of PARTS parts of the time.
+std::vector<Rows> without(const std::vector<Rows>& rows, int part, double begin, double end)
+{
+  std::vector<Rows> left(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    for (std::size_t k = 0; k < rows[i].times.size(); ++k)
+    {
+      if (static_cast<int>(PARTS * (rows[i].times[k] - begin) / (end - begin)) != part)
+      {
+        left[i].columns.push_back(rows[i].columns[k]);
+        left[i].residuals.push_back(rows[i].residuals[k]);
+      }
+    }
+  }
+  return left;
+}
 
 class Problem
 {
@@ -177,16 +200,22 @@ private:
 
 bool IdentifiedPayload::differs() const
 {
-  return std::abs(mass - configured.mass) > mass_half_width;
+  return std::abs(mass - configured.mass) > std::max(mass_half_width, least_claim);
 }
 
-IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
-                                  const std::vector<std::vector<double>>& predicted, const std::vector<double>& gains)
+Payload IdentifiedPayload::payload() const
 {
-  const std::size_t joints = samples.size();
-  UnitPayloads unit(arm);
-  Eigen::MatrixXd torques(static_cast<Eigen::Index>(joints), PAYLOAD);
-  std::vector<JointMotion> motion(joints);
+  Payload payload;
+  payload.mass = std::max(mass, 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    payload.centre[axis] = payload.mass > 0.0 ? moment[axis] / payload.mass : 0.0;
+  }
+  return payload;
+}
+
+struct PayloadFit::Data
+{
   struct Open
   {
     Eigen::Matrix<double, PAYLOAD + NUISANCES, 1> columns;
@@ -195,68 +224,174 @@ IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<s
     double start{};
     double velocity{};
   };
-  std::vector<Open> open(joints);
-  std::vector<Rows> rows(joints);
-  const auto close = [&](std::size_t i, double time)
+
+  Data(const ArmDescription& arm, std::vector<double> all_gains)
+    : payload(arm.payload)
+    , gains(std::move(all_gains))
+    , unit(arm)
+    , torques(static_cast<Eigen::Index>(gains.size()), PAYLOAD)
+    , motion(gains.size())
+    , open(gains.size())
+    , rows(gains.size())
+    , loads(gains.size())
+    , weights(gains.size())
+  {
+  }
+
+  void close(std::size_t i, double time)
   {
     Open& block = open[i];
     if (block.count > 0 && time > block.start + 0.5 * BLOCK)
     {
       rows[i].columns.push_back(block.columns / block.count);
       rows[i].residuals.push_back(block.residual / block.count);
+      rows[i].times.push_back(block.start);
     }
     block.count = 0;
-  };
-  for (std::size_t k = 0; k < samples.front().size(); ++k)
+  }
+
+  /// That 2 % of the links' masses make, as a mass at the tip, at the joint that weighs it best [kg].
+  double ofLinks() const
   {
-    for (std::size_t i = 0; i < joints; ++i)
+    constexpr double LINKS_SHARE = 0.02;
+    double heaviest = 0.0;
+    double mass = 0.0;
+    for (std::size_t i = 0; i < loads.size(); ++i)
     {
-      motion[i] = { samples[i][k].position, samples[i][k].velocity, samples[i][k].acceleration };
+      if (weights[i] > heaviest)
+      {
+        heaviest = weights[i];
+        mass = LINKS_SHARE * std::sqrt(loads[i] / weights[i]);
+      }
     }
-    const bool moves = std::any_of(motion.begin(), motion.end(),
-                                   [](const JointMotion& joint) { return std::abs(joint.velocity) > MOVING; });
-    if (moves)
+    return mass;
+  }
+
+  Payload payload;
+  std::vector<double> gains;
+  UnitPayloads unit;
+  Eigen::MatrixXd torques;
+  std::vector<JointMotion> motion;
+  std::vector<Open> open;
+  std::vector<Rows> rows;
+  std::vector<double> loads;    // sum of squares [(N.m)^2]
+  std::vector<double> weights;  // of 1 kg at the tip, likewise
+  double moved{};               // [s]
+  double last_time{};
+};
+
+PayloadFit::PayloadFit(const ArmDescription& arm, std::vector<double> gains)
+  : data_(std::make_unique<Data>(arm, std::move(gains)))
+{
+}
+
+PayloadFit::~PayloadFit() = default;
+
+void PayloadFit::add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted)
+{
+  Data& data = *data_;
+  const double step = samples.front().time - data.last_time;
+  data.last_time = samples.front().time;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    data.motion[i] = { samples[i].position, samples[i].velocity, samples[i].acceleration };
+  }
+  const bool moves = std::any_of(data.motion.begin(), data.motion.end(),
+                                 [](const JointMotion& joint) { return std::abs(joint.velocity) > MOVING; });
+  data.moved += moves && step > 0.0 && step < BLOCK ? step : 0.0;
+  if (data.moved > MOST_TIME)
+  {
+    return;
+  }
+  if (moves)
+  {
+    data.unit.torques(data.motion, data.torques);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    const MotionSample& sample = samples[i];
+    Data::Open& block = data.open[i];
+    const bool is_moving = std::abs(sample.velocity) > MOVING;
+    if (sample.after_gap || !is_moving || sample.velocity * block.velocity < 0.0 || sample.time > block.start + BLOCK)
     {
-      unit.torques(motion, torques);
+      data.close(i, sample.time);
     }
-    for (std::size_t i = 0; i < joints; ++i)
+    if (!is_moving)
     {
-      const MotionSample& sample = samples[i][k];
-      Open& block = open[i];
-      const bool is_moving = std::abs(sample.velocity) > MOVING;
-      if (sample.after_gap || !is_moving || sample.velocity * block.velocity < 0.0 || sample.time > block.start + BLOCK)
-      {
-        close(i, sample.time);
-      }
-      if (!is_moving)
-      {
-        continue;
-      }
-      if (block.count == 0)
-      {
-        block = { Eigen::Matrix<double, PAYLOAD + NUISANCES, 1>::Zero(), 0.0, 0, sample.time, sample.velocity };
-      }
-      block.columns.head<PAYLOAD>() += torques.row(static_cast<Eigen::Index>(i)).transpose() / gains[i];
-      block.columns.tail<NUISANCES>() +=
-          Eigen::Vector4d(sample.load / gains[i], std::copysign(1.0, sample.velocity), sample.velocity, 1.0);
-      block.residual += sample.current - predicted[i][k];
-      ++block.count;
+      continue;
+    }
+    if (block.count == 0)
+    {
+      block = { Eigen::Matrix<double, PAYLOAD + NUISANCES, 1>::Zero(), 0.0, 0, sample.time, sample.velocity };
+    }
+    const auto torques = data.torques.row(static_cast<Eigen::Index>(i));
+    block.columns.head<PAYLOAD>() += torques.transpose() / data.gains[i];
+    block.columns.tail<NUISANCES>() +=
+        Eigen::Vector4d(sample.load / data.gains[i], std::copysign(1.0, sample.velocity), sample.velocity, 1.0);
+    block.residual += sample.current - predicted[i];
+    ++block.count;
+    data.loads[i] += sample.load * sample.load;
+    data.weights[i] += torques[0] * torques[0];
+  }
+}
+
+IdentifiedPayload PayloadFit::solve()
+{
+  Data& data = *data_;
+  double begin = std::numeric_limits<double>::infinity();
+  double end = -begin;
+  for (std::size_t i = 0; i < data.rows.size(); ++i)
+  {
+    data.close(i, data.last_time);
+    for (const double time : data.rows[i].times)
+    {
+      begin = std::min(begin, time);
+      end = std::max(end, time + BLOCK);
     }
   }
   Eigen::Vector4d values;
   Eigen::Vector4d half_widths;
-  Problem(std::move(rows)).solve(values, half_widths);
+  Problem(data.rows).solve(values, half_widths);
+  Eigen::Vector4d squares = Eigen::Vector4d::Zero();
+  for (int part = 0; part < PARTS && end > begin; ++part)
+  {
+    Eigen::Vector4d left;
+    Eigen::Vector4d ignored;
+    Problem(without(data.rows, part, begin, end)).solve(left, ignored);
+    squares += (left - values).cwiseAbs2();
+  }
+  half_widths = half_widths.cwiseMax(NORMAL_95 * (squares * (PARTS - 1.0) / PARTS).cwiseSqrt());
 
   IdentifiedPayload found;
-  found.configured = arm.payload;
-  found.mass = arm.payload.mass + values[0];
-  found.mass_half_width = half_widths[0];
+  found.configured = data.payload;
+  found.mass = data.payload.mass + values[0];
+  found.mass_half_width = std::hypot(half_widths[0], NORMAL_95 * data.ofLinks());
+  constexpr double UNLOADED = 0.05;  // of the links' mass: a sound UR5 without a payload shows 0 to 0.8 kg
+  found.least_claim = UNLOADED * data.unit.linksMass();
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     const auto at = static_cast<Eigen::Index>(1 + axis);
-    found.moment[axis] = arm.payload.mass * arm.payload.centre[axis] + values[at];
+    found.moment[axis] = data.payload.mass * data.payload.centre[axis] + values[at];
     found.moment_half_width[axis] = half_widths[at];
   }
   return found;
+}
+
+IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
+                                  const std::vector<std::vector<double>>& predicted, const std::vector<double>& gains)
+{
+  PayloadFit fit(arm, gains);
+  std::vector<MotionSample> at(samples.size());
+  std::vector<double> currents(samples.size());
+  for (std::size_t k = 0; k < samples.front().size(); ++k)
+  {
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      at[i] = samples[i][k];
+      currents[i] = predicted[i][k];
+    }
+    fit.add(at, currents);
+  }
+  return fit.solve();
 }
 }  // namespace hjt

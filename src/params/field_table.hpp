@@ -480,7 +480,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
         ofOthers("share by which a sound joint's torsion may differ from the twin's"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
-        ofOthers("share by which friction and torsion of a sound joint may differ from its own earlier"));
+        ofOthers("share within which torsion repeats and the friction of an arm's joints agrees"));
 
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 },
         ofOthers("must divide solver.rate"));

@@ -36,6 +36,8 @@ public:
   bool isFile() const { return rows_.empty(); }
   const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
+  /// In place of the configured one.
+  void setPayload(const Payload& payload) { arm_.payload = payload; }
   MotionSource source(std::size_t joint) const;        ///< of that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
   /// `telemetry.inertia_in_load` is that of the load that is chosen.

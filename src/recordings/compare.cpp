@@ -10,26 +10,21 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "output/output_file.hpp"
 #include "output/text_table.hpp"
-#include "recordings/arm_recording.hpp"
-#include "recordings/comparison_files.hpp"
-#include "recordings/recording_comparison.hpp"
+#include "recordings/comparison_pass.hpp"
 
 #include "base/joined.hpp"
+#include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "messages/conversions.hpp"
 #include "messages/topics.hpp"
 #include "params/configuration_files.hpp"
-#include "tracking/common_friction.hpp"
-#include "tracking/verdict.hpp"
 
 extern char** environ;
 
@@ -40,41 +35,15 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* PYTHON = "/usr/bin/python3";
-constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
-
-constexpr const char* ARM_FILE = "arm.json";
-
-const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
-  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
-  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
-  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
-  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
-  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
-  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
-  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
-};
-
-/// @throws InputError if one of the files that the page is made of cannot be written to `directory`.
-void prepareDirectory(const ComparisonOptions& options, const std::string& directory, const char* data_file)
-{
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-  {
-    throw InputError(directory + " cannot be made a directory: " + error.message());
-  }
-  for (const char* name : { data_file, REPORT_PAGE })
-  {
-    requireWritable((fs::path(directory) / name).string(), options.force, options.recording);
-  }
-}
-
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
-  std::error_code error;
-  if (fs::equivalent(options.report, options.reference, error))
+  for (const std::string& reference : options.references)
   {
-    throw InputError("--report and --reference are the same directory: the reference would be lost");
+    std::error_code error;
+    if (fs::equivalent(options.report, reference, error))
+    {
+      throw InputError("--report and --reference are the same directory: the reference would be lost");
+    }
   }
 }
 
@@ -103,88 +72,78 @@ void makePage(const std::string& directory)
   }
 }
 
-/// A joint that is being compared, its source, and the directory of its report.
-class JointComparison
+template <typename Member>
+std::optional<double> number(const ComparedJoint& line, Member member)
 {
-public:
-  /// `reference`: directory of an earlier report; empty: none. `is_identified`: the parameters are of this very joint.
-  JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load, const std::string& directory,
-                  const std::string& reference, bool is_identified)
-    : parameters_(recording.parameters(joint))
-    , source_(recording.source(joint))
-    , is_file_(recording.isFile())
-    , directory_(directory)
-    , sound_(reference.empty() ? SoundJoint() : readSoundJoint(reference, parameters_))
-    , is_identified_(is_identified)
-    , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
-    , comparison_(parameters_, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
-  {
-  }
-
-  void update(const MotionSample& sample) { comparison_.update(sample); }
-
-  const JointEvidence& evidence() const { return comparison_.evidence(); }
-
-  MeasuredFriction friction(const Misfit& misfit) const
-  {
-    return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
-  }
-
-  /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparedJoint write(const MotionFindings& found, double arm_friction, const Misfit& misfit,
-                      const std::string& twin_topic)
-  {
-    windows_.close();
-    ComparisonRecord record;
-    record.recording = source_.path;
-    record.joint = source_.joint;
-    record.made_with = MADE_WITH;
-    record.found = found;
-    const MotionReach& reach = evidence().reach();
-    if (is_file_)
-    {
-      record.contents =
-          readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
-      record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
-    }
-    record.verdict =
-        judge(evidence(), parameters_, { sound_.own, is_identified_, found.duration, arm_friction, misfit });
-    ComparedJoint compared;
-    compared.document = writeComparison(directory_, comparison_, parameters_, record);
-    compared.temperature = evidence().temperature();
-    compared.temperature_source = temperatureSource(evidence());
-    compared.rows = reach.rows;
-    compared.current_rms = evidence().currentRms();
-    compared.residual_rms = evidence().residualRms();
-    compared.contents = std::move(record.contents);
-    compared.verdict = std::move(record.verdict);
-    return compared;
-  }
-
-private:
-  const Parameters parameters_;
-  const MotionSource source_;
-  const bool is_file_;
-  const std::string directory_;
-  const SoundJoint sound_;
-  const bool is_identified_;
-  TableFile<JudgedWindow> windows_;
-  RecordingComparison comparison_;
-};
+  return line.friction ? std::make_optional(std::invoke(member, *line.friction)) : std::nullopt;
+}
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
   { "level", [](const ComparedJoint& line) { return levelName(line.verdict.level); }, "verdict" },
   { "verdict", [](const ComparedJoint& line) { return verdictFields(line.verdict); } },
-  { "friction_ratio", &ComparedJoint::friction_ratio, "friction [-]" },
+  { "friction_ratio", [](const ComparedJoint& line) { return number(line, &FrictionFactor::value); } },
+  { "friction_low", [](const ComparedJoint& line) { return number(line, &FrictionFactor::low); } },
+  { "friction_high", [](const ComparedJoint& line) { return number(line, &FrictionFactor::high); } },
+  { "friction", [](const ComparedJoint& line) { return line.friction ? factorText(*line.friction) : "-"; },
+    "friction [95 %]" },
   { "temperature", &ComparedJoint::temperature, "at [degC]" },
   { "temperature_source", [](const ComparedJoint& line) { return line.temperature_source; }, "which is" },
   { "current_rms", &ComparedJoint::current_rms, "current, rms [A]" },
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Joints of the worst level, and what they have in common.
-std::string textOf(const std::vector<ComparedJoint>& lines, HealthLevel level, const ArmFriction& arm)
+/// What the joints of a group have in common, if that is worth a word.
+std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
+{
+  constexpr double NOTEWORTHY = 0.1;
+  if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
+  {
+    return {};
+  }
+  return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
+         fixedText(group.median, 2) +
+         " times the expected one: another temperature or lubricant of these, not a fault of one joint. ";
+}
+
+/// Every joint that departs or is not judged, and why.
+std::string departuresOf(const std::vector<ComparedJoint>& lines)
+{
+  std::string text;
+  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
+  bool departs = false;
+  bool judged = false;
+  for (const ComparedJoint& line : lines)
+  {
+    judged = judged || line.verdict.isJudged();
+    if (severityOf(line.verdict.level) != HealthLevel::OK)
+    {
+      text += line.name + ": " + verdictText(line.verdict) + " ";
+      departs = true;
+    }
+    if (!line.verdict.isJudged())
+    {
+      const std::string why = findingText(line.verdict, line.verdict.findings.front());
+      const auto same =
+          std::find_if(unjudged.begin(), unjudged.end(), [&](const auto& one) { return one.first == why; });
+      (same == unjudged.end() ? unjudged.emplace_back(why, std::vector<std::string>()) : *same)
+          .second.push_back(line.name);
+    }
+    else if (!line.contact.empty())
+    {
+      text += line.name + ": " + line.contact + " Judged by the rest. ";
+    }
+  }
+  text += judged && !departs ? "No joint departs from a sound one. " : "";
+  for (const auto& [why, joints] : unjudged)
+  {
+    text += "Not judged: " + joined(joints) + ". " + why + " ";
+  }
+  return text;
+}
+
+/// What the joints have in common, and each that departs or is not judged.
+std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm)
 {
   std::string text;
   if (arm.median != 1.0)
@@ -197,73 +156,39 @@ std::string textOf(const std::vector<ComparedJoint>& lines, HealthLevel level, c
               " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
-  std::vector<std::string> unjudged;
-  for (const ComparedJoint& line : lines)
+  for (const JointGroup& group : arm.groups)
   {
-    if (level != HealthLevel::OK && severityOf(line.verdict.level) == level)
-    {
-      text += line.name + ": " + verdictText(line.verdict) + " ";
-    }
-    if (!line.verdict.isJudged())
-    {
-      unjudged.push_back(line.name + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
-    }
+    text += groupText(group, lines);
   }
-  if (level == HealthLevel::OK && unjudged.size() < lines.size())
-  {
-    text += "No joint departs from a sound one. ";
-  }
-  if (!unjudged.empty())
-  {
-    text += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
-  }
+  text += departuresOf(lines);
   text.pop_back();
   return text;
 }
 
-/// The directory of a joint's report, or of its reference, in that of the whole.
-std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
+std::string payloadText(const IdentifiedPayload& payload)
 {
-  return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
-                                               whole;
-}
-
-std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
-                                                            const ArmRecording& recording)
-{
-  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED :
-                          recording.isArm()            ? LoadOrigin::ARM :
-                                                         LoadOrigin::CONFIGURED;
-  if (recording.isArm())
-  {
-    prepareDirectory(options, options.report, ARM_FILE);
-  }
-  std::vector<std::unique_ptr<JointComparison>> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
-  {
-    const std::string directory = directoryOf(recording, options.report, i);
-    prepareDirectory(options, directory, COMPARISON_FILE);
-    joints.push_back(std::make_unique<JointComparison>(
-        recording, i, load, directory, directoryOf(recording, options.reference, i), !options.identified.empty()));
-  }
-  return joints;
+  const Payload found = payload.payload();
+  return "The currents look like a payload of " + fixedText(found.mass, 1) + " +- " +
+         fixedText(payload.mass_half_width, 1) + " kg at the flange in place of the configured " +
+         shortNumber(payload.configured.mass) + " kg, its centre at " + fixedText(found.centre[0], 2) + ", " +
+         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
+         " m: set payload in the arm's file. The joints are judged with it. ";
 }
 
 /// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
 void judgeArm(const std::vector<Misfit>& misfits, ComparedRecording& compared)
 {
-  HealthLevel level = HealthLevel::OK;
-  bool judged = false;
   for (const ComparedJoint& joint : compared.joints)
   {
-    level = std::max(level, severityOf(joint.verdict.level));
-    judged = judged || joint.verdict.isJudged();
+    compared.health = std::max(compared.health, severityOf(joint.verdict.level));
+    compared.is_judged = compared.is_judged || joint.verdict.isJudged();
   }
-  compared.level = judged ? levelName(level) : levelName(VerdictLevel::NOT_JUDGED);
+  compared.level = compared.is_judged ? levelName(compared.health) : levelName(VerdictLevel::NOT_JUDGED);
   const bool same = misfits.front().exists() &&
                     std::all_of(misfits.begin(), misfits.end(),
                                 [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
-  compared.text = same ? sentence(misfits.front().clause) : textOf(compared.joints, level, compared.friction);
+  compared.text = (compared.payload ? payloadText(*compared.payload) : "") +
+                  (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction));
 }
 
 Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& compared)
@@ -284,6 +209,9 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "rows", compared.found.rows },
            { "duration", compared.found.duration },
            { "friction_ratio", compared.friction.median },
+           { "payload_mass", compared.payload ? std::make_optional(compared.payload->mass) : std::nullopt },
+           { "payload_half_width",
+             compared.payload ? std::make_optional(compared.payload->mass_half_width) : std::nullopt },
            { "joints", tableOf(compared).rows() } };
 }
 }  // namespace
@@ -291,40 +219,33 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
 ComparedRecording compare(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
-  const ArmRecording recording(options);
-  const std::vector<std::unique_ptr<JointComparison>> joints = prepareJoints(options, recording);
-  RecordingFit fit(recording.parameters());
+  ArmRecording recording(options);
+  ComparisonPass pass = passThrough(options, recording);
   ComparedRecording compared;
   compared.is_arm = recording.isArm();
   compared.page = (fs::path(options.report) / REPORT_PAGE).string();
-  compared.found =
-      recording.readSamples([&](std::size_t i, const MotionSample& sample) { joints[i]->update(sample); }, fit);
+  if (pass.payload && pass.payload->differs() && pass.payload->mass > pass.payload->mass_half_width)
+  {
+    compared.payload = pass.payload;
+    recording.setPayload(pass.payload->payload());
+    pass.joints.clear();  // closes the files that the next pass opens
+    pass = passThrough(options, recording);
+  }
+  compared.found = pass.found;
+  compared.friction = pass.friction;
   if (options.watch.stopped())
   {
     return compared;
   }
-  const std::vector<Misfit> misfits =
-      recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ compared.found.misfit };
-  std::vector<MeasuredFriction> frictions;
-  for (std::size_t i = 0; i < joints.size(); ++i)
+  for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {
-    frictions.push_back(joints[i]->friction(misfits[i]));
-  }
-  compared.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
-  for (std::size_t i = 0; i < joints.size(); ++i)
-  {
-    ComparedJoint& joint =
-        compared.joints.emplace_back(joints[i]->write(compared.found, compared.friction.factors[i], misfits[i],
-                                                      recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(pass.joints[i]->write(
+        pass.found, pass.friction, pass.misfits[i], recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
-    joint.friction_ratio = frictions[i].ratio;
-    joint.misfit = !misfits[i].exists() && joints[i]->evidence().isTouched() ?
-                       contactText(joints[i]->evidence().contact().last()) :
-                       misfits[i].clause;
   }
   if (recording.isArm())
   {
-    judgeArm(misfits, compared);
+    judgeArm(pass.misfits, compared);
     compared.document = documentOfArm(options, compared);
     writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
   }
@@ -332,10 +253,15 @@ ComparedRecording compare(const ComparisonOptions& options)
   {
     const Verdict& verdict = compared.joints.front().verdict;
     compared.level = levelName(verdict.level);
+    compared.is_judged = verdict.isJudged();
+    compared.health = severityOf(verdict.level);
     compared.text = verdictText(verdict);
     compared.document = compared.joints.front().document;
   }
-  makePage(options.report);
+  if (options.has_page)
+  {
+    makePage(options.report);
+  }
   return compared;
 }
 

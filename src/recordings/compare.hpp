@@ -10,6 +10,7 @@
 #include "recordings/recording_contents.hpp"
 #include "recordings/recording_options.hpp"
 
+#include "identification/payload_fit.hpp"
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 
@@ -19,8 +20,9 @@ constexpr const char* REPORT_PAGE = "report.html";
 
 struct ComparisonOptions : RecordingOptions
 {
-  std::string report;     ///< directory of the page, its figures and data; of an arm a directory for each joint
-  std::string reference;  ///< an earlier report of this joint or arm in sound condition; empty: none
+  std::string report;  ///< directory of the page, its figures and data; of an arm a directory for each joint
+  bool has_page{ true };
+  std::vector<std::string> references;  ///< earlier reports of this joint or arm in sound condition; empty: none
 };
 
 /// A joint beside its twin.
@@ -29,9 +31,9 @@ struct ComparedJoint
   std::string name;  ///< short
   Verdict verdict;
   RecordingContents contents;
-  std::string misfit;                    ///< of its recording; empty: it fits
-  std::optional<double> friction_ratio;  ///< measured over expected; none: not known [-]
-  double temperature{};                  ///< that it was judged at [degC]
+  std::optional<FrictionFactor> friction;  ///< measured over expected; none: not judged
+  std::string contact;                     ///< what touched it, in a sentence; empty: nothing
+  double temperature{};                    ///< that it was judged at [degC]
   const char* temperature_source{};
   std::uint64_t rows{};
   double current_rms{};   ///< measured [A]
@@ -44,11 +46,14 @@ struct ComparedRecording
   bool is_arm{};
   std::string level;
   std::string text;  ///< a sentence or two
+  bool is_judged{};
+  HealthLevel health{};  ///< the worst of the joints
   MotionFindings found;
-  ArmFriction friction;               ///< what the joints have in common
-  std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
-  Json document;                      ///< the data of the page
-  std::string page;                   ///< its path
+  std::optional<IdentifiedPayload> payload;  ///< that the joints are judged with in place of the configured one
+  ArmFriction friction;                      ///< what the joints have in common
+  std::vector<ComparedJoint> joints;         ///< from the base on; none: stopped
+  Json document;                             ///< the data of the page
+  std::string page;                          ///< its path
 };
 
 /// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.

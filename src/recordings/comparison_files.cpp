@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 
 #include "output/report.hpp"
 
@@ -227,24 +229,65 @@ Json verdictFields(const Verdict& verdict)
            { "text", verdictText(verdict) } };
 }
 
-SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
+namespace
 {
-  SoundJoint sound;
-  const std::vector<double> numbers =
-      readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature" });
-  sound.own.compliance_ratio = numbers[0];
-  sound.own.temperature = numbers[1];
+std::vector<FrictionPoint> readFriction(const std::string& directory)
+{
+  std::vector<FrictionPoint> points;
   NumberTable<4> friction(directory + "/" + FRICTION_FILE, { "speed", "measured", "twin", "rows" });
   std::array<double, 4> row{};
   while (friction.read(row))
   {
-    sound.own.friction.push_back({ row[0], row[1], 0.0, row[2], static_cast<std::uint64_t>(row[3]) });
+    points.push_back({ row[0], row[1], 0.0, row[2], static_cast<std::uint64_t>(row[3]), 0.0 });
   }
-  const std::string baseline = directory + "/" + BASELINE_FILE;
-  if (std::filesystem::exists(baseline))
+  return points;
+}
+
+/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged.
+double frictionDeviation(const ComparisonRecord& record)
+{
+  return record.is_friction_judged ? record.friction.scatter : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Null: not judged.
+Json factorJson(const ComparisonRecord& record)
+{
+  const FrictionFactor& factor = record.friction;
+  return record.is_friction_judged ? Json{ { "value", factor.value },
+                                           { "low", factor.low() },
+                                           { "high", factor.high() },
+                                           { "is_to_own", factor.is_to_own } } :
+                                     Json(std::optional<double>());
+}
+}  // namespace
+
+SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters)
+{
+  SoundJoint sound;
+  std::vector<SoundFriction> frictions;
+  double compliances = 0.0;
+  double temperatures = 0.0;
+  for (const std::string& directory : directories)
   {
-    sound.baseline = readBaseline(baseline, parameters, false);
+    const std::vector<double> numbers =
+        readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature", "friction_deviation" });
+    compliances += numbers[0];
+    temperatures += numbers[1];
+    if (std::isfinite(numbers[2]))
+    {
+      frictions.push_back({ readFriction(directory), numbers[2] });
+    }
+    const std::string baseline = directory + "/" + BASELINE_FILE;
+    if (sound.baseline.empty() && std::filesystem::exists(baseline))
+    {
+      sound.baseline = readBaseline(baseline, parameters, false);
+    }
   }
+  const auto count = static_cast<double>(directories.size());
+  sound.own = ownReference(frictions);
+  sound.own.is_unjudged = frictions.empty() && !directories.empty();
+  sound.own.compliance_ratio = compliances / count;
+  sound.own.temperature = temperatures / count;
   return sound;
 }
 
@@ -296,7 +339,9 @@ Json writeComparison(const std::string& directory, const RecordingComparison& co
                       { "residual_rms", comparison.evidence().residualRms() } } },
                   { "temperature", comparison.evidence().temperature() },
                   { "temperature_source", temperatureSource(comparison.evidence()) },
-                  { "friction_ratio", comparison.evidence().friction().ratio() },
+                  { "friction_ratio", comparison.evidence().friction().ratio().value },
+                  { "friction_deviation", frictionDeviation(record) },
+                  { "friction_factor", factorJson(record) },
                   { "compliance_ratio", comparison.evidence().torsion().compliance() },
                   { "line_orders", orders },
                   { "highest_order", record.verdict[Figure::HIGHEST_ORDER] },

@@ -22,6 +22,8 @@ struct ComparisonRecord
   std::string joint;
   std::string made_with;  ///< name and version of the program
   MotionFindings found;
+  FrictionFactor friction;
+  bool is_friction_judged{};
   RecordingContents contents;
   Decimated<TwinState> twin_states;
   Verdict verdict;
@@ -44,6 +46,8 @@ struct SoundJoint
   std::vector<ReferenceBin> baseline;  ///< none: the recording was too short for one
 };
 
-/// @throws InputError if the directory holds no comparison, or one of another gear.
-SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters);
+/// Of one or more recordings of the sound joint: their friction is the mean at the speeds of all, and by how much they
+/// differ tells how the joint repeats. A recording in which its friction was not judged is no reference of it.
+/// @throws InputError if a directory holds no comparison, or one of another gear.
+SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters);
 }  // namespace hjt

@@ -101,7 +101,7 @@ class Judging
 {
 public:
   Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
-    : parameters_(parameters), differentiators_(parameters.size())
+    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM), differentiators_(parameters.size())
   {
     for (const Parameters& of : parameters)
     {
@@ -119,18 +119,23 @@ public:
   void judgeAll(double duration, CheckedArm& arm)
   {
     std::vector<MeasuredFriction> frictions;
-    const auto context = [&](std::size_t i, double factor) {
-      return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].misfit };
+    const auto context = [&](std::size_t i, double factor, double deviation, const Misfit& of_arm)
+    {
+      const Misfit& own = arm.joints[i].misfit;
+      return JointContext{
+        OwnReference(), false, duration, factor, own.exists() || !is_arm_ ? own : of_arm, deviation
+      };
     };
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       forward(i, true);
-      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0)));
+      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED, {})));
     }
     const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      arm.joints[i].verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i]));
+      arm.joints[i].verdict =
+          judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i], common.misfit));
     }
   }
 
@@ -144,6 +149,7 @@ private:
   }
 
   const std::vector<Parameters>& parameters_;
+  const bool is_arm_;  // else joints by themselves
   std::vector<MotionDifferentiator> differentiators_;
   std::vector<std::unique_ptr<JointEvidence>> joints_;
 };

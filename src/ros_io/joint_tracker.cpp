@@ -117,7 +117,7 @@ void JointTracker::start(bool reset)
 void JointTracker::forgetAll()
 {
   tracker_.reset();
-  verdict_.judge(1.0);
+  verdict_.judge();
 }
 
 void JointTracker::push(const MotionRow& row)

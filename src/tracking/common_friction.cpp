@@ -23,14 +23,18 @@ double medianOf(std::vector<double> values)
 }
 }  // namespace
 
-ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
+namespace
+{
+ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
   constexpr double COLDEST = 0.0;  // [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
   constexpr double TINY = 1e-3;        // of a ratio, which may be zero
   constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
-  ArmFriction arm{ std::vector<double>(joints.size(), 1.0), 1.0, std::nullopt };
+  ArmFriction arm;
+  arm.factors.assign(joints.size(), 1.0);
+  arm.deviations.assign(joints.size(), UNWITNESSED);
   std::vector<std::size_t> known;
   bool is_received = false;
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -99,11 +103,72 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   if (has_temperature && agree < known.size() && agreeing(at_temperature) >= std::max(most, agree) &&
       misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
   {
-    arm = { at_temperature, median, low };
+    arm.factors = at_temperature;
+    arm.median = median;
+    arm.temperature = low;
   }
   else if (is_factor)
   {
-    arm = { alike, median, has_temperature ? std::make_optional(low) : std::nullopt };
+    arm.factors = alike;
+    arm.median = median;
+    arm.temperature = has_temperature ? std::make_optional(low) : std::nullopt;
+  }
+  return arm;
+}
+
+/// What the joints of the group have in common, apart from the arm's factors, goes into these.
+void addGroup(const std::vector<MeasuredFriction>& joints, double tolerance, std::size_t begin, std::size_t end,
+              ArmFriction& arm)
+{
+  JointGroup group{ begin, end, 1.0, false };
+  std::vector<double> left;
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    if (joints[i].ratio)
+    {
+      left.push_back(*joints[i].ratio / arm.factors[i]);
+    }
+  }
+  if (left.size() >= MIN_JOINTS)
+  {
+    const double median = medianOf(left);
+    const auto agree = static_cast<std::size_t>(std::count_if(
+        left.begin(), left.end(), [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; }));
+    group.is_known = median > 0.0 && 2 * agree > left.size();
+    group.median = group.is_known ? median : 1.0;
+  }
+  constexpr double CHANCE = 0.05;  // share that three joints may have in common by chance
+  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - CHANCE);
+  for (std::size_t i = begin; i < end && group.is_known; ++i)
+  {
+    arm.factors[i] *= 1.0 + std::copysign(beyond, group.median - 1.0);
+    arm.deviations[i] = 0.0;
+  }
+  arm.groups.push_back(group);
+}
+}  // namespace
+
+ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
+{
+  constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
+  ArmFriction arm = ofWholeArm(joints, tolerance);
+  const std::size_t half = (joints.size() + 1) / 2;
+  addGroup(joints, tolerance, 0, half, arm);
+  addGroup(joints, tolerance, half, joints.size(), arm);
+  const auto number = [&](bool MeasuredFriction::*flag)
+  { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
+  if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
+      number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
+  {
+    arm.misfit = { Reason::NO_FRICTION,
+                   "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "
+                   "measured one" };
+  }
+  else if (number(&MeasuredFriction::is_below_faults) >= MIN_BELOW_FAULTS)
+  {
+    arm.misfit = { Reason::LESS_THAN_FAULTS,
+                   "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
+                   "gains or ratios are others than configured" };
   }
   return arm;
 }

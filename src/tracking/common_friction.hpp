@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
 class Tracker;
+
+/// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
+/// day, where no other joints tell: standard deviation of the logarithm [-].
+constexpr double UNWITNESSED = 0.06;
 
 /// Friction of one joint of an arm.
 struct MeasuredFriction
@@ -17,20 +25,36 @@ struct MeasuredFriction
   double temperature{};              ///< that it is expected at [degC]
   bool temperature_received{};       ///< that one was
   std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
+  bool is_below_faults{};            ///< less than any fault leaves of it
+  bool is_none{};                    ///< next to none at all
+};
+
+/// Joints of an arm that are built and warmed alike: from the base to the elbow, and the wrists.
+struct JointGroup
+{
+  std::size_t begin{};
+  std::size_t end{};     ///< one past the last
+  double median{ 1.0 };  ///< of the joints' friction, apart from that of the arm
+  bool is_known{};       ///< most of at least three agree on it
 };
 
 /// What the friction of an arm's joints has in common.
 struct ArmFriction
 {
-  std::vector<double> factors;        ///< of each joint
+  std::vector<double> factors;        ///< of each joint, that of its group in it
+  std::vector<double> deviations;     ///< of the factors, standard deviation of the logarithm [-]
   double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
+  std::vector<JointGroup> groups;
+  Misfit misfit;  ///< of all joints
 };
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
 /// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
 /// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
-/// are the median joint's, so that one faulty joint changes neither.
+/// are the median joint's, so that one faulty joint changes neither. What is left then and most of the three joints of a
+/// group agree on is the group's, less 5 % that may be chance: three drives do not fail alike. Two joints or more whose friction is below what any
+/// fault leaves: something else carries the arm, and no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or

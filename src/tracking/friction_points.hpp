@@ -7,7 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace hjt
 {
@@ -19,6 +23,94 @@ struct FrictionPoint
   double deviation{};  ///< standard deviation of the measured rows [N.m]
   double twin{};       ///< the twin's at the same rows [N.m]
   std::uint64_t rows{};
+  double load{};  ///< with its sign [N.m]
+};
+
+/// Measured friction over that of a reference.
+struct FrictionRatio
+{
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: no speed, or none of both
+  double deviation{};                                        ///< standard deviation, by the scatter [-]
+  std::vector<FrictionPoint> points;                         ///< at the speeds of both, `twin` that of the reference
+};
+
+/// Rows of friction by blocks of time: what follows each other in them says the same, so a ratio scatters as its blocks
+/// do.
+class FrictionBlocks
+{
+public:
+  static constexpr double LENGTH = 2.0;  ///< of a block [s]
+
+  void add(double time, bool forward, double measured, double twin)
+  {
+    const double place = std::floor(time / LENGTH);
+    if (place != place_)
+    {
+      close();
+      place_ = place;
+    }
+    const Eigen::Index way = forward ? 1 : 0;
+    open_[way] += 1.0;
+    open_[2 + way] += measured;
+    open_[4 + way] += twin;
+  }
+
+  std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
+
+  /// Share of the ratio (FrictionPoints::ratio) that is its standard deviation by the scatter of the blocks: what each
+  /// adds to numerator less ratio times denominator, squared. Infinity: fewer than three blocks.
+  double deviation() const
+  {
+    FrictionBlocks all = *this;
+    all.close();
+    if (all.blocks_ < MIN_BLOCKS)
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+    double measured = 0.0;
+    double twin = 0.0;
+    for (const Eigen::Index way : { 0, 1 })
+    {
+      const double rows = std::max(all.sums_[way], 1.0);
+      measured += all.sums_[2 + way] / rows;
+      twin += all.sums_[4 + way] / rows;
+    }
+    const double ratio = measured / twin;
+    Vector6 influence;
+    for (const Eigen::Index way : { 0, 1 })
+    {
+      const double rows = std::max(all.sums_[way], 1.0);
+      influence[2 + way] = 1.0 / rows;
+      influence[4 + way] = -ratio / rows;
+      influence[way] = -(all.sums_[2 + way] - ratio * all.sums_[4 + way]) / (rows * rows);
+    }
+    const double variance = influence.dot(all.products_ * influence);
+    const double count = static_cast<double>(all.blocks_);
+    return std::sqrt(std::max(0.0, variance) * count / (count - 1.0)) / std::abs(measured);
+  }
+
+private:
+  static constexpr std::uint64_t MIN_BLOCKS = 3;
+  // Unaligned, so that whoever holds it needs no operator new of its own.
+  using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+
+  void close()
+  {
+    if (open_.head<2>().sum() > 0.0)
+    {
+      sums_ += open_;
+      products_ += open_ * open_.transpose();
+      ++blocks_;
+    }
+    open_.setZero();
+  }
+
+  double place_{ -std::numeric_limits<double>::infinity() };
+  Vector6 open_{ Vector6::Zero() };  // rows, measured, twin: backward and forward each
+  Vector6 sums_{ Vector6::Zero() };
+  Matrix6 products_{ Matrix6::Zero() };
+  std::uint64_t blocks_{};
 };
 
 /// Friction by speed, both ways apart, from rows of any number.
@@ -27,8 +119,9 @@ class FrictionPoints
 public:
   static constexpr std::uint64_t MIN_ROWS = 30;  ///< points with fewer are not given
 
-  /// `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m].
-  void add(double speed, double measured, double twin)
+  /// `time` [s]; `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m]; `load` with its
+  /// sign [N.m].
+  void add(double time, double speed, double measured, double twin, double load)
   {
     const double place = placeOf(speed);
     if (!(place >= 0.0 && place < static_cast<double>(BINS)))
@@ -41,6 +134,8 @@ public:
     bin.measured += measured;
     bin.squares += measured * measured;
     bin.twin += twin;
+    bin.load += load;
+    blocks_.add(time, speed > 0.0, measured, twin);
   }
 
   /// By speed, ascending
@@ -56,7 +151,7 @@ public:
           const auto n = static_cast<double>(bin.rows);
           const double mean = bin.measured / n;
           const double deviation = std::sqrt(std::max(0.0, bin.squares / n - mean * mean));
-          points.push_back({ bin.speed / n, mean, deviation, bin.twin / n, bin.rows });
+          points.push_back({ bin.speed / n, mean, deviation, bin.twin / n, bin.rows, bin.load / n });
         }
       }
     }
@@ -65,16 +160,25 @@ public:
     return points;
   }
 
+  const FrictionBlocks& blocks() const { return blocks_; }
+
   /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong
-  /// goes out. NaN: no point.
-  double ratio() const { return ratio(points()); }
+  /// goes out. Its deviation is the larger of that by the blocks and that by leaving out one point after the other.
+  FrictionRatio ratio() const { return ratio(points()); }
 
   /// The same over that of `reference`, at the speeds of both: the twin's friction need not rise with the speed as the
-  /// joint's does. NaN: they have no speed in common.
-  double ratioTo(const std::vector<FrictionPoint>& reference) const
+  /// joint's does.
+  FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
+  {
+    return ratio(common(points(), reference));
+  }
+
+  /// Points at the speeds of both, `twin` raised to the friction of `reference`.
+  static std::vector<FrictionPoint> common(const std::vector<FrictionPoint>& points,
+                                           const std::vector<FrictionPoint>& reference)
   {
     std::vector<FrictionPoint> common;
-    for (FrictionPoint point : points())
+    for (FrictionPoint point : points)
     {
       const auto other =
           std::find_if(reference.begin(), reference.end(),
@@ -85,34 +189,85 @@ public:
         common.push_back(point);
       }
     }
-    return ratio(common);
+    return common;
+  }
+
+  /// Means of the points at one speed, by their rows, ascending.
+  static std::vector<FrictionPoint> merged(const std::vector<FrictionPoint>& points)
+  {
+    std::map<std::pair<bool, double>, std::vector<FrictionPoint>> at;
+    for (const FrictionPoint& point : points)
+    {
+      at[{ point.speed > 0.0, std::floor(placeOf(point.speed)) }].push_back(point);
+    }
+    std::vector<FrictionPoint> merged;
+    for (const auto& [place, same] : at)
+    {
+      merged.push_back(meanOf(same, place.first ? 1.0 : -1.0));
+    }
+    std::sort(merged.begin(), merged.end(),
+              [](const FrictionPoint& a, const FrictionPoint& b) { return a.speed < b.speed; });
+    return merged;
+  }
+
+  /// Both ways count alike. NaN: no point.
+  static double ratioOf(const std::vector<FrictionPoint>& points)
+  {
+    const FrictionPoint backward = meanOf(points, -1.0);
+    const FrictionPoint forward = meanOf(points, 1.0);
+    const double twin = backward.twin + forward.twin;
+    return twin > 0.0 ? (backward.measured + forward.measured) / twin : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// Mean of the points one way, +1 or -1, by their rows.
+  static FrictionPoint meanOf(const std::vector<FrictionPoint>& points, double way)
+  {
+    FrictionPoint mean;
+    for (const FrictionPoint& point : points)
+    {
+      if (way * point.speed > 0.0)
+      {
+        const auto rows = static_cast<double>(point.rows);
+        mean.rows += point.rows;
+        mean.speed += rows * point.speed;
+        mean.measured += rows * point.measured;
+        mean.twin += rows * point.twin;
+        mean.load += rows * point.load;
+      }
+    }
+    const double rows = std::max(static_cast<double>(mean.rows), 1.0);
+    mean.speed /= rows;
+    mean.measured /= rows;
+    mean.twin /= rows;
+    mean.load /= rows;
+    return mean;
   }
 
 private:
-  static double ratio(const std::vector<FrictionPoint>& points)
+  FrictionRatio ratio(std::vector<FrictionPoint> points) const
   {
-    double measured = 0.0;
-    double twin = 0.0;
-    for (const double way : { -1.0, 1.0 })
+    FrictionRatio found;
+    found.value = ratioOf(points);
+    found.deviation = std::max(std::abs(found.value) * blocks_.deviation(), jackknife(points));
+    found.points = std::move(points);
+    return found;
+  }
+
+  /// Standard deviation of the ratio by leaving out one point after the other; 0: fewer than two.
+  static double jackknife(const std::vector<FrictionPoint>& points)
+  {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
     {
-      FrictionPoint sum;
-      for (const FrictionPoint& point : points)
-      {
-        if (way * point.speed > 0.0)
-        {
-          const auto rows = static_cast<double>(point.rows);
-          sum.rows += point.rows;
-          sum.measured += rows * point.measured;
-          sum.twin += rows * point.twin;
-        }
-      }
-      if (sum.rows > 0)
-      {
-        measured += sum.measured / static_cast<double>(sum.rows);
-        twin += sum.twin / static_cast<double>(sum.rows);
-      }
+      std::vector<FrictionPoint> others = points;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const double ratio = ratioOf(others);
+      sum += ratio;
+      squares += ratio * ratio;
     }
-    return twin > 0.0 ? measured / twin : std::numeric_limits<double>::quiet_NaN();
+    const auto count = static_cast<double>(points.size());
+    return count < 2.0 ? 0.0 : std::sqrt(std::max(0.0, (count - 1.0) / count * (squares - sum * sum / count)));
   }
 
   static double placeOf(double speed) { return BINS_PER_DECADE * std::log10(std::abs(speed) / SLOWEST); }
@@ -129,11 +284,13 @@ private:
     double measured{};
     double squares{};
     double twin{};
+    double load{};
   };
   static constexpr double SLOWEST = 0.01;  // [rad/s]
   static constexpr double BINS_PER_DECADE = 10.0;
   static constexpr std::size_t BINS = 30;  // up to 10 rad/s
 
   std::array<std::array<Bin, BINS>, 2> bins_{};
+  FrictionBlocks blocks_;
 };
 }  // namespace hjt

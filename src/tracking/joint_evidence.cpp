@@ -81,7 +81,8 @@ JointEvidence::Row JointEvidence::update(const MotionSample& sample, bool fits) 
   const double residual = sample.current - predicted_.current;
   const bool was_touched = isTouched();
   contact_.update(sample, gain * residual, predicted_.friction_torque,
-                  predicted_.band > parameters_.telemetry.current_deviation);
+                  predicted_.band > parameters_.telemetry.current_deviation ? gain * predicted_.band : 0.0,
+                  predicted_.friction_limit);
   addToReach(sample);
   if (std::isfinite(sample.motor_angle))
   {
@@ -135,7 +136,7 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   if (tellsFriction(predicted_))
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
-    now_.friction.add(sample.velocity, way * (friction + gain * residual), way * friction);
+    now_.friction.add(sample.time, sample.velocity, way * (friction + gain * residual), way * friction, sample.load);
   }
   if (std::isfinite(sample.motor_angle))
   {

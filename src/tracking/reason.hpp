@@ -16,7 +16,7 @@ enum class Reason : std::uint8_t
   SIGNALS = 3,               ///< judged: the signals' indicators are not those of a sound drive
   SOLVER_FAILED = 4,         ///< the twin found no solution: its last good state is held
   NO_STEADY_MOTION = 5,      ///< the joint never moves steadily for long enough
-  ONE_DIRECTION = 6,         ///< it moves one way only and no load is known: friction and load cannot be separated
+  ONE_DIRECTION = 6,         ///< it moves one way only: friction and load cannot be separated
   LOAD_UNKNOWN = 7,          ///< a load is expected and none came
   LOAD_WRONG = 8,            ///< the currents do not fit the load
   CONTACT = 9,               ///< something touched the arm
@@ -35,7 +35,7 @@ enum class Reason : std::uint8_t
   NO_MOTOR_ANGLE = 22,       ///< torsion: one angle a joint
   LOAD_CONSTANT = 23,        ///< torsion: the load hardly varies
   TOO_FEW_WINDOWS = 24,      ///< signals: fewer windows than a verdict takes
-  NO_REFERENCE = 25,         ///< signals: the reference knows none of the operating points
+  NO_REFERENCE = 25,         ///< the reference knows none of the speeds; of signals none of the operating points
   TOO_SHORT = 26,            ///< too few rows: to measure the friction, or to learn the signals without a reference
   TWO_SOURCES = 27,          ///< several sources give the same joints in turn
   GEAR_RATIO = 28,           ///< motor and joint do not turn by the configured gear's ratio

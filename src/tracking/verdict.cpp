@@ -13,18 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
-VerdictLevel levelOf(double deviation, double tolerance, double error_factor)
-{
-  const double size = std::abs(deviation) / tolerance;
-  return size > error_factor ? VerdictLevel::ERROR : size > 1.0 ? VerdictLevel::WARN : VerdictLevel::OK;
-}
-
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
-
-/// No change of temperature makes the friction of grease and contacts larger or smaller by more.
-constexpr double MAX_ARM_FRICTION = 2.5;
 
 /// Share of its sound value by which a fault of severity 1 must change an indicator to be named.
 constexpr double MIN_CHANGE = 0.02;
@@ -34,14 +24,13 @@ struct Ratio
 {
   double to_twin;
   double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
-  double of_arm;              ///< multiple that all joints of the arm have in common
   double of_kind;             ///< share by which sound joints differ from the twin
   ScalarIndicator indicator;  ///< that says the same
   double when_larger;         ///< the indicator moves up: +1, down: -1
   const SignatureSet& signatures;
 
   bool isOwnKnown() const { return std::isfinite(to_own); }
-  double value() const { return (isOwnKnown() ? to_own : to_twin) / of_arm; }
+  double value() const { return isOwnKnown() ? to_own : to_twin; }
   double tolerance(const Parameters& parameters) const
   {
     return isOwnKnown() ? parameters.comparison.repeat_tolerance : of_kind;
@@ -98,89 +87,12 @@ std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Param
   {
     return Reason::LOAD_WRONG;
   }
-  return evidence.isTouched() ? std::make_optional(Reason::CONTACT) : std::nullopt;
-}
-
-/// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
-double impossibleWay(const std::vector<FrictionPoint>& points)
-{
-  for (const double way : { -1.0, 1.0 })
-  {
-    double sum = 0.0;
-    for (const FrictionPoint& point : points)
-    {
-      sum += way * point.speed > 0.0 ? static_cast<double>(point.rows) * point.measured : 0.0;
-    }
-    if (sum < 0.0)
-    {
-      return way;
-    }
-  }
-  return 0.0;
-}
-
-/// Why the recording does not show the joint's friction; none: it does.
-std::optional<Reason> whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin load)
-{
-  if (points.empty())
-  {
-    return Reason::NO_STEADY_MOTION;
-  }
-  if (!movesBothWays(points) && load == LoadOrigin::CONFIGURED)
-  {
-    return Reason::ONE_DIRECTION;
-  }
-  return impossibleWay(points) != 0.0 ? std::make_optional(Reason::LOAD_WRONG) : std::nullopt;
-}
-
-/// Friction as a multiple of the joint's own when sound; NaN: that is not known.
-double frictionToOwn(const JointEvidence& evidence, const JointContext& context)
-{
-  const FrictionPoints& friction = evidence.friction();
-  return context.own.friction.empty() && context.is_identified ? friction.ratio() :
-                                                                 friction.ratioTo(context.own.friction);
-}
-
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
-                      Verdict& verdict)
-{
-  Finding finding;
-  finding.subject = FindingSubject::FRICTION;
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
-  if (!points.empty())
-  {
-    verdict[Figure::LOWEST_SPEED] = points.front().speed;
-    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
-  }
-  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
-  if (const std::optional<Reason> reason = whyNoFriction(points, evidence.loadOrigin()))
-  {
-    finding.reason = *reason;
-    if (*reason == Reason::LOAD_WRONG)
-    {
-      verdict[Figure::FRICTION_PUSHES] = impossibleWay(points);
-    }
-    return finding;
-  }
-  if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
-  {
-    finding.reason = Reason::COMMON_FRICTION;
-    return finding;
-  }
-  const Ratio ratio{ evidence.friction().ratio(),
-                     frictionToOwn(evidence, context),
-                     context.arm_friction,
-                     parameters.comparison.friction_tolerance,
-                     ScalarIndicator::RUNNING_TORQUE,
-                     +1.0,
-                     evidence.assessor().signatures() };
-  verdict[Figure::FRICTION_OF_TWIN] = ratio.to_twin;
-  verdict[Figure::FRICTION_OF_OWN] = ratio.to_own;
-  verdict[Figure::FRICTION_TOLERANCE] = ratio.tolerance(parameters);
-  verdict.friction = { ratio.value(), ratio.value(), ratio.value(), false };
-  judgeRatio(ratio, parameters, Reason::FRICTION, finding);
-  return finding;
+  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction, apart from what was touched
+  const MotionReach& reach = evidence.reach();
+  return reach.touched_rows > 0 && reach.most_angle - reach.least_angle > LEAST_MOTION &&
+                 evidence.friction().blocks().count() < MIN_BLOCKS ?
+             std::make_optional(Reason::CONTACT) :
+             std::nullopt;
 }
 
 Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own,
@@ -199,6 +111,13 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
     finding.reason = Reason::LOAD_CONSTANT;
     return finding;
   }
+  constexpr double MAX_COMPLIANCE = 20.0;  // no drive is so soft that still turns
+  if (compliance < 0.0 || compliance > MAX_COMPLIANCE)
+  {
+    verdict[Figure::TORSION_OF_TWIN] = compliance;
+    finding.reason = Reason::TORSION_NO_DRIVE;
+    return finding;
+  }
   // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
   const double twin = evidence.torsion().twinAmplitude();
   const double turn = evidence.torsion().turnAmplitude();
@@ -207,7 +126,6 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
                               twin;
   const Ratio ratio{ compliance,
                      compliance / own.compliance_ratio,
-                     1.0,
                      parameters.comparison.compliance_tolerance + eccentricity,
                      ScalarIndicator::TORSIONAL_STIFFNESS,
                      -1.0,
@@ -312,19 +230,6 @@ std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Parameters& 
   return hidden;
 }
 
-/// Friction as a multiple of the joint's own when sound, else of the twin's; none: the rows do not show it.
-std::optional<double> frictionRatio(const JointEvidence& evidence, const Parameters& parameters,
-                                    const JointContext& context)
-{
-  if (whyItDoesNotFit(evidence, parameters, context) ||
-      whyNoFriction(evidence.friction().points(), evidence.loadOrigin()))
-  {
-    return std::nullopt;
-  }
-  const double to_own = frictionToOwn(evidence, context);
-  return std::isfinite(to_own) ? to_own : evidence.friction().ratio();
-}
-
 /// What does not depend on what is judged.
 void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
@@ -374,11 +279,23 @@ void sumUp(Verdict& verdict)
 }
 }  // namespace
 
+VerdictLevel levelOf(double deviation, double tolerance, double error_factor)
+{
+  const double size = std::abs(deviation) / tolerance;
+  return size > error_factor ? VerdictLevel::ERROR : size > 1.0 ? VerdictLevel::WARN : VerdictLevel::OK;
+}
+
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
                                   const JointContext& context)
 {
-  return { frictionRatio(evidence, parameters, context), evidence.temperature(), evidence.reach().temperature_rows > 0,
-           [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); } };
+  const FrictionFactor factor = frictionFactor(evidence, context);
+  const bool fits = !whyItDoesNotFit(evidence, parameters, context);
+  return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt,
+           evidence.temperature(),
+           evidence.reach().temperature_rows > 0,
+           [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
+           !context.misfit.exists() && factor.is_below_faults,
+           !context.misfit.exists() && factor.reason == Reason::NO_FRICTION };
 }
 
 std::vector<WeightedCause> causesOf(const Verdict& verdict)
@@ -416,7 +333,7 @@ Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const
   if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, parameters, context))
   {
     verdict.dismiss(
-        { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().last()) : context.misfit.clause });
+        { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
   }
   sumUp(verdict);
   verdict.cannot_show = cannotShow(evidence, parameters, verdict);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "tracking/common_friction.hpp"
+#include "tracking/friction_verdict.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 
@@ -19,6 +21,10 @@ struct OwnReference
   std::vector<FrictionPoint> friction;                                  ///< none: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
   double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< judged at; NaN: not known [degC]
+  double friction_deviation{};    ///< of the friction, by its scatter, standard deviation as a share [-]
+  std::size_t recordings{ 1 };    ///< that it is of
+  double recordings_deviation{};  ///< standard deviation of one of them, as a share [-]
+  bool is_unjudged{};             ///< there is a recording, but it did not show the joint's friction
 };
 
 /// What is known of a joint besides its samples.
@@ -29,7 +35,8 @@ struct JointContext
   double duration{};     ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  Misfit misfit;  ///< of its rows
+  Misfit misfit;                        ///< of its rows
+  double arm_deviation{ UNWITNESSED };  ///< of `arm_friction`, standard deviation of its logarithm
 };
 
 /// Numbers are those of Verdict.msg; the first three those of HealthLevel.
@@ -70,8 +77,9 @@ enum class Figure : std::uint8_t
   FRICTION_OF_TWIN,        ///< over the twin's [-]
   FRICTION_OF_OWN,         ///< over the joint's own when it was sound [-]
   FRICTION_OF_ARM,         ///< that all joints of the arm have in common [-]
-  FRICTION_TOLERANCE,      ///< by which a sound joint's may differ from 1 [-]
-  FRICTION_PUSHES,         ///< the direction in which it would push the joint along: +1, -1 [-]
+  FRICTION_SCATTER,        ///< standard deviation of its logarithm by the scatter of the rows [-]
+  FRICTION_LOWEST,         ///< of a sound joint [-]
+  FRICTION_HIGHEST,        ///< of a sound joint [-]
   TORSION_OF_TWIN,         ///< torsion over the twin's [-]
   TORSION_OF_OWN,          ///< over the drive's own when it was sound [-]
   TORSION_TOLERANCE,       ///< by which a sound drive's may differ from 1 [-]
@@ -89,7 +97,7 @@ enum class Figure : std::uint8_t
   LARGEST_CONTACT_LASTED,  ///< [s]
   LARGEST_CONTACT_TORQUE   ///< [N.m]
 };
-constexpr std::size_t FIGURE_COUNT = 36;
+constexpr std::size_t FIGURE_COUNT = 37;
 
 const char* figureName(Figure figure) noexcept;  ///< "rows"
 const char* figureUnit(Figure figure) noexcept;
@@ -159,6 +167,7 @@ struct Verdict
   Reason reason{ Reason::NO_STEADY_MOTION };  ///< of the worst finding; if none is judged of the first
   std::string joint;
   JudgedFriction friction;
+  std::string friction_text;        ///< what is found of it, or why it is not judged, in sentences
   std::vector<Finding> findings;    ///< none: nothing was looked at
   std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
   std::vector<Hidden> cannot_show;  ///< by these rows
@@ -193,7 +202,10 @@ std::vector<std::string> hiddenTexts(const Verdict& verdict);
 /// A clause as a sentence.
 std::string sentence(std::string clause);
 
-/// Live and offline alike. `joint`: its name.
+/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
+VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
+
+/// Live and offline alike.
 Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
 
 /// Where the temperature that a joint was judged at is from, for people and documents.

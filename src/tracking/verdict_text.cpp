@@ -37,8 +37,9 @@ constexpr std::array<FigureEntry, FIGURE_COUNT> FIGURES{ { { "rows", "-" },
                                                            { "friction_of_twin", "-" },
                                                            { "friction_of_own", "-" },
                                                            { "friction_of_arm", "-" },
-                                                           { "friction_tolerance", "-" },
-                                                           { "friction_pushes", "-" },
+                                                           { "friction_scatter", "-" },
+                                                           { "friction_lowest_sound", "-" },
+                                                           { "friction_highest_sound", "-" },
                                                            { "torsion_of_twin", "-" },
                                                            { "torsion_of_own", "-" },
                                                            { "torsion_tolerance", "-" },
@@ -103,58 +104,19 @@ std::string whole(double value)
   return fixedText(value, 0);
 }
 
-/// What to say of a load that is not the joint's.
-const char* wrongLoad(LoadOrigin load)
-{
-  switch (load)
-  {
-    case LoadOrigin::CONFIGURED:
-      break;
-    case LoadOrigin::RECORDED:
-      return "the load is not the one that was recorded.";
-    case LoadOrigin::ARM:
-      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
-  }
-  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
-}
-
 std::string wrongLoadText(const Verdict& verdict)
 {
-  if (verdict.fits)
-  {
-    return std::string("Friction would push the joint along in ") +
-           (verdict[Figure::FRICTION_PUSHES] > 0.0 ? "positive" : "negative") +
-           " motion, which it cannot: " + wrongLoad(verdict.load);
-  }
   return "Of " + rounded(verdict[Figure::CURRENT], 2) + " A rms " + rounded(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
          " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(verdict.load);
 }
 
-std::string commonFrictionText(const Verdict& verdict, FindingSubject subject)
-{
-  const std::string factor = "The friction of the whole arm is " + rounded(verdict[Figure::FRICTION_OF_ARM], 2);
-  return subject == FindingSubject::SIGNALS ?
-             factor + " times that of the reference: its signals are of another temperature or gain." :
-             factor +
-                 " times the reference's, more than temperature makes: gain or unit of the currents are not the "
-                 "configured ones.";
-}
-
-/// Of what is not judged of a subject.
-std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject subject)
+/// Of torsion or signals that are not judged, or of all.
+std::string reasonText(const Verdict& verdict, Reason reason)
 {
   const double current = verdict[Figure::CURRENT];
   const double predicted = verdict[Figure::CURRENT_PREDICTED];
   switch (reason)
   {
-    case Reason::NO_STEADY_MOTION:
-      return "The joint never moves steadily for long enough to measure its friction.";
-    case Reason::AT_REST:
-      return "The joint does not move.";
-    case Reason::ONE_SPEED:
-      return "The joint moves at one speed only: how sure its friction is cannot be told.";
-    case Reason::ONE_DIRECTION:
-      return "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
     case Reason::LOAD_WRONG:
       return wrongLoadText(verdict);
     case Reason::EFFORT_NOT_CURRENT:
@@ -165,7 +127,8 @@ std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject sub
              " times the current that this motion takes: it is expected in A, not in N.m; or "
              "telemetry.torque_per_current is wrong.";
     case Reason::COMMON_FRICTION:
-      return commonFrictionText(verdict, subject);
+      return "The friction of the whole arm is " + rounded(verdict[Figure::FRICTION_OF_ARM], 2) +
+             " times that of the reference: its signals are of another temperature or gain.";
     case Reason::NO_MOTOR_ANGLE:
       return "One angle a joint: torsion needs encoders at the motor and at the output.";
     case Reason::LOAD_CONSTANT:
@@ -178,6 +141,11 @@ std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject sub
     case Reason::TOO_SHORT:
       return "No reference was given, and the recording is too short to learn one (" +
              whole(verdict[Figure::WINDOWS_NEEDED]) + " windows at one operating point).";
+    case Reason::TORSION_NO_DRIVE:
+      return "Torsion is " + rounded(verdict[Figure::TORSION_OF_TWIN], 2) +
+             " times the twin's, which no fault makes: load, or the angles of motor and joint, are not this joint's, "
+             "or "
+             "of other signs.";
     case Reason::SOLVER_FAILED:
       return "The solver did not converge: the last good state is held.";
     case Reason::LOAD_UNKNOWN:
@@ -202,7 +170,10 @@ std::string reasonText(const Verdict& verdict, Reason reason, FindingSubject sub
     case Reason::NO_FRICTION:
     case Reason::LESS_THAN_FAULTS:
     case Reason::FRICTION_SCATTER:
-    case Reason::TORSION_NO_DRIVE:
+    case Reason::NO_STEADY_MOTION:
+    case Reason::AT_REST:
+    case Reason::ONE_SPEED:
+    case Reason::ONE_DIRECTION:
       break;
   }
   return sentence(verdict.misfit);
@@ -253,23 +224,6 @@ std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Find
             " Other causes: " + ratio.besides + ".";
   }
   return text;
-}
-
-std::string frictionText(const Verdict& verdict, const Finding& finding)
-{
-  const double reference = verdict[Figure::REFERENCE_TEMPERATURE];
-  return ratioText(verdict,
-                   { "Friction", verdict[Figure::FRICTION_OF_TWIN], verdict[Figure::FRICTION_OF_OWN],
-                     verdict[Figure::FRICTION_OF_ARM], verdict[Figure::FRICTION_TOLERANCE],
-                     "grease at another temperature, another preload, a wrong gain" },
-                   finding) +
-         " At " + whole(verdict[Figure::TEMPERATURE]) + " degC (" +
-         (verdict.is_temperature_received ? "received" : "configured") + ")" +
-         (std::isfinite(reference) ? ", the reference at " + whole(reference) +
-                                         " degC; the twin's law of friction makes up for the difference." :
-                                     ".") +
-         " Measured at " + whole(verdict[Figure::SPEEDS]) + " speeds from " +
-         rounded(verdict[Figure::LOWEST_SPEED], 2) + " to " + rounded(verdict[Figure::HIGHEST_SPEED], 2) + " rad/s.";
 }
 
 std::string torsionText(const Verdict& verdict, const Finding& finding)
@@ -431,9 +385,13 @@ std::string sentence(std::string clause)
 
 std::string findingText(const Verdict& verdict, const Finding& finding)
 {
+  if (verdict.fits && finding.subject == FindingSubject::FRICTION)
+  {
+    return verdict.friction_text;
+  }
   if (finding.level == VerdictLevel::NOT_JUDGED)
   {
-    return reasonText(verdict, finding.reason, finding.subject);
+    return reasonText(verdict, finding.reason);
   }
   switch (finding.subject)
   {
@@ -444,14 +402,14 @@ std::string findingText(const Verdict& verdict, const Finding& finding)
     case FindingSubject::SIGNALS:
       return signalsText(verdict, finding);
   }
-  return frictionText(verdict, finding);
+  return verdict.friction_text;
 }
 
 std::string verdictText(const Verdict& verdict)
 {
   if (!verdict.fits)
   {
-    const std::string text = reasonText(verdict, verdict.reason, FindingSubject::FRICTION);
+    const std::string text = reasonText(verdict, verdict.reason);
     return verdict.isJudged() ? text : "Not judged: " + lowerFirst(text);
   }
   std::vector<std::string> departing;
@@ -475,8 +433,7 @@ std::string verdictText(const Verdict& verdict)
   {
     return "Not as in a sound joint: " + joined(departing, "; ") + ".";
   }
-  return sound.empty() ? "The motion does not show whether the joint is sound. " +
-                             reasonText(verdict, verdict.reason, FindingSubject::FRICTION) :
+  return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.friction_text :
                          "As in a sound joint: " + joined(sound) + "." +
                              (open.empty() ? "" : " The motion does not show: " + joined(open) + ".");
 }

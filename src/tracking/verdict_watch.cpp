@@ -12,21 +12,21 @@ void VerdictWatch::setMisfit(const Misfit& misfit, bool settled)
   settled_ = settled;
 }
 
-JointContext VerdictWatch::context(double arm_friction) const
+JointContext VerdictWatch::context(double arm_friction, double arm_deviation, const Misfit& of_arm) const
 {
-  return { OwnReference(), is_identified_, 0.0, arm_friction, misfit_ };
+  return { OwnReference(), is_identified_, 0.0, arm_friction, misfit_.exists() ? misfit_ : of_arm, arm_deviation };
 }
 
 MeasuredFriction VerdictWatch::measuredFriction() const
 {
-  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0));
+  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0, UNWITNESSED, {}));
 }
 
-void VerdictWatch::judge(double arm_friction)
+void VerdictWatch::judge(double arm_friction, double arm_deviation, const Misfit& of_arm)
 {
   const MotionReach& reach = tracker_.evidence().reach();
   const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
-  Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction));
+  Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction, arm_deviation, of_arm));
   const bool is_open = !verdict.isJudged() && confirmed_.isJudged() && !whyNotJudged() && !is_new;
   const bool is_no_worse = severityOf(verdict.level) <= severityOf(confirmed_.level);
   if (!is_open && (is_new || is_no_worse || reach.end - confirmed_at_ >= CONFIRMED_AFTER))
@@ -79,7 +79,7 @@ void judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
   const ArmFriction arm = commonFriction(frictions, tolerance);
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    joints[i]->judge(arm.factors[i]);
+    joints[i]->judge(arm, i);
   }
 }
 }  // namespace hjt

@@ -28,8 +28,13 @@ public:
   /// As `joint_twin compare` measures it, of the rows that the verdict is of.
   MeasuredFriction measuredFriction() const;
 
-  /// Makes the verdict again; `arm_friction`: what all joints have in common of `measuredFriction` [-].
-  void judge(double arm_friction);
+  /// Makes the verdict again, alone.
+  void judge() { judge(1.0, UNWITNESSED, {}); }
+  /// Makes it after what the joints have in common of `measuredFriction`. `joint`: its number.
+  void judge(const ArmFriction& arm, std::size_t joint)
+  {
+    judge(arm.factors[joint], arm.deviations[joint], arm.misfit);
+  }
 
   /// Why nothing is judged at the moment; none: it is.
   std::optional<Misfit> whyNotJudged() const;
@@ -45,7 +50,8 @@ private:
   static constexpr double JUDGED_SPAN = 1800.0;    // [s]
   static constexpr double CONFIRMED_AFTER = 10.0;  // [s]
 
-  JointContext context(double arm_friction) const;
+  JointContext context(double arm_friction, double arm_deviation, const Misfit& of_arm) const;
+  void judge(double arm_friction, double arm_deviation, const Misfit& of_arm);
 
   Tracker& tracker_;
   const Parameters parameters_;

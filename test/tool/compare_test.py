@@ -103,13 +103,66 @@ class Compare(tool.ToolTest):
 
     def test_more_friction_than_the_twin_is_a_warning_with_its_causes(self):
         levels = []
-        for friction in (1.0, 1.3):
+        for friction in (1.0, 1.7):
             robot.write_bag(self.path("a.bag"), 30.0, friction)
             report = self.compare("a.bag")
             levels.append(self.finding(report, "Friction")["level"])
+            factor = report["friction_factor"]
+            self.assertLess(factor["low"], factor["value"])
+            self.assertGreater(factor["high"], factor["value"])
+            self.assertFalse(factor["is_to_own"])
         self.assertEqual(levels, ["OK", "WARN"])
         self.assertEqual(report["verdict"]["level"], "WARN")
         self.assertIn("lubricant_degradation", self.finding(report, "Friction")["text"])
+
+    def test_the_exit_code_is_the_verdict_where_it_is_asked_for(self):
+        robot.write_bag(self.path("sound.bag"), 30.0)
+        robot.write_bag(self.path("worn.bag"), 30.0, 1.7)
+        robot.write_bag(self.path("short.bag"), 2.0)
+        self.compare("sound.bag")
+        for name, least, code in (("sound.bag", "warn", 0), ("worn.bag", "warn", 3), ("worn.bag", "error", 0),
+                                  ("worn.bag", None, 0), ("short.bag", "warn", 4), ("short.bag", None, 0)):
+            asked = ["--fail-on", least] if least else []
+            done = self.run_tool("compare", name, *OPTIONS, *GAIN, "--json", *asked)
+            self.assertEqual(done.returncode, code, (name, least, done.stdout, done.stderr))
+        self.fail_with(2, ["--fail-on", "{warn,error}"], "compare", "sound.bag", *OPTIONS, "--json", "--fail-on", "ok")
+
+    def test_json_needs_no_report_and_leaves_no_file(self):
+        robot.write_bag(self.path("a.bag"), 30.0)
+        with_page = self.compare("a.bag")
+        before = set(os.listdir(self.directory))
+        alone = self.succeed_json("compare", "a.bag", *OPTIONS, *GAIN)
+        self.assertEqual(alone, with_page)
+        self.assertEqual(set(os.listdir(self.directory)), before)
+
+    def test_several_sound_recordings_are_one_reference(self):
+        def factor_of(name, *references):
+            found = self.succeed_json("compare", name, *OPTIONS, *GAIN, "--reference", *references)
+            return found["friction_factor"], found["verdict"]["level"]
+
+        for name, friction in (("low", 0.75), ("usual", 1.0), ("high", 1.25), ("again", 1.01), ("worn", 1.4)):
+            robot.write_bag(self.path(f"{name}.bag"), 60.0, friction)
+            self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name)
+        one, level = factor_of("worn.bag", "usual")
+        self.assertAlmostEqual(one["value"], 1.4, delta=0.02)
+        self.assertTrue(one["is_to_own"])
+        self.assertEqual(level, "WARN")
+        alike, level = factor_of("worn.bag", "usual", "again")
+        self.assertEqual(level, "WARN")
+        self.assertLess(alike["high"] / alike["low"], one["high"] / one["low"])
+        # A joint that repeats so badly when it is sound shows no fault with this factor.
+        apart, level = factor_of("worn.bag", "low", "usual", "high")
+        self.assertAlmostEqual(apart["value"], 1.4, delta=0.03)
+        self.assertGreater(apart["high"] / apart["low"], one["high"] / one["low"])
+        self.assertEqual(level, "OK")
+
+    def test_a_reference_that_was_not_judged_is_none(self):
+        robot.write_bag(self.path("short.bag"), 2.0)
+        robot.write_bag(self.path("a.bag"), 60.0, 1.3)
+        self.succeed("compare", "short.bag", *OPTIONS, *GAIN, "--report", "short")
+        found = self.compare("a.bag", "--reference", "short")
+        self.assertFalse(found["friction_factor"]["is_to_own"])
+        self.assertIn("The reference did not judge this joint's friction", self.finding(found, "Friction")["text"])
 
     def test_dropped_and_damaged_messages_change_little(self):
         robot.write_bag(self.path("sound.bag"), 120.0)

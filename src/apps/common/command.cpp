@@ -107,6 +107,12 @@ const CommandOption& CommandOption::type(const char* name) const
   return *this;
 }
 
+const CommandOption& CommandOption::follow() const
+{
+  option_.follow = true;
+  return *this;
+}
+
 const CommandOption& CommandOption::group(const char* name) const
 {
   option_.group = name;

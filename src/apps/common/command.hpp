@@ -31,6 +31,7 @@ public:
   const CommandOption& existingFile() const;
   const CommandOption& existingDirectory() const;
   const CommandOption& needs(const char* option) const;
+  const CommandOption& follow() const;  ///< of a list: values may follow each other behind one name
   /// `check` gives what is wrong with the text, or nothing.
   const CommandOption& check(const std::function<std::string(const std::string&)>& check) const;
 

@@ -26,6 +26,7 @@ struct DeclaredOption
   std::size_t least{};         ///< number of values, if it is given
   std::size_t most{};          ///< zero: it is a flag
   bool commas{};               ///< separate values; then those of one name may also follow each other
+  bool follow{};               ///< values of one name may follow each other
   bool required{};
   std::vector<std::string> needed{};                                     ///< options to give with it
   std::vector<std::function<std::string(const std::string&)>> checks{};  ///< each says what is wrong with a value

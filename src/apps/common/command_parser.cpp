@@ -85,7 +85,7 @@ const po::value_semantic* valuesOf(const DeclaredOption& option)
   {
     return po::bool_switch();
   }
-  return new Values(option.commas ? option.most : 1);
+  return new Values(option.commas || option.follow ? option.most : 1);
 }
 
 /// Options with their values as Boost tells them apart. Whole names only; negative numbers are values.

@@ -395,7 +395,7 @@ Answer compareIn(const py::dict& arguments)
   ComparisonOptions options;
   takeRecording(given, options);
   given.take("report", options.report);
-  given.take("reference", options.reference);
+  given.take("reference", options.references);
   return call(
       given, options, [](const ComparisonOptions& asked) { return compare(asked); },
       [](const ComparedRecording& found) { return toPython(found.document); });

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/friction_verdict.hpp"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "base/joined.hpp"
+#include "base/number_text.hpp"
+#include "tracking/verdict.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// By which the friction of a sound drive repeats from one recording to the other, beyond what joints have in common,
+/// standard deviation: a share, and a torque, which counts in small drives [-], [N.m].
+constexpr double REPEAT_SHARE = 0.03;
+constexpr double REPEAT_TORQUE = 0.22;
+
+/// Of the load: masses of the links, 2 %, and gain, 5 %; standard deviation as a share.
+constexpr double LOAD_SHARE = 0.054;
+
+/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
+/// much, since no fault takes a fifth of it.
+constexpr double MORE_THAN_OWN = 0.05;
+constexpr double LESS_THAN_OWN = 0.10;
+
+/// No fault of severity 1 leaves less of the friction.
+constexpr double LEAST_OF_FAULTS = 0.5;
+
+/// Below it the rows show no friction at all.
+constexpr double NO_FRICTION = 0.1;
+
+/// A factor that is known no better than to a half tells nothing; half width of the logarithm's interval.
+constexpr double WIDEST = 0.4;
+
+/// No change of temperature makes the friction of grease and contacts larger or smaller by more.
+constexpr double MAX_ARM_FRICTION = 2.5;
+
+constexpr std::size_t MIN_POINTS = 3;
+
+std::string rounded(double value, int digits)
+{
+  return fixedText(value, digits);
+}
+
+/// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
+double impossibleWay(const std::vector<FrictionPoint>& points)
+{
+  for (const double way : { -1.0, 1.0 })
+  {
+    if (FrictionPoints::meanOf(points, way).measured < 0.0)
+    {
+      return way;
+    }
+  }
+  return 0.0;
+}
+
+using Gap = std::pair<Reason, std::string>;  // and in a sentence
+
+/// Why points show no factor.
+Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
+{
+  const std::string common = is_to_own ? " at the speeds that the reference has too" : "";
+  if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
+  {
+    return { Reason::AT_REST, "The joint does not move." };
+  }
+  if (points.empty() && !evidence.friction().points().empty())
+  {
+    return { Reason::NO_REFERENCE, "The reference has none of the speeds of this recording." };
+  }
+  if (points.empty())
+  {
+    return { Reason::NO_STEADY_MOTION, "The joint never moves steadily for long enough to measure its friction." };
+  }
+  if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
+  {
+    return { Reason::ONE_DIRECTION,
+             "The joint moves one way only" + common + ": friction and load cannot be separated." };
+  }
+  if (points.size() < MIN_POINTS)
+  {
+    return { Reason::ONE_SPEED,
+             "The joint moves at one speed only" + common + ": how sure its friction is cannot be told." };
+  }
+  if (evidence.friction().blocks().count() < MIN_POINTS)
+  {
+    return { Reason::TOO_SHORT, "Too few rows show the joint's friction: it moves steadily for less than " +
+                                    rounded(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
+  }
+  return { Reason::SOUND, "" };
+}
+
+/// Why a factor that the points show is not that of a drive.
+Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>& points, LoadOrigin load)
+{
+  if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
+  {
+    return { Reason::NO_FRICTION,
+             "The effort holds no friction (" + rounded(factor.value, 2) +
+                 " times the expected one): it is a modelled or commanded torque, or something else carries the "
+                 "joint." };
+  }
+  if (factor.is_below_faults)
+  {
+    return { Reason::LESS_THAN_FAULTS,
+             "Friction is " + factorText(factor) +
+                 " times the expected one, less than any fault leaves of it: the arm is led by hand or held, or gain "
+                 "or ratio are others than configured." };
+  }
+  if (const double way = impossibleWay(points); way != 0.0)
+  {
+    return { Reason::LOAD_WRONG, std::string("Friction would push the joint along in ") +
+                                     (way > 0.0 ? "positive" : "negative") +
+                                     " motion, which it cannot: " + wrongLoad(load) };
+  }
+  if (!(factor.high() < factor.value * std::exp(WIDEST)))
+  {
+    return { Reason::FRICTION_SCATTER, "The rows scatter too much to know the friction: " + factorText(factor) +
+                                           " times the expected one; " + wrongLoad(load) };
+  }
+  return { Reason::SOUND, "" };
+}
+
+/// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as many
+/// recordings as STATED_COUNT beside the difference of those that there are.
+double repeatDeviation(double stated, const OwnReference& own)
+{
+  constexpr double STATED_COUNT = 3.0;
+  const auto count = static_cast<double>(own.recordings);
+  const double of_one =
+      (STATED_COUNT * 0.5 * stated * stated + (count - 1.0) * own.recordings_deviation * own.recordings_deviation) /
+      (STATED_COUNT + count - 1.0);
+  return std::sqrt(of_one * (1.0 + 1.0 / count));
+}
+
+/// Standard deviation of the logarithm, of all that the factor is uncertain by.
+double deviationOf(const FrictionRatio& ratio, const JointContext& context, bool is_to_own)
+{
+  const FrictionPoint backward = FrictionPoints::meanOf(ratio.points, -1.0);
+  const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
+  const double twin = backward.twin + forward.twin;
+  const double load = LOAD_SHARE * std::abs(forward.load - backward.load) / twin;
+  const double repeat =
+      repeatDeviation(std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin)), is_to_own ? context.own : OwnReference());
+  const double of_reference = is_to_own ? context.own.friction_deviation : 0.0;
+  const double size = std::max(std::abs(ratio.value), NO_FRICTION);
+  return std::sqrt(std::pow(ratio.deviation / size, 2) + repeat * repeat + std::pow(load / size, 2) +
+                   of_reference * of_reference + context.arm_deviation * context.arm_deviation);
+}
+
+/// Distance of the factor from 1 over that at which its interval clears the bound; > 1 is a departure.
+double departure(const FrictionFactor& factor, double arm_friction, double more, double less)
+{
+  const double distance = factor.value / arm_friction - 1.0;
+  const double width = factor.high() / factor.value;
+  return std::max(distance / ((1.0 + more) * width - 1.0), -distance / (1.0 - (1.0 - less) / width));
+}
+}  // namespace
+
+std::string factorText(const FrictionFactor& factor)
+{
+  return rounded(factor.value, 2) + " [" + rounded(factor.low(), 2) + ", " + rounded(factor.high(), 2) + "]";
+}
+
+const char* wrongLoad(LoadOrigin load)
+{
+  switch (load)
+  {
+    case LoadOrigin::CONFIGURED:
+      break;
+    case LoadOrigin::RECORDED:
+      return "the load is not the one that was recorded.";
+    case LoadOrigin::ARM:
+      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
+  }
+  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
+}
+
+FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context)
+{
+  const bool has_own = !context.own.friction.empty();
+  FrictionRatio ratio = has_own ? evidence.friction().ratioTo(context.own.friction) : evidence.friction().ratio();
+  FrictionFactor factor;
+  factor.is_to_own = has_own || context.is_identified;
+  std::tie(factor.reason, factor.why_not) = whyNone(ratio.points, evidence, has_own);
+  if (!factor.isJudged())
+  {
+    return factor;
+  }
+  factor.value = ratio.value;
+  factor.deviation = deviationOf(ratio, context, has_own);
+  factor.scatter = ratio.deviation / std::max(std::abs(ratio.value), NO_FRICTION);
+  constexpr double SURE = 2.0;  // standard deviations
+  factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
+                           factor.value + SURE * factor.deviation * std::max(factor.value, NO_FRICTION) < 1.0;
+  std::tie(factor.reason, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());
+  return factor;
+}
+
+OwnReference ownReference(const std::vector<SoundFriction>& recordings)
+{
+  OwnReference own;
+  if (recordings.empty())
+  {
+    return own;
+  }
+  std::vector<FrictionPoint> all;
+  double variance = 0.0;
+  for (const SoundFriction& recording : recordings)
+  {
+    all.insert(all.end(), recording.points.begin(), recording.points.end());
+    variance += recording.deviation * recording.deviation;
+  }
+  const auto count = static_cast<double>(recordings.size());
+  own.friction = FrictionPoints::merged(all);
+  own.friction_deviation = std::sqrt(variance) / count;
+  std::vector<double> logarithms;
+  for (const SoundFriction& recording : recordings)
+  {
+    const double ratio = FrictionPoints::ratioOf(FrictionPoints::common(recording.points, own.friction));
+    if (ratio > 0.0)
+    {
+      logarithms.push_back(std::log(ratio));
+    }
+  }
+  own.recordings = std::max<std::size_t>(logarithms.size(), 1);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double logarithm : logarithms)
+  {
+    sum += logarithm;
+    squares += logarithm * logarithm;
+  }
+  const auto known = static_cast<double>(own.recordings);
+  own.recordings_deviation =
+      own.recordings > 1 ? std::sqrt(std::max(0.0, squares - sum * sum / known) / (known - 1.0)) : 0.0;
+  return own;
+}
+
+namespace
+{
+std::string frictionText(const FrictionFactor& factor, const JointEvidence& evidence, const JointContext& context,
+                         const Finding& finding, double less, double more)
+{
+  std::string text = "Friction is " + factorText(factor) + " times " +
+                     (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
+                     (context.arm_friction == 1.0 ?
+                          "" :
+                          ", " + rounded(factor.value / context.arm_friction, 2) + " times what the " +
+                              rounded(context.arm_friction, 2) + " times that joints of the arm have in common make") +
+                     " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
+                     " counts as sound).";
+  if (finding.level != VerdictLevel::OK)
+  {
+    const auto name = [](const WeightedCause& cause) { return causeName(cause.cause); };
+    text += (evidence.assessor().signatures().signatures.empty() ? std::string() :
+             finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
+                                      " Possible faults: " + joined(finding.causes, ", ", name) + ".") +
+            " Other causes: grease at another temperature, another preload, a wrong gain.";
+  }
+  if (context.own.is_unjudged)
+  {
+    text += " The reference did not judge this joint's friction, so it is no reference of it.";
+  }
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
+  text += std::isfinite(context.own.temperature) ?
+              ", the reference at " + rounded(context.own.temperature, 0) +
+                  " degC; the twin's law of friction makes up for the difference." :
+              ".";
+  return text + " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
+         " to " + rounded(points.back().speed, 2) + " rad/s.";
+}
+
+void nameCauses(const SignatureSet& signatures, double way, Finding& finding)
+{
+  constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
+  const std::vector<Cause> causes = causesThatMove(signatures, ScalarIndicator::RUNNING_TORQUE, way, MIN_CHANGE);
+  for (const Cause cause : causes)
+  {
+    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
+  }
+}
+}  // namespace
+
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
+                      Verdict& verdict)
+{
+  Finding finding;
+  finding.subject = FindingSubject::FRICTION;
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
+  if (!points.empty())
+  {
+    verdict[Figure::LOWEST_SPEED] = points.front().speed;
+    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
+  }
+  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
+  const FrictionFactor factor = frictionFactor(evidence, context);
+  verdict.friction_text = factor.why_not;
+  finding.reason = factor.reason;
+  if (!factor.isJudged())
+  {
+    return finding;
+  }
+  if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
+  {
+    finding.reason = Reason::COMMON_FRICTION;
+    verdict.friction_text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
+                            " times the reference's, more than temperature makes: gain or unit of the currents are not "
+                            "the configured ones.";
+    return finding;
+  }
+  const double of_kind = parameters.comparison.friction_tolerance;
+  const double more = factor.is_to_own ? MORE_THAN_OWN : of_kind;
+  const double less = factor.is_to_own ? LESS_THAN_OWN : of_kind;
+  finding.level = levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
+  const double value = factor.value / context.arm_friction;
+  if (finding.level != VerdictLevel::OK)
+  {
+    finding.reason = Reason::FRICTION;
+    nameCauses(evidence.assessor().signatures(), value > 1.0 ? 1.0 : -1.0, finding);
+  }
+  verdict[factor.is_to_own ? Figure::FRICTION_OF_OWN : Figure::FRICTION_OF_TWIN] = factor.value;
+  verdict[Figure::FRICTION_SCATTER] = factor.scatter;
+  verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
+  verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;
+  verdict.friction = { value, factor.low() / context.arm_friction, factor.high() / context.arm_friction, true };
+  verdict.friction_text = frictionText(factor, evidence, context, finding, less, more);
+  return finding;
+}
+}  // namespace hjt

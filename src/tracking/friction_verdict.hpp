@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tracking/joint_evidence.hpp"
+#include "tracking/reason.hpp"
+
+namespace hjt
+{
+struct JointContext;
+struct Finding;
+struct Verdict;
+struct OwnReference;
+
+constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
+
+/// Friction of a joint as a multiple of its own when sound, or of the twin's, with what is known of its error
+/// (docs/compare.md).
+struct FrictionFactor
+{
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: the rows show none
+  double deviation{};                                        ///< standard deviation of its logarithm [-]
+  double scatter{};                                          ///< the part of it that the rows' scatter makes [-]
+  bool is_to_own{};                                          ///< a multiple of the joint's own, else of the twin's
+  bool is_below_faults{};                                    ///< less than any fault leaves of it
+  Reason reason{ Reason::SOUND };                            ///< why it is not judged; SOUND: it is
+  std::string why_not;                                       ///< the same in a sentence; empty: it is judged
+
+  bool isJudged() const { return reason == Reason::SOUND; }
+  /// Ends of the 95 % interval.
+  double low() const { return value * std::exp(-halfWidth()); }
+  double high() const { return value * std::exp(halfWidth()); }
+
+private:
+  double halfWidth() const
+  {
+    constexpr double NORMAL_95 = 1.96;
+    return NORMAL_95 * deviation;
+  }
+};
+
+/// "1.18 [1.05, 1.32]"
+std::string factorText(const FrictionFactor& factor);
+
+/// Of the rows that the evidence holds, apart from what the joints of the arm have in common.
+FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context);
+
+/// Friction of a sound joint in one recording.
+struct SoundFriction
+{
+  std::vector<FrictionPoint> points;
+  double deviation{};  ///< by the scatter, standard deviation as a share [-]
+};
+
+/// Means at the speeds of all, and by how much the recordings differ. None: it is not known.
+OwnReference ownReference(const std::vector<SoundFriction>& recordings);
+
+/// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
+                      Verdict& verdict);
+
+/// What to say of a load that is not the joint's.
+const char* wrongLoad(LoadOrigin load);
+}  // namespace hjt

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Friction of a measured joint as a factor with an interval: what is judged, and why what is not is not.
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "test_parameters.hpp"
+
+#include "tracking/common_friction.hpp"
+#include "tracking/verdict.hpp"
+
+namespace hjt
+{
+namespace
+{
+using testing::Contains;
+using testing::DoubleEq;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr double PERIOD = 0.008;  // [s]
+
+using Motion = std::function<MotionSample(double)>;
+
+/// An elbow that swings under a weight.
+MotionSample swing(double time)
+{
+  MotionSample sample;
+  sample.position = 0.7 * std::sin(0.9 * time) + 0.2 * std::sin(2.3 * time);
+  sample.velocity = 0.63 * std::cos(0.9 * time) + 0.46 * std::cos(2.3 * time);
+  sample.load = 20.0 * std::sin(sample.position + 0.4);
+  return sample;
+}
+
+/// To and fro between -0.5 and 0.5 rad at one speed [rad/s].
+Motion between(double speed)
+{
+  return [speed](double time)
+  {
+    const double way = std::fmod(speed * time, 2.0);
+    MotionSample sample;
+    sample.position = way < 1.0 ? way - 0.5 : 1.5 - way;
+    sample.velocity = way < 1.0 ? speed : -speed;
+    return sample;
+  };
+}
+
+/// A joint whose friction is a multiple of its twin's.
+class WornJoint
+{
+public:
+  WornJoint()
+    : parameters_(shippedParameters({ "motor.viscous_friction=0.0", "solver.rate=2000" }))
+    , twin_(parameters_)
+    , evidence_(parameters_, LoadOrigin::CONFIGURED)
+  {
+  }
+
+  const Parameters& parameters() const { return parameters_; }
+  double gain() const { return parameters_.telemetry.torque_per_current; }
+
+  /// What its rows show. `factor`: of the friction, by time. `more`: current [A].
+  const JointEvidence& evidence(const Motion& motion, double seconds, const std::function<double(double)>& factor,
+                                double more = 0.0)
+  {
+    std::mt19937 engine(5);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    evidence_.reset();
+    for (int i = 0; i * PERIOD < seconds; ++i)
+    {
+      MotionSample sample = motion(i * PERIOD);
+      sample.time = i * PERIOD;
+      sample.after_gap = i == 0;
+      const MotionPrediction predicted = twin_.step(sample);
+      const double worn = (factor(sample.time) - 1.0) * predicted.friction_torque / gain();
+      sample.current = predicted.current + worn + more + noise(engine);
+      evidence_.update(sample);
+    }
+    return evidence_;
+  }
+
+  const JointEvidence& evidence(const Motion& motion, double seconds, double factor, double more = 0.0)
+  {
+    return evidence(
+        motion, seconds, [factor](double) { return factor; }, more);
+  }
+
+  Finding judged(double factor, const JointContext& context)
+  {
+    verdict_ = Verdict();
+    return judgeFriction(evidence(swing, 60.0, factor), parameters_, context, verdict_);
+  }
+
+  const Verdict& verdict() const { return verdict_; }  ///< that holds what was judged last
+
+private:
+  Parameters parameters_;
+  Verdict verdict_;
+  MotionDriven twin_;
+  JointEvidence evidence_;
+};
+
+class FrictionVerdict : public testing::Test
+{
+protected:
+  FrictionVerdict() : joint_(shared()) {}
+
+  /// What it shows when its friction is the twin's.
+  SoundFriction sound(double factor = 1.0, const Motion& motion = swing)
+  {
+    const JointEvidence& evidence = joint_.evidence(motion, 60.0, factor);
+    return { evidence.friction().points(), frictionFactor(evidence, {}).scatter };
+  }
+
+  /// Other joints of the arm are as in the reference.
+  static JointContext witnessed(const OwnReference& own)
+  {
+    JointContext context;
+    context.own = own;
+    context.arm_deviation = 0.0;
+    return context;
+  }
+
+  Reason gap(const Motion& motion, double seconds, double factor, const JointContext& context = {}, double more = 0.0)
+  {
+    return gapOf(joint_.evidence(motion, seconds, factor, more), context);
+  }
+
+  /// That of evidence, which is never a fault.
+  Reason gapOf(const JointEvidence& evidence, const JointContext& context)
+  {
+    const FrictionFactor factor = frictionFactor(evidence, context);
+    Verdict verdict;
+    const Finding finding = judgeFriction(evidence, joint_.parameters(), context, verdict);
+    EXPECT_EQ(finding.reason, factor.reason);
+    EXPECT_EQ(finding.level == VerdictLevel::NOT_JUDGED, factor.reason != Reason::SOUND);
+    if (!factor.isJudged())
+    {
+      EXPECT_THAT(finding.causes, IsEmpty());
+      EXPECT_EQ(verdict.friction_text, factor.why_not);
+      EXPECT_THAT(verdict.friction_text, Not(IsEmpty()));
+      EXPECT_FALSE(verdict.friction.has_interval);
+    }
+    return factor.reason;
+  }
+
+  WornJoint& joint_;
+
+private:
+  /// Its tables take seconds.
+  static WornJoint& shared()
+  {
+    static WornJoint joint;
+    return joint;
+  }
+};
+
+TEST_F(FrictionVerdict, WarnsWhereTheIntervalClearsTheBound)
+{
+  const JointContext context = witnessed(ownReference({ sound() }));
+  const auto level = [&](double factor) { return joint_.judged(factor, context).level; };
+  EXPECT_EQ(level(1.0), VerdictLevel::OK);
+  EXPECT_EQ(level(1.10), VerdictLevel::OK);
+  EXPECT_EQ(level(0.90), VerdictLevel::OK);
+  const Finding more = joint_.judged(1.30, context);
+  EXPECT_EQ(more.level, VerdictLevel::WARN);
+  EXPECT_EQ(more.reason, Reason::FRICTION);
+  EXPECT_THAT(joint_.verdict().friction_text, HasSubstr("times this joint's own when it was sound"));
+  EXPECT_THAT(more.causes, Contains(Field(&WeightedCause::cause, causeOf(FaultKind::LUBRICANT_DEGRADATION))));
+  const JudgedFriction& friction = joint_.verdict().friction;
+  EXPECT_NEAR(friction.factor, 1.30, 0.01);
+  EXPECT_TRUE(friction.has_interval);
+  EXPECT_GT(friction.lower, 1.05);
+  EXPECT_GT(friction.upper, friction.factor);
+  EXPECT_EQ(level(0.70), VerdictLevel::WARN);
+  EXPECT_EQ(level(3.0), VerdictLevel::ERROR);
+}
+
+TEST_F(FrictionVerdict, WithoutAReferenceDrivesOfOneKindDiffer)
+{
+  EXPECT_EQ(joint_.judged(1.30, {}).level, VerdictLevel::OK);
+  EXPECT_EQ(joint_.judged(0.75, {}).level, VerdictLevel::OK);
+  EXPECT_EQ(joint_.judged(1.70, {}).level, VerdictLevel::WARN);
+  JointContext context;
+  context.is_identified = true;
+  EXPECT_EQ(joint_.judged(1.30, context).level, VerdictLevel::WARN) << "the twin's friction is this joint's own";
+}
+
+TEST_F(FrictionVerdict, TheIntervalHoldsWhatIsUncertain)
+{
+  const OwnReference own = ownReference({ sound() });
+  const JointEvidence& evidence = joint_.evidence(swing, 60.0, 1.2);
+  const FrictionFactor witnessed_factor = frictionFactor(evidence, witnessed(own));
+  EXPECT_NEAR(witnessed_factor.value, 1.2, 0.01);
+  EXPECT_NEAR(witnessed_factor.low() * witnessed_factor.high(), std::pow(witnessed_factor.value, 2), 1e-9);
+  // Sound drives repeat within 3 %, twice.
+  EXPECT_GT(witnessed_factor.deviation, 0.03);
+  JointContext alone;
+  alone.own = own;
+  const FrictionFactor unwitnessed = frictionFactor(evidence, alone);
+  EXPECT_NEAR(std::pow(unwitnessed.deviation, 2) - std::pow(witnessed_factor.deviation, 2), std::pow(UNWITNESSED, 2),
+              1e-9);
+
+  // Rows that differ from each other more: friction that comes and goes.
+  const auto uneven = [](double time) { return std::fmod(time, 20.0) < 10.0 ? 1.0 : 1.4; };
+  const FrictionFactor scattered = frictionFactor(joint_.evidence(swing, 60.0, uneven), witnessed(own));
+  EXPECT_NEAR(scattered.value, 1.2, 0.05);
+  EXPECT_GT(scattered.scatter, 5.0 * witnessed_factor.scatter);
+  EXPECT_GT(scattered.deviation, witnessed_factor.deviation);
+}
+
+TEST_F(FrictionVerdict, ALoadThatBothWaysDoNotShareIsUncertain)
+{
+  // Down with the weight, up without: what is off of the load does not go out.
+  const auto sorted = [](double time)
+  {
+    MotionSample sample = swing(time);
+    sample.load = sample.velocity > 0.0 ? 30.0 : -30.0;
+    return sample;
+  };
+  const auto alike = [](double time)
+  {
+    MotionSample sample = swing(time);
+    sample.load = 30.0;
+    return sample;
+  };
+  const double with = frictionFactor(joint_.evidence(sorted, 60.0, 1.0), {}).deviation;
+  const double without = frictionFactor(joint_.evidence(alike, 60.0, 1.0), {}).deviation;
+  EXPECT_GT(with, 1.3 * without);
+}
+
+TEST_F(FrictionVerdict, ReferencesThatDifferWidenTheInterval)
+{
+  const OwnReference agreeing = ownReference({ sound(0.99), sound(1.0), sound(1.01) });
+  const OwnReference differing = ownReference({ sound(0.8), sound(1.0), sound(1.2) });
+  EXPECT_EQ(agreeing.recordings, 3U);
+  EXPECT_NEAR(agreeing.recordings_deviation, 0.01, 0.002);
+  EXPECT_NEAR(differing.recordings_deviation, 0.2, 0.02);
+  EXPECT_EQ(joint_.judged(1.25, witnessed(agreeing)).level, VerdictLevel::WARN);
+  EXPECT_EQ(joint_.judged(1.25, witnessed(differing)).level, VerdictLevel::OK);
+  // Three that agree tell more than one.
+  const JointEvidence& evidence = joint_.evidence(swing, 60.0, 1.25);
+  EXPECT_LT(frictionFactor(evidence, witnessed(agreeing)).deviation,
+            frictionFactor(evidence, witnessed(ownReference({ sound() }))).deviation);
+}
+
+TEST_F(FrictionVerdict, MotionThatShowsNoFrictionIsNotJudged)
+{
+  const auto still = [](double) { return MotionSample(); };
+  const auto forward = [](double time)
+  {
+    MotionSample sample = swing(time);
+    sample.velocity = 0.4 + 0.2 * std::cos(2.3 * time);
+    sample.position = 0.4 * time + 0.2 / 2.3 * std::sin(2.3 * time) - 10.0;
+    return sample;
+  };
+  EXPECT_EQ(gap(still, 60.0, 1.0), Reason::AT_REST);
+  EXPECT_EQ(gap(swing, 0.2, 1.0), Reason::NO_STEADY_MOTION);
+  EXPECT_EQ(gap(forward, 60.0, 2.0), Reason::ONE_DIRECTION);
+  EXPECT_EQ(gap(between(0.5), 60.0, 2.0), Reason::ONE_SPEED);
+  EXPECT_EQ(gap(swing, 3.9, 2.0), Reason::TOO_SHORT);
+  EXPECT_EQ(gap(swing, 60.0, 1.0), Reason::SOUND);
+}
+
+TEST_F(FrictionVerdict, SpeedsThatTheReferenceLacksAreNotJudged)
+{
+  const JointContext slow = witnessed(ownReference({ sound(1.0, between(0.02)) }));
+  EXPECT_EQ(gap(between(1.5), 60.0, 2.0, slow), Reason::NO_REFERENCE);
+  EXPECT_EQ(gap(swing, 60.0, 1.0, witnessed(ownReference({ sound() }))), Reason::SOUND);
+}
+
+TEST_F(FrictionVerdict, WhatNoFaultMakesIsNoFault)
+{
+  EXPECT_EQ(gap(swing, 60.0, 0.0), Reason::NO_FRICTION);
+  EXPECT_EQ(gap(swing, 60.0, 0.3), Reason::LESS_THAN_FAULTS);
+  EXPECT_EQ(gap(swing, 60.0, -1.0), Reason::LESS_THAN_FAULTS);
+  const FrictionPoint point = joint_.evidence(swing, 60.0, 1.0).friction().points().back();
+  EXPECT_EQ(gap(swing, 60.0, 1.0, {}, 1.5 * point.measured / joint_.gain()), Reason::LOAD_WRONG);
+  const auto chance = [](double time) { return std::fmod(time, 20.0) < 10.0 ? 0.1 : 1.9; };
+  EXPECT_EQ(gapOf(joint_.evidence(swing, 20.0, chance), {}), Reason::FRICTION_SCATTER);
+}
+
+TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
+{
+  JointContext context;
+  context.own.is_unjudged = true;
+  const Finding finding = joint_.judged(1.3, context);
+  EXPECT_EQ(finding.level, VerdictLevel::OK);
+  EXPECT_THAT(joint_.verdict().friction_text, HasSubstr("The reference did not judge this joint's friction"));
+}
+
+std::vector<MeasuredFriction> jointsWith(const std::vector<double>& ratios)
+{
+  std::vector<MeasuredFriction> joints;
+  for (const double ratio : ratios)
+  {
+    joints.push_back({ ratio, 25.0, true, [](double temperature) { return 1.25 - 0.01 * temperature; }, false, false });
+  }
+  return joints;
+}
+
+TEST(CommonFriction, WhatAGroupSharesIsNoJointsFault)
+{
+  const ArmFriction arm = commonFriction(jointsWith({ 1.02, 0.98, 1.0, 1.25, 1.2, 1.22 }), 0.15);
+  EXPECT_EQ(arm.median, 1.0);
+  ASSERT_EQ(arm.groups.size(), 2U);
+  EXPECT_DOUBLE_EQ(arm.groups[0].median, 1.0);
+  EXPECT_DOUBLE_EQ(arm.groups[1].median, 1.22);
+  EXPECT_THAT(arm.factors, ElementsAre(1.0, 1.0, 1.0, DoubleEq(1.17), DoubleEq(1.17), DoubleEq(1.17)))
+      << "5 % may be chance";
+  EXPECT_THAT(arm.deviations, Each(0.0)) << "each joint has its group as witness";
+  EXPECT_THAT(arm.misfit.clause, IsEmpty());
+}
+
+TEST(CommonFriction, OneFaultyJointMovesNoGroup)
+{
+  const ArmFriction arm = commonFriction(jointsWith({ 1.0, 1.6, 1.0, 1.0, 1.0, 1.0 }), 0.15);
+  EXPECT_THAT(arm.factors, Each(1.0));
+  const ArmFriction apart = commonFriction(jointsWith({ 1.0, 1.6, 2.4, 1.0, 1.0, 1.0 }), 0.15);
+  EXPECT_FALSE(apart.groups[0].is_known) << "no two agree";
+  EXPECT_EQ(apart.deviations[1], UNWITNESSED);
+  EXPECT_EQ(apart.factors[1], 1.0);
+}
+
+TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
+{
+  std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 });
+  joints[0].is_below_faults = true;
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, IsEmpty()) << "one alone may have another gain";
+  joints[2].is_below_faults = true;
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("led by hand"));
+  joints[0].is_none = joints[2].is_none = true;
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::NO_FRICTION);
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));
+}
+}  // namespace
+}  // namespace hjt
