@@ -130,7 +130,7 @@ def chapter_5(page):
     page.check("thesis.contact_point",
                "eq. 5.11 against the true foot of the normal: largest difference of overlap among teeth in contact",
                "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*")
-    literal = independent_teeth(independent_ring(page, INSERTION, "polar", "one_force"))
+    literal = independent_teeth(independent_ring("polar", "one_force"))
     fourth = math.radians(-30.0)
     printed_overlap = (ring.a * math.cos(ring.psi[tooth]) - x) * math.cos(ring.normal[tooth]) + (
         ring.b * math.sin(ring.psi[tooth]) + y) * math.sin(ring.normal[tooth])

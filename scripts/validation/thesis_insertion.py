@@ -7,7 +7,7 @@ import numpy as np
 from bounds import AtMost, Within, number
 from independent_ring import IndependentRing
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
-from thesis_data import INSERTION, MEASURED, OPERATION, TEETH_FS, insertion, parameters, thesis_insertion
+from thesis_data import INSERTION, MEASURED, OPERATION, TEETH_FS, insertion, thesis_insertion
 
 # Table 6.3: literature [86] for the largest force on a ball, the last extrapolated by the thesis. [mm], [N]
 LITERATURE = ((0.35, 506.8), (0.5, 708.4), (0.6, 845.3), (0.7, 980.8), (0.8, 1114.8))
@@ -75,13 +75,9 @@ def thesis_rows(page, numbers, ring):
         page.check(f"thesis.{name}", quantity, f"thesis {where}", bound, value, unit, reason)
 
 
-def independent_ring(page, arguments, contact_law, bending_law):
-    """The equilibrium by the page's own program, with the parameters of a run."""
-    given = parameters(page, *arguments)
-    gear, ring = given["gear"], given["ring"]
-    stiffness = (given["contact"]["stiffness"], ring["tension_stiffness"], ring["bending_stiffness"])
-    return IndependentRing(gear["flexspline_inner_radius"], stiffness, contact_law,
-                           bending_law).insert(gear["wave_amplitude"])
+def independent_ring(contact_law, bending_law):
+    """The equilibrium by the page's own program, with the numbers of the thesis: its Tables 3.4 and 6.1, w0 of 5.1."""
+    return IndependentRing(MEASURED.flexspline_radius, (1e8, 5e9, 400.0), contact_law, bending_law).insert(0.35e-3)
 
 
 def independent_teeth(ring):
@@ -106,7 +102,7 @@ text of the thesis and run for this page: the twin's value, its in brackets.
 """)
     columns = (("radius", "ρ [mm]", 1e3, 4), ("angle_deviation", "ψ − ψ0 [mrad]", 1e3, 3),
                ("wave_generator_force", "F_WG [N]", 1.0, 2), ("rim_tension", "F to tooth i+1 [N]", 1.0, 1))
-    own = independent_teeth(independent_ring(page, INSERTION, "polar", "absolute"))
+    own = independent_teeth(independent_ring("polar", "absolute"))
     page.table(["tooth"] + [title for _, title, _, _ in columns], [[i] + [
         f"{scale * ring.teeth[name][i]:.{digits}f} ({scale * own[name][i]:.{digits}f})"
         for name, _, scale, digits in columns
@@ -115,9 +111,8 @@ text of the thesis and run for this page: the twin's value, its in brackets.
     working, working_ring = insertion(page, "insertion_operation", *OPERATION)
     cases = (("polar", "laws of the thesis", ring, own),
              ("normal", "true normal instead of eq. 5.11", normal_ring,
-              independent_teeth(independent_ring(page, INSERTION, "normal", "absolute"))),
-             ("operation", "working laws", working_ring,
-              independent_teeth(independent_ring(page, OPERATION, "normal", "curvature"))))
+              independent_teeth(independent_ring("normal", "absolute"))),
+             ("operation", "working laws", working_ring, independent_teeth(independent_ring("normal", "curvature"))))
     quantities = (
         ("radius", "radius", "µm", 1e6, 1e-5),
         ("wave_generator_force", "force of the wave generator", "N", 1.0, 1e-3),
@@ -214,7 +209,7 @@ def rim_figures(page, ring):
             for i in (0, 50, 100, 150)) / 2 / np.max(np.abs(ring.bending)), "",
         "segments lie half a pitch off the axes")
     ellipse = 2.0 * math.pi * math.sqrt((31.0**2 + 30.4**2) / 2.0)
-    x, y = independent_ring(page, INSERTION, "polar", "absolute").points()
+    x, y = independent_ring("polar", "absolute").points()
     stretched = float(np.sum(np.hypot(np.roll(x, -1) - x, np.roll(y, -1) - y))) / (TEETH_FS * ring.rest_distance) - 1.0
     page.check("thesis.perimeter", "growth of the perimeter, sum of the distances", INDEPENDENT,
                Within(100.0 * stretched, absolute=1e-6), 100.0 * perimeter_growth(ring), "%", "both solve to 1e-5 N")
