@@ -146,7 +146,25 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
     return _call("compare",
                  {"recording": recording, "report": report, "joint": joint, "arm": arm,
                   "reference": reference and list(map(_plain, reference)), "load": load, "identified": identified,
-                  "topic": topic, "time_scale": time_scale, "force": force,
+                  "topic": topic, "time_scale": time_scale, "force": force, "progress": progress}, overlays)
+
+
+def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",
+           bag: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
+           topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
+           overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """A healthy joint, or arm, beside a recording: the tool's follow.
+
+    mode: 'motion' predicts the current of the recorded motion, 'torque' the motion of the recorded current, 'observer'
+    corrects the twin towards the recorded angles. bag: bag to write with the node's topics and the forces on every
+    tooth. Others as of identify. Block by block there is Tracker.
+
+    Returns the tool's summary as a dict, and as its 'comparison' a structured array of shape (compared rows,) with
+    dtype COMPARISON_DTYPE, of an arm a dict of them by the joint's short name. InputError, ParameterError.
+    """
+    return _call("follow",
+                 {"recording": recording, "joint": joint, "arm": arm, "mode": mode, "bag": bag, "load": load,
+                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
                   "progress": progress}, overlays)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Thesis, chapter 6: the insertion of the wave generator, every figure drawn again."""
+import functools
 import math
 
 import numpy as np
@@ -75,6 +76,7 @@ def thesis_rows(page, numbers, ring):
         page.check(f"thesis.{name}", quantity, f"thesis {where}", bound, value, unit, reason)
 
 
+@functools.lru_cache(maxsize=None)
 def independent_ring(contact_law, bending_law):
     """The equilibrium by the page's own program, with the numbers of the thesis: its Tables 3.4 and 6.1, w0 of 5.1."""
     return IndependentRing(MEASURED.flexspline_radius, (1e8, 5e9, 400.0), contact_law, bending_law).insert(0.35e-3)

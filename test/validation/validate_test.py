@@ -39,7 +39,8 @@ class Validate(unittest.TestCase):
         self.assertRegex(text, r"\d+ rows, \d+ hold, 0 fail")
 
     def test_stiffer_contact_fails_the_insertion(self):
-        self.fails(["contact.stiffness=1.1e+8"], ["thesis.force_max", "thesis.independent_operation_wave_generator_force"], ["thesis"])
+        self.fails(["contact.stiffness=1.1e+8"],
+                   ["thesis.force_max", "thesis.independent_operation_wave_generator_force"], ["thesis"])
 
     def test_doubled_friction_fails_the_slips(self):
         self.fails(["contact.friction_coefficient=0.14"], ["catalogue.interface_slip"], ["catalogue"])
