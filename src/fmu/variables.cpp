@@ -116,9 +116,8 @@ struct ParameterMaker
 /// The configured fault of a kind that the twin starts with, if any; else none at the first place allowed.
 Fault startingFault(FaultKind kind, const Parameters& parameters)
 {
-  const auto found =
-      std::find_if(parameters.faults.begin(), parameters.faults.end(),
-                   [&](const Fault& fault) { return fault.kind == kind && fault.isActiveAtStart(); });
+  const auto found = std::find_if(parameters.faults.begin(), parameters.faults.end(),
+                                  [&](const Fault& fault) { return fault.kind == kind && fault.isActiveAtStart(); });
   return found != parameters.faults.end() ? *found : Fault{ kind, 0.0, firstPlace(kind) };
 }
 
