@@ -61,7 +61,9 @@ void printTable(const std::vector<std::string>& headings, const std::vector<std:
   {
     for (std::size_t column = 0; column < row.size(); ++column)
     {
-      std::cout << std::setw(width(column)) << row[column];
+      // A text may be longer than its heading.
+      const bool is_long = static_cast<int>(row[column].size()) >= width(column);
+      std::cout << (is_long && column > 0 ? "  " : "") << std::setw(width(column)) << row[column];
     }
     std::cout << '\n';
   }

@@ -263,13 +263,16 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
 {
   const auto list = [](const std::array<double, 3>& values)
   { return std::vector<double>(values.begin(), values.end()); };
+  constexpr double KNOWN = 5.0;  // half width of a mass that says anything of these arms' payloads [kg]
+  const std::string mass = found.mass_half_width < KNOWN ?
+                               shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width) + " kg" :
+                               "not known: the arm hardly moves, or is in too few poses";
   std::vector<ReportLine> lines{ { "payload.configured", "", found.configured.mass },
                                  { "payload.mass", "", found.mass },
                                  { "payload.mass_half_width", "", found.mass_half_width },
                                  { "payload.moment", "", list(found.moment) },
                                  { "payload.moment_half_width", "", list(found.moment_half_width) },
-                                 { "", "payload by the currents",
-                                   shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width), "kg" },
+                                 { "", "payload by the currents", mass },
                                  { "", "payload configured", found.configured.mass, "kg" } };
   if (found.differs() && found.mass > found.mass_half_width)
   {

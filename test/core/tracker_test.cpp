@@ -465,7 +465,7 @@ TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
     robot.push(tracker, i, i > row_of(20.0) && i < row_of(20.5) ? 3.0 : 0.0);
     if (i % row_of(1.0) == 0)
     {
-      watch.judge(1.0);
+      watch.judge();
       each_second.push_back(watch.now());
       if (i > row_of(19.0))
       {
