@@ -25,9 +25,9 @@ struct Contact
 /// becomes the usual, and what comes more often than a fifth of the time is no contact: friction, gain and payload.
 ///
 /// While it moves: the mean residual over MEAN must differ from the usual one of that direction by more than half of
-/// the friction, 5 % of the load and 2 % of the largest load together, for LASTING. At rest: it must be beyond what
-/// stiction can hold either way by more than the friction, 5 % of the load and 2 % of the largest load together. Fixed
-/// memory; nothing allocates or throws.
+/// the friction, 5 % of the load and 2 % of the largest load together, for 0.1 s. At rest: it must be beyond what
+/// stiction can hold either way by more than the friction, 5 % of the load and 2 % of the largest load together, for
+/// 0.5 s, since a start that has not broken away takes up to 0.3 s. Fixed memory; nothing allocates or throws.
 class ContactWatch
 {
 public:
@@ -50,6 +50,8 @@ public:
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
+    constexpr double LASTING = 0.1;          // [s]
+    constexpr double LASTING_AT_REST = 0.5;  // [s]
     const double step = sample.after_gap ? 0.0 : std::max(0.0, sample.time - time_);
     time_ = sample.time;
     const bool is_held = held_torque > 0.0;
@@ -67,7 +69,8 @@ public:
     {
       mean_ += follow * (residual_torque - mean_);
       resting_.time += step;
-      see(sample.time, step, std::abs(mean_) > held_torque + friction_limit + share && moved_ > SETTLED, resting_);
+      see(sample.time, step, std::abs(mean_) > held_torque + friction_limit + share && moved_ > SETTLED,
+          LASTING_AT_REST, resting_);
       return;
     }
     Usual& usual = usual_[way > 0 ? 1 : 0];
@@ -79,7 +82,7 @@ public:
     const bool is_known = usual.time > KNOWN;
     usual.torque += std::min(1.0, step / std::min(MEMORY, usual.time)) *
                     (is_known ? std::clamp(difference, -bound, bound) : difference);
-    see(sample.time, step, std::abs(mean_) > bound && moved_ > SETTLED && is_known, moving_);
+    see(sample.time, step, std::abs(mean_) > bound && moved_ > SETTLED && is_known, LASTING, moving_);
   }
 
   bool hasSeen() const noexcept { return moving_.hasSeen() || resting_.hasSeen(); }
@@ -112,11 +115,10 @@ private:
     }
   };
 
-  void see(double time, double step, bool is_beyond, Seen& seen) noexcept
+  void see(double time, double step, bool is_beyond, double lasting, Seen& seen) noexcept
   {
-    constexpr double LASTING = 0.1;  // [s]
     beyond_ = is_beyond ? beyond_ + step : 0.0;
-    if (beyond_ > LASTING)
+    if (beyond_ > lasting)
     {
       if (!isRecent())
       {
