@@ -30,20 +30,20 @@ enum Quantity : std::size_t
 constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_",
                                                      "joint_temperatures_" };
 
-/// Columns of some joints of a controller's table. `Count` of them.
-template <std::size_t Count>
+/// Columns of some joints of a controller's table. `COUNT` of them.
+template <std::size_t COUNT>
 class JointTable
 {
 public:
-  static constexpr std::size_t COLUMNS = 1 + QUANTITIES * Count;
+  static constexpr std::size_t COLUMNS = 1 + QUANTITIES * COUNT;
 
   JointTable(const std::string& path, const std::vector<int>& numbers)
     // A value that is no number spoils its row, not the file.
-    : table_(path, names(numbers), COLUMNS - 1 - 2 * Count, COLUMNS)
+    : table_(path, names(numbers), COLUMNS - 1 - 2 * COUNT, COLUMNS)
   {
     table_.allowCutOff();
     values_.fill(std::nan(""));
-    std::fill_n(values_.begin() + column(MOMENT, 0), Count, 0.0);
+    std::fill_n(values_.begin() + column(MOMENT, 0), COUNT, 0.0);
   }
 
   bool read() { return table_.read(values_); }
@@ -69,12 +69,12 @@ private:
     return std::all_of(values_.begin() + column(first, 0), values_.begin() + column(end, 0), is_zero);
   }
 
-  static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * Count + joint; }
+  static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * COUNT + joint; }
 
   static typename NumberTable<COLUMNS>::Names names(const std::vector<int>& numbers)
   {
     typename NumberTable<COLUMNS>::Names names{ "timestamp" };
-    for (std::size_t joint = 0; joint < Count; ++joint)
+    for (std::size_t joint = 0; joint < COUNT; ++joint)
     {
       for (std::size_t quantity = 0; quantity < QUANTITIES; ++quantity)
       {
@@ -89,10 +89,10 @@ private:
 };
 
 /// False of a motion that was made up without currents: its rows at zero are no failed reading.
-template <std::size_t Count>
+template <std::size_t COUNT>
 bool recordsCurrent(const std::string& path, const std::vector<int>& numbers)
 {
-  JointTable<Count> table(path, numbers);
+  JointTable<COUNT> table(path, numbers);
   while (table.read())
   {
     if (!table.isWithoutCurrent())
@@ -103,7 +103,7 @@ bool recordsCurrent(const std::string& path, const std::vector<int>& numbers)
   return false;
 }
 
-template <std::size_t Count>
+template <std::size_t COUNT>
 class TableMotion
 {
 public:
@@ -111,15 +111,15 @@ public:
     : source_(source)
     , numbers_(numbers)
     , table_(source.path, numbers)
-    , angles_(Count)
-    , rows_(Count)
-    , temperatures_(Count)
+    , angles_(COUNT)
+    , rows_(COUNT)
+    , temperatures_(COUNT)
   {
   }
 
   MotionCount read(const VisitRows& visit)
   {
-    const bool zero_is_failure = Count > 1 && recordsCurrent<Count>(source_.path, numbers_);
+    const bool zero_is_failure = COUNT > 1 && recordsCurrent<COUNT>(source_.path, numbers_);
     bool more = true;
     while (more && table_.read())
     {
@@ -154,7 +154,7 @@ private:
     const double by_stamps = times_.at(stamp);
     const double time = times_.rounds() == 1 ? table_.time() - first_ : by_stamps;
     count_.duration = std::max(count_.duration, time);
-    for (std::size_t i = 0; i < Count; ++i)
+    for (std::size_t i = 0; i < COUNT; ++i)
     {
       rows_[i] = { time, angles_[i].take(time, table_.value(ANGLE, i)),
                    source_.current_per_effort * table_.value(CURRENT, i), table_.value(MOMENT, i) };
@@ -172,7 +172,7 @@ private:
   void finish()
   {
     std::uint64_t folds = 0;
-    for (std::size_t i = 0; i < Count; ++i)
+    for (std::size_t i = 0; i < COUNT; ++i)
     {
       folds += angles_[i].folds();
       count_.refused_temperatures += temperatures_[i].refused();
@@ -193,7 +193,7 @@ private:
 
   const MotionSource& source_;
   const std::vector<int>& numbers_;
-  JointTable<Count> table_;
+  JointTable<COUNT> table_;
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;
   std::vector<TemperatureRecord> temperatures_;
