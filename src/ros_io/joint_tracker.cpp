@@ -23,8 +23,6 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// Between two messages of a verdict of the same level and reason [s].
-constexpr double VERDICT_PERIOD = 1.0;
 /// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
 
@@ -249,7 +247,7 @@ void JointTracker::look(const ros::WallTime& now)
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
   recent_failures_.update(counters.solver_failures, now);
-  publishVerdict(now);
+  publishVerdict();
   tasks_.look();
   logState();
 }
@@ -291,8 +289,8 @@ Verdict JointTracker::verdictNow() const
   return verdict;
 }
 
-/// At once when it changes, else while rows come. The last one stays.
-void JointTracker::publishVerdict(const ros::WallTime& now)
+/// At once when it changes, else when more rows were judged. The last one stays.
+void JointTracker::publishVerdict()
 {
   if (tracker_.counters().compared == 0)
   {
@@ -300,15 +298,13 @@ void JointTracker::publishVerdict(const ros::WallTime& now)
   }
   const Verdict verdict = verdictNow();
   const std::pair<VerdictLevel, Reason> state{ verdict.level, verdict.reason };
-  const bool has_rows = comparison_.time != published_time_;
-  if (published_ == state && (!has_rows || (now - published_at_).toSec() < VERDICT_PERIOD))
+  if (published_ == state && published_row_ == verdict_.lastRow())
   {
     return;
   }
   published_ = state;
-  published_time_ = comparison_.time;
-  published_at_ = now;
-  outputs_.offer(stream_.clock.stamp(comparison_.time), verdict);
+  published_row_ = verdict_.lastRow();
+  outputs_.offer(stream_.clock.stamp(published_row_), verdict);
 }
 
 DiagnosticVerdict JointTracker::judgeTelemetry() const

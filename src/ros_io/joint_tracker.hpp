@@ -133,7 +133,7 @@ private:
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   Verdict verdictNow() const;
-  void publishVerdict(const ros::WallTime& now);
+  void publishVerdict();
   bool hasStopped() const;
   DiagnosticVerdict judgeTelemetry() const;
   DiagnosticVerdict judgeComparison() const;
@@ -165,8 +165,7 @@ private:
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
   std::optional<std::pair<VerdictLevel, Reason>> published_;  // the last one
-  double published_time_{};                                   // of its last row [s]
-  ros::WallTime published_at_;
+  double published_row_{};                                    // time of its last row [s]
   std::optional<std::uint8_t> logged_level_;
   DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;

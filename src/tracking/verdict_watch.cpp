@@ -25,6 +25,7 @@ MeasuredFriction VerdictWatch::measuredFriction() const
 void VerdictWatch::judge(double arm_friction, double arm_deviation, const Misfit& of_arm)
 {
   const MotionReach& reach = tracker_.evidence().reach();
+  last_row_ = reach.end;
   const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
   Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction, arm_deviation, of_arm));
   const bool is_open = !verdict.isJudged() && confirmed_.isJudged() && !whyNotJudged() && !is_new;

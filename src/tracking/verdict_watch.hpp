@@ -39,7 +39,7 @@ public:
   /// Why nothing is judged at the moment; none: it is.
   std::optional<Misfit> whyNotJudged() const;
 
-  double lastRow() const { return tracker_.evidence().reach().end; }  ///< that counts [s]
+  double lastRow() const { return last_row_; }  ///< that was judged [s]
 
   /// The one that stands.
   const Verdict& confirmed() const { return confirmed_; }
@@ -58,6 +58,7 @@ private:
   const bool is_identified_;
   Misfit misfit_;
   bool settled_{ true };
+  double last_row_{};  // [s]
   Verdict confirmed_;
   double confirmed_at_{};  // time up to which no worse verdict was found [s]
 };
