@@ -100,14 +100,14 @@ public:
   std::vector<Misfit> whyNotJudged() const;
 
 private:
-  /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current of
-  /// the rotor's inertia, and the load.
+  /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current
+  /// of the rotor's inertia, and the load.
   class LoadRegression
   {
   public:
     void add(double step, double velocity, double acceleration, double load, double current) noexcept;
-    /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others do
-    /// not explain, summed over time.
+    /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
+    /// do not explain, summed over time.
     FittedFactor slope(double& content) const;
     /// What constant, friction and acceleration leave of load and current [A^2 s].
     Eigen::Matrix2d left() const;

@@ -8,9 +8,9 @@
 
 namespace hjt
 {
-/// Rows of a table in a text file with a header. Commas, semicolons, tabs or blanks separate its texts; the header tells
-/// which. Blanks and quotes around a text, a byte order mark and a carriage return before a line's end are not part of
-/// it, nor is a # before the header. Between semicolons a comma is a decimal one. Empty lines are skipped.
+/// Rows of a table in a text file with a header. Commas, semicolons, tabs or blanks separate its texts; the header
+/// tells which. Blanks and quotes around a text, a byte order mark and a carriage return before a line's end are not
+/// part of it, nor is a # before the header. Between semicolons a comma is a decimal one. Empty lines are skipped.
 class CsvRows
 {
 public:

@@ -24,8 +24,8 @@ class NumberTable
 public:
   using Names = std::array<std::string, N>;
 
-  /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header: it names all
-  /// columns that are missing.
+  /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header: it names
+  /// all columns that are missing.
   NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0)
     : names_(names), strict_(N - lenient), rows_(path)
   {

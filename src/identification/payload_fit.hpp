@@ -32,8 +32,8 @@ struct IdentifiedPayload
 /// with Y_i the torque of a unit payload at joint i (rigid-body dynamics), and for each joint, as nuisances, an error
 /// of the gain, of the Coulomb and the viscous friction and an offset, each normally distributed about zero. Each row
 /// of the fit is the mean over 0.1 s of one joint that moves one way; it counts by the deviation and the correlation of
-/// that joint's rows, outliers less. The interval holds three parts: that of the fit, or by leaving out one tenth of the
-/// time after the other where that is wider, and 2 % of the links' own masses.
+/// that joint's rows, outliers less. The interval holds three parts: that of the fit, or by leaving out one tenth of
+/// the time after the other where that is wider, and 2 % of the links' own masses.
 class PayloadFit
 {
 public:

@@ -62,9 +62,9 @@ bool recordsLoad(const MotionSource& source);
 /// continuous (UnfoldedAngle).
 /// Messages: header stamps count, or the time of recording where they are zero in all messages. A load counts for rows
 /// from its stamp on. Left out and counted: a row that agrees neither with the one before nor with the one after, its
-/// angle beyond what a joint can reach in the time or its stamp more than a second off theirs; one with all efforts zero
-/// where others have some; one without a stamp where others have one. `misfit` where two sources give the same joint.
-/// Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
+/// angle beyond what a joint can reach in the time or its stamp more than a second off theirs; one with all efforts
+/// zero where others have some; one without a stamp where others have one. `misfit` where two sources give the same
+/// joint. Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
 /// joint_temperatures_N [degC]. Temperatures of messages are sensor_msgs/Temperature of any topic whose frame_id is the
 /// joint; a row has the latest one that is not too old (TemperatureRecord). `visit` returns false to stop. `progress`:
 /// 0 ... 1.

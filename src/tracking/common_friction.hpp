@@ -52,9 +52,9 @@ struct ArmFriction
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
 /// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
 /// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
-/// are the median joint's, so that one faulty joint changes neither. What is left then and most of the three joints of a
-/// group agree on is the group's, less 5 % that may be chance: three drives do not fail alike. Two joints or more whose friction is below what any
-/// fault leaves: something else carries the arm, and no joint is judged.
+/// are the median joint's, so that one faulty joint changes neither. What is left then and most of the three joints of
+/// a group agree on is the group's, less 5 % that may be chance: three drives do not fail alike. Two joints or more
+/// whose friction is below what any fault leaves: something else carries the arm, and no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or

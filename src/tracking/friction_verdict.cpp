@@ -127,8 +127,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   return { Reason::SOUND, "" };
 }
 
-/// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as many
-/// recordings as STATED_COUNT beside the difference of those that there are.
+/// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as
+/// many recordings as STATED_COUNT beside the difference of those that there are.
 double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;

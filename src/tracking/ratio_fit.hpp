@@ -12,8 +12,8 @@
 
 namespace hjt
 {
-/// Do motor and joint turn by the configured ratio? Slope of the motor's angle over the joint's by least squares of their
-/// changes from row to row, in which a constant torsion has no part. Nothing allocates but the text.
+/// Do motor and joint turn by the configured ratio? Slope of the motor's angle over the joint's by least squares of
+/// their changes from row to row, in which a constant torsion has no part. Nothing allocates but the text.
 class RatioFit
 {
 public:

@@ -457,8 +457,8 @@ TEST(ArmLoad, AllocatesNothingAfterConstruction)
   EXPECT_EQ(allocationCount(), before);
 }
 
-/// Samples and currents of an arm with a payload, of which the twins know nothing, with friction and gains that they know
-/// badly.
+/// Samples and currents of an arm with a payload, of which the twins know nothing, with friction and gains that they
+/// know badly.
 struct LoadedArm
 {
   explicit LoadedArm(const Payload& payload) : samples(6), predicted(6)
