@@ -81,8 +81,7 @@ JointEvidence::Row JointEvidence::update(const MotionSample& sample, bool fits) 
   const double residual = sample.current - predicted_.current;
   const bool was_touched = isTouched();
   contact_.update(sample, gain * residual, predicted_.friction_torque,
-                  predicted_.band > parameters_.telemetry.current_deviation ? gain * predicted_.band : 0.0,
-                  predicted_.friction_limit);
+                  predicted_.band > parameters_.telemetry.current_deviation);
   addToReach(sample);
   if (std::isfinite(sample.motor_angle))
   {

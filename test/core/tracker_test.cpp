@@ -505,31 +505,6 @@ TEST(Tracker, WhatStaysIsNoContact)
   EXPECT_GT(tracker.outsideShare(), 0.5);
 }
 
-TEST(ContactWatch, SeesAtRestWhatStictionCannotHold)
-{
-  constexpr double LARGEST = 100.0;  // [N.m]
-  constexpr double HELD = 10.0;      // by stiction [N.m]
-  constexpr double FRICTION = 12.0;  // at most [N.m]
-  const auto seen = [](double push)
-  {
-    ContactWatch watch(LARGEST);
-    for (int i = 0; i * PERIOD < 30.0; ++i)
-    {
-      MotionSample sample;
-      sample.time = PERIOD * i;
-      const bool is_pushed = sample.time > 20.0 && sample.time < 21.0;
-      watch.update(sample, is_pushed ? push : 0.5 * HELD, 0.0, HELD, FRICTION);
-    }
-    return watch;
-  };
-  constexpr double BOUND = HELD + FRICTION + 0.02 * LARGEST;
-  EXPECT_FALSE(seen(0.9 * BOUND).hasSeen());
-  const ContactWatch watch = seen(1.2 * BOUND);
-  ASSERT_TRUE(watch.hasSeen());
-  EXPECT_NEAR(watch.largest().since, 20.2, 0.2);
-  EXPECT_NEAR(watch.largest().largest, 1.2 * BOUND, 0.5);
-}
-
 TEST(JointEvidence, TellsTheLoadsOfTheMotion)
 {
   JointEvidence evidence(parametersWith({}), LoadOrigin::RECORDED);
