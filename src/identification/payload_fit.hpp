@@ -22,6 +22,8 @@ struct IdentifiedPayload
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
+  /// It differs, and is a mass at all.
+  bool isCarried() const { return differs() && mass > mass_half_width; }
   /// What it is, its centre where it has a mass.
   Payload payload() const;
 };

@@ -224,7 +224,7 @@ ComparedRecording compare(const ComparisonOptions& options)
   ComparedRecording compared;
   compared.is_arm = recording.isArm();
   compared.page = (fs::path(options.report) / REPORT_PAGE).string();
-  if (pass.payload && pass.payload->differs() && pass.payload->mass > pass.payload->mass_half_width)
+  if (pass.payload && pass.payload->isCarried())
   {
     compared.payload = pass.payload;
     recording.setPayload(pass.payload->payload());

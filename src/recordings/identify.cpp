@@ -274,7 +274,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
                                  { "payload.moment_half_width", "", list(found.moment_half_width) },
                                  { "", "payload by the currents", mass },
                                  { "", "payload configured", found.configured.mass, "kg" } };
-  if (found.differs() && found.mass > found.mass_half_width)
+  if (found.isCarried())
   {
     std::string centre;
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -304,14 +304,14 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
 }
 }  // namespace
 
+bool CheckedArm::isUsable() const
+{
+  return std::any_of(joints.begin(), joints.end(), [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
+}
+
 bool RecordingCheck::isUsable() const
 {
-  return std::any_of(arms.begin(), arms.end(),
-                     [](const CheckedArm& arm)
-                     {
-                       return std::any_of(arm.joints.begin(), arm.joints.end(),
-                                          [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
-                     });
+  return std::any_of(arms.begin(), arms.end(), [](const CheckedArm& arm) { return arm.isUsable(); });
 }
 
 RecordingCheck checkRecording(const RecordingOptions& options)

@@ -72,6 +72,8 @@ struct CheckedArm
   std::vector<RecordingFinding> findings;
   std::vector<CheckedJoint> joints;
   std::vector<TriedRemedy> tried;
+
+  bool isUsable() const;  ///< a joint is judged
 };
 
 struct RecordingCheck

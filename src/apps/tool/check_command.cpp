@@ -11,6 +11,7 @@
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/json.hpp"
+#include "output/report.hpp"
 #include "output/text_table.hpp"
 #include "recordings/comparison_files.hpp"
 #include "recordings/recording_check.hpp"
@@ -26,12 +27,6 @@ bool stops(const std::vector<RecordingFinding>& findings)
 {
   return std::any_of(findings.begin(), findings.end(),
                      [](const RecordingFinding& finding) { return finding.stops.has_value(); });
-}
-
-bool isUsable(const CheckedArm& arm)
-{
-  return std::any_of(arm.joints.begin(), arm.joints.end(),
-                     [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
 }
 
 /// Commands to run next, ready to paste: with nothing that was not tried.
@@ -60,7 +55,7 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
                                                                  joint->name + reading + " --report report" };
   }
   const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
-  if (!isUsable(arm) && !is_mended)
+  if (!arm.isUsable() && !is_mended)
   {
     return {};
   }
@@ -281,67 +276,42 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
 }
 
-Json findingsOf(const std::vector<RecordingFinding>& findings)
-{
-  std::vector<Json> all;
-  for (const RecordingFinding& finding : findings)
-  {
-    all.push_back(Json{ { "kind", finding.kind }, { "text", finding.text }, { "stops", finding.stops.has_value() } });
-  }
-  return all;
-}
+const std::vector<Column<RecordingFinding>> FINDING_COLUMNS{ { "kind", &RecordingFinding::kind },
+                                                             { "text", &RecordingFinding::text },
+                                                             { "stops", [](const RecordingFinding& finding)
+                                                               { return finding.stops.has_value(); } } };
 
-std::vector<Json> jointsOf(const CheckedArm& arm)
-{
-  std::vector<Json> joints;
-  for (const CheckedJoint& joint : arm.joints)
-  {
-    joints.push_back(Json{ { "name", joint.name },
-                           { "joint", joint.joint },
-                           { "rows", joint.reach.rows },
-                           { "least_angle", joint.reach.least_angle },
-                           { "most_angle", joint.reach.most_angle },
-                           { "least_speed", joint.reach.least_speed },
-                           { "most_speed", joint.reach.most_speed },
-                           { "least_current", joint.reach.least_current },
-                           { "most_current", joint.reach.most_current },
-                           { "has_velocity", joint.has_velocity },
-                           { "torque_per_current", joint.gain },
-                           { "torque_per_current_stated", joint.stated_gain },
-                           { "time_factor", joint.time_factor.value },
-                           { "velocity_lag", joint.lag.value },
-                           { "judged", joint.verdict.isJudged() },
-                           { "verdict", verdictFields(joint.verdict) },
-                           { "findings", findingsOf(joint.findings) } });
-  }
-  return joints;
-}
+const std::vector<Column<CheckedJoint>> JOINT_COLUMNS{
+  { "name", &CheckedJoint::name },
+  { "joint", &CheckedJoint::joint },
+  { "rows", [](const CheckedJoint& joint) { return joint.reach.rows; } },
+  { "least_angle", [](const CheckedJoint& joint) { return joint.reach.least_angle; } },
+  { "most_angle", [](const CheckedJoint& joint) { return joint.reach.most_angle; } },
+  { "least_speed", [](const CheckedJoint& joint) { return joint.reach.least_speed; } },
+  { "most_speed", [](const CheckedJoint& joint) { return joint.reach.most_speed; } },
+  { "least_current", [](const CheckedJoint& joint) { return joint.reach.least_current; } },
+  { "most_current", [](const CheckedJoint& joint) { return joint.reach.most_current; } },
+  { "has_velocity", &CheckedJoint::has_velocity },
+  { "torque_per_current", &CheckedJoint::gain },
+  { "torque_per_current_stated", &CheckedJoint::stated_gain },
+  { "time_factor", [](const CheckedJoint& joint) { return joint.time_factor.value; } },
+  { "velocity_lag", [](const CheckedJoint& joint) { return joint.lag.value; } },
+  { "judged", [](const CheckedJoint& joint) { return joint.verdict.isJudged(); } },
+  { "verdict", [](const CheckedJoint& joint) { return verdictFields(joint.verdict); } },
+  { "findings", [](const CheckedJoint& joint) { return Table(FINDING_COLUMNS, joint.findings).rows(); } }
+};
 
-std::vector<Json> rankingOf(const CheckedArm& arm)
-{
-  std::vector<Json> ranking;
-  for (const ArmFit& fit : arm.ranked)
-  {
-    ranking.push_back(Json{ { "arm", fit.arm },
-                            { "effort", effortKeyword(fit.unit) },
-                            { "current", fit.rest.current },
-                            { "left", fit.rest.left } });
-  }
-  return ranking;
-}
+const std::vector<Column<ArmFit>> RANKING_COLUMNS{ { "arm", &ArmFit::arm },
+                                                   { "effort",
+                                                     [](const ArmFit& fit) { return effortKeyword(fit.unit); } },
+                                                   { "current", [](const ArmFit& fit) { return fit.rest.current; } },
+                                                   { "left", [](const ArmFit& fit) { return fit.rest.left; } } };
 
-std::vector<Json> triedOf(const CheckedArm& arm)
-{
-  std::vector<Json> tried;
-  for (const TriedRemedy& remedy : arm.tried)
-  {
-    tried.push_back(Json{ { "options", remedy.options.substr(1) },
-                          { "before", remedy.before },
-                          { "after", remedy.after },
-                          { "helps", remedy.helps } });
-  }
-  return tried;
-}
+const std::vector<Column<TriedRemedy>> TRIED_COLUMNS{ { "options", [](const TriedRemedy& remedy)
+                                                        { return remedy.options.substr(1); } },
+                                                      { "before", &TriedRemedy::before },
+                                                      { "after", &TriedRemedy::after },
+                                                      { "helps", &TriedRemedy::helps } };
 
 Json documentOf(const ArmOptions& options, const CheckedContents& contents, const CheckedArm& arm)
 {
@@ -357,7 +327,7 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "unreadable", arm.found.corrupt },
                { "remarks", arm.found.remarks },
                { "arms", arm.fitting },
-               { "ranking", rankingOf(arm) },
+               { "ranking", Table(RANKING_COLUMNS, arm.ranked).rows() },
                { "arm", arm.taken.empty() ? Json() : Json(arm.taken) },
                { "missing_joints", arm.missing },
                { "load", arm.taken.empty() ? "unknown" : "arm" },
@@ -368,10 +338,10 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "effort_factor", arm.effort.factor.value },
                { "effort_factor_uncertainty", arm.effort.factor.uncertainty },
                { "effort", arm.effort.is_known ? Json(effortKeyword(arm.effort.unit)) : Json() },
-               { "findings", findingsOf(arm.findings) },
-               { "tried", triedOf(arm) },
-               { "joints", jointsOf(arm) },
-               { "usable", isUsable(arm) },
+               { "findings", Table(FINDING_COLUMNS, arm.findings).rows() },
+               { "tried", Table(TRIED_COLUMNS, arm.tried).rows() },
+               { "joints", Table(JOINT_COLUMNS, arm.joints).rows() },
+               { "usable", arm.isUsable() },
                { "next", nextCommands(options, arm) } };
 }
 
