@@ -137,7 +137,7 @@ std::string textOfGains(const CheckedArm& arm)
       text += (text.empty() ? "" : ", ") + joint.name + " " + roundedText(joint.stated_gain, 4);
     }
   }
-  return text + " N.m/A: target_moment over target_current at rest";
+  return text + " N.m/A, of the controller";
 }
 
 std::string textOfStamps(const CheckedArm& arm)
@@ -209,22 +209,37 @@ void printJoints(const CheckedArm& arm)
   std::cout << '\n';
 }
 
-/// Which joints a verdict will be of, and why not of the others.
+/// Joints that are not judged for one reason.
+struct OpenJoints
+{
+  std::vector<std::string> names;
+  std::string text;  ///< of all, or what comes before the first joint's numbers
+};
+
+/// Which joints a verdict will be of, and why not of the others; the numbers of several are those of `--json`.
 void printJudged(const CheckedArm& arm)
 {
   std::vector<std::string> judged;
-  std::map<std::string, std::vector<std::string>> open;
+  std::map<std::string, OpenJoints> open;
   for (const CheckedJoint& joint : arm.joints)
   {
-    const Verdict& verdict = joint.verdict;
+    if (joint.verdict.isJudged())
+    {
+      judged.push_back(joint.name);
+      continue;
+    }
+    const Finding& finding = joint.verdict.findings.front();
     const bool is_said = stops(arm.findings) || stops(joint.findings);
-    (verdict.isJudged() ? judged : open[is_said ? "as said above" : findingText(verdict, verdict.findings.front())])
-        .push_back(joint.name);
+    const std::string text = is_said ? "as said above" : findingText(joint.verdict, finding);
+    OpenJoints& alike = open[is_said ? "" : reasonName(finding.reason)];
+    const bool differs = !alike.names.empty() && alike.text != text;
+    alike.text = differs ? text.substr(0, text.find(": ")) : text;
+    alike.names.push_back(joint.name);
   }
   printLine("judged", judged.empty() ? "nothing" : "friction and current of " + joined(judged));
-  for (const auto& [reason, names] : open)
+  for (const auto& [reason, joints] : open)
   {
-    printLine("not judged", joined(names) + ": " + reason);
+    printLine("not judged", joined(joints.names) + ": " + joints.text);
   }
 }
 
