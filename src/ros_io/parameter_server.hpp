@@ -10,10 +10,12 @@
 namespace hjt
 {
 /// Parameters of an arm's node beside those of its drives: name or file of the arm; directory of overlays that
-/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it.
+/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it; faults of an arm without a
+/// robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them.
 constexpr const char* ARM = "arm";
 constexpr const char* IDENTIFIED = "identified";
 constexpr const char* DESCRIPTION = "description";
+constexpr const char* FAULT = "fault";
 
 /// Reads every other parameter below `parameter_namespace` (`section/key`) from the server; types are kept as they
 /// are. Nothing is left out, so that `parseParameters` finds unknown keys; nothing is defaulted.
