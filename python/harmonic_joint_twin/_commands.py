@@ -139,7 +139,7 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
     report: directory that gets report.html, its figures and its data. reference: an earlier report, in sound condition.
     Others as of identify.
 
-    Returns the report's data as a dict: 'level', 'reason', of an arm 'joints'. InputError, ParameterError.
+    Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
     """
     return _call("compare",
                  {"recording": recording, "report": report, "joint": joint, "arm": arm, "reference": reference,

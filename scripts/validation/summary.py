@@ -19,7 +19,7 @@ KINDS = [
     ("a parameter was fitted to it",
      r"catalogue\.(torsion|no_load|starting)|drives\.|heat\.time_constant|size14\.(torsion|no_load|starting)|"
      r"family\.torsion|stress\.finite_elements"),
-    ("numbers and claims of the thesis", r"thesis\.(?!prototype|operation|normal|locked|drift|mean_torque|perfect)"),
+    ("numbers and claims of the thesis", r"thesis\.(?!independent|locked|drift|mean_torque|perfect)"),
 ]
 OTHERS = "consequences of the equations: identities, symmetries, other programs, closed forms"
 

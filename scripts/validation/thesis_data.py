@@ -98,18 +98,16 @@ class Ring:
         """Eq. 5.23 at rest."""
         return self.contact_stiffness * np.maximum(self.overlap(), 0.0)
 
-    def out_of_balance(self, printed=False):
+    def out_of_balance(self):
         """Largest force left over on a tooth by eq. 5.1-5.2 at rest, no circular spline; with the bending force of
-        either segment, or as `printed` of one alone."""
+        either segment."""
         force = self.contact_force()
-        fx, fy = force * np.cos(self.normal), force * np.sin(self.normal)
         sx = self.tension * np.cos(self.slope) - self.bending * np.sin(self.slope)  # eq. 5.41, 5.53
         sy = self.tension * np.sin(self.slope) + self.bending * np.cos(self.slope)
-        if printed:
-            sx_before, sy_before = self.tension * np.cos(self.slope), self.tension * np.sin(self.slope)
-        else:
-            sx_before, sy_before = sx, sy
-        return float(np.max(np.hypot(fx + sx - np.roll(sx_before, 1), fy + sy - np.roll(sy_before, 1))))
+        return float(
+            np.max(
+                np.hypot(force * np.cos(self.normal) + sx - np.roll(sx, 1),
+                         force * np.sin(self.normal) + sy - np.roll(sy, 1))))
 
 
 def wrapped(angle):

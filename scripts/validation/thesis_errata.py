@@ -9,7 +9,7 @@ from thesis_data import (INSERTION, MEASURED, OPERATION, PITCH, RATIO, TEETH_CS,
                          thesis_insertion, turn)
 from thesis_drive import share_engaged
 from thesis_gear import circular_spline_inertia, circular_spline_mass, ring_coefficients, wave_generator_inertia
-from thesis_insertion import LITERATURE, ball_load, perimeter_growth
+from thesis_insertion import LITERATURE, ball_load, independent_ring, independent_teeth, perimeter_growth
 
 
 def foot(a, b, x, y):
@@ -130,13 +130,15 @@ def chapter_5(page):
     page.check("thesis.contact_point",
                "eq. 5.11 against the true foot of the normal: largest difference of overlap among teeth in contact",
                "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*")
+    literal = independent_teeth(independent_ring(page, INSERTION, "polar", "one_force"))
+    fourth = math.radians(-30.0)
     printed_overlap = (ring.a * math.cos(ring.psi[tooth]) - x) * math.cos(ring.normal[tooth]) + (
         ring.b * math.sin(ring.psi[tooth]) + y) * math.sin(ring.normal[tooth])
     return [
         [
             "5.1, 5.2", "one bending force F_F on a tooth",
-            f"{ring.out_of_balance(printed=True):.0f} N are left on a tooth of chapter 6's equilibrium; with the "
-            f"bending forces of the segments on either side {ring.out_of_balance():.1g} N", "both segments"
+            f"then the wave generator presses a tooth with {np.max(literal['wave_generator_force']):.0f} N; with the "
+            f"bending forces of both segments, as in fig. 5.16, with chapter 6's {np.max(force):.1f} N", "both segments"
         ],
         [
             "5.5", "x = r sin ψ0, y = r cos ψ0",
@@ -184,6 +186,11 @@ def chapter_5(page):
             f"{1e6 * float(ring.overlap()[tooth]):.2f} µm", "parentheses"
         ],
         [
+            "5.27, 5.39", "fourth and third quadrant: F_y = −F sin",
+            f"at {math.degrees(fourth):.0f}° a push outwards would have F_y = {-math.sin(fourth):+.1f} F, not the "
+            f"normal's {math.sin(fourth):+.1f} F; eq. 5.28 and 5.41 are right", "eq. 5.28, 5.41"
+        ],
+        [
             "5.51, Table 6.1", "c_F = 0 in 5.4, 1e-2 in the table; c_T = 1e-2 in 7.2", "two values of one constant",
             "neither dashpot; the cup has dry friction"
         ],
@@ -225,6 +232,11 @@ def chapter_6(page):
     before = 2.0 * math.pi * 30.65
     after = 2.0 * math.pi * math.sqrt(0.5 * (31.0**2 + 30.4**2))
     return [
+        [
+            "[51], [83]", "two sources",
+            "one paper, the same DOI; pressure angle, stiffness and stress appear as 16° and 17°, 6.54e4 and "
+            "6.56e4 N·m/rad, 638 and 640 MPa", "one source"
+        ],
         [
             "Table 6.2", "teeth 51 and 151 at 90° and 270°",
             f"tooth 50 lies at {math.degrees(ring.psi[50]):.2f}°, tooth 51 at {math.degrees(ring.psi[51]):.2f}°",
@@ -280,6 +292,8 @@ def chapter_7(page):
     published = degrees[(shares >= 0.25) & (shares <= 0.35)]
     wave = float(np.max(np.abs(rings[0].teeth["angle_deviation"])))
     inertia = given["output"]["circular_spline_inertia"]
+    flank = math.degrees(given["mesh"]["flank_angle"])
+    friction_share = given["mesh"]["friction_kinetic"] * math.tan(given["mesh"]["flank_angle"])
     page.check("thesis.absolute_gamma", "eq. 7.27 with |γ| and no friction, at rest, no load",
                "the equilibrium of chapter 6", Within(12.0, absolute=0.5), absolute, "N·m", "known to two digits")
     page.check("thesis.symmetric_gamma", "the same with signed γ", "symmetry", Within(0.0, absolute=1e-6), signed,
@@ -339,6 +353,11 @@ def chapter_7(page):
             "7.35", "engaged if the tip passes the base circle",
             f"every tooth, from {degrees[np.argmax(shares >= 1.0)]:.1f}° of flank angle; 25 to 35 % of them only at "
             f"{published[0]:.1f} to {published[-1]:.1f}°", "contact of flanks"
+        ],
+        [
+            "7.37", "friction −μ F_t sin β whichever way the flanks slide",
+            f"at a flank angle of {flank:.0f}° it takes {100.0 * friction_share:.1f} % of the torque either way "
+            "the flanks slide, where dry friction changes its sign", "against the slip"
         ],
         [
             "7.38", "ΣF/J − T_R − c φ̇",

@@ -8,6 +8,7 @@
 #include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "messages/joint_affixes.hpp"
 #include "params/configuration_files.hpp"
 #include "ros_io/arm_node.hpp"
 #include "ros_io/joint_name.hpp"
@@ -93,12 +94,14 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
     throw hjt::ParameterError("~description: no URDF on the parameter server under " + description);
   }
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
+  const hjt::JointAffixes affixes{ node.param<std::string>(hjt::PREFIX, ""), node.param<std::string>(hjt::SUFFIX, "") };
   const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());
   ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified));
   std::vector<hjt::ParameterMap> maps;
   for (const hjt::ArmJoint& joint : arm.joints)
   {
     maps.push_back(hjt::armJointParameters(joint, directory, identified));
+    maps.back()["joint.name"].value = affixes(joint.name);
   }
   warnOfParameters(found, node.getNamespace(), maps);
   std::vector<hjt::Parameters> parameters;
@@ -121,7 +124,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
     {
       hjt::takeInertiaInLoad(drive);
     }
-    ROS_INFO_STREAM(joint.short_name << " is " << joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
+    ROS_INFO_STREAM(joint.short_name << " is " << drive.joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
                                      << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
                                      << " degC");
   }

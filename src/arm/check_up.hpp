@@ -17,7 +17,7 @@ struct ArmMove
   double acceleration{};       ///< of that joint [rad/s^2]
 };
 
-/// Where the arm stands before the first move.
+/// Joint angles before the first move [rad].
 using ArmPose = std::vector<double>;
 
 /// An arm at one time of a motion.

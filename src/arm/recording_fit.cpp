@@ -9,6 +9,7 @@
 #include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
+#include "gear/ratio.hpp"
 #include "params/choices.hpp"
 #include "tracking/effort.hpp"
 
@@ -27,6 +28,8 @@ constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
 constexpr double DEGREE = PI / 180.0;
+constexpr double RIDGE = 1e-9;      // of the mean square: motion one way only leaves constant and friction alike
+constexpr double SLOW_ROWS = 0.06;  // rows further apart tell no acceleration: 20 Hz at least, with jitter [s]
 
 bool differs(const FittedFactor& factor, double from)
 {
@@ -43,17 +46,18 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "velocity zero: taken from the angles", false };
+    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
   }
   if (own.value < 0.0)
   {
-    return { "velocity_sign", "angle and velocity of opposite sign", true };
+    return { "velocity_sign", "angle and velocity of opposite sign", Reason::VELOCITY_SIGN };
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "velocity in deg/s: taken from angles", false };
+    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
   }
-  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity", true };
+  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity",
+           Reason::VELOCITY_SCALE };
 }
 }  // namespace
 
@@ -77,39 +81,45 @@ const char* effortKeyword(EffortUnit unit)
   return std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == unit; })->first;
 }
 
-void RecordingFit::LoadRegression::add(double step, double velocity, double load, double current) noexcept
+void RecordingFit::LoadRegression::add(double step, double velocity, double acceleration, double load,
+                                       double current) noexcept
 {
   constexpr double MEMORY = 120.0;  // of motion [s]
-  Eigen::Matrix<double, 5, 1> row;
-  row << 1.0, velocity > 0.0 ? 1.0 : -1.0, velocity, load, current;
+  Eigen::Matrix<double, TERMS, 1> row;
+  row << 1.0, velocity > 0.0 ? 1.0 : -1.0, velocity, acceleration, load, current;
   sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
+}
+
+Eigen::Matrix2d RecordingFit::LoadRegression::left() const
+{
+  const Eigen::Matrix<double, OTHERS, OTHERS> others =
+      sums_.topLeftCorner<OTHERS, OTHERS>() +
+      Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
+  const Eigen::Matrix<double, OTHERS, 2> both = sums_.topRightCorner<OTHERS, 2>();
+  return sums_.bottomRightCorner<2, 2>() -
+         both.transpose() * Eigen::Matrix<double, OTHERS, 2>(others.ldlt().solve(both));
 }
 
 FittedFactor RecordingFit::LoadRegression::slope(double& content) const
 {
-  constexpr double RIDGE = 1e-9;      // of the mean square: motion one way only leaves constant and friction alike
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
   constexpr double MIN_SECONDS = 3.0;
+  constexpr double MIN_CONTENT = 0.1;  // of the load that is left, rms: errors of friction and inertia leave less [A]
   const double seconds = sums_(0, 0);
   FittedFactor slope;
   if (seconds < MIN_SECONDS)
   {
     return slope;
   }
-  // What constant and friction leave of load and current.
-  const Eigen::Matrix3d friction =
-      sums_.topLeftCorner<3, 3>() + Eigen::Matrix3d(RIDGE * sums_.diagonal().head<3>().asDiagonal());
-  const Eigen::Matrix<double, 3, 2> both = sums_.topRightCorner<3, 2>();
-  const Eigen::Matrix2d left =
-      sums_.bottomRightCorner<2, 2>() - both.transpose() * Eigen::Matrix<double, 3, 2>(friction.ldlt().solve(both));
-  if (left(0, 0) <= RIDGE * sums_(3, 3) || left(0, 0) <= 0.0)
+  const Eigen::Matrix2d rest = left();
+  if (rest(0, 0) <= MIN_CONTENT * MIN_CONTENT * seconds)
   {
     return slope;
   }
-  content = left(0, 0);
-  slope.value = left(0, 1) / left(0, 0);
-  const double rest = std::max(0.0, left(1, 1) - slope.value * left(0, 1));
-  slope.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / seconds);
+  content = rest(0, 0);
+  slope.value = rest(0, 1) / rest(0, 0);
+  const double unexplained = std::max(0.0, rest(1, 1) - slope.value * rest(0, 1));
+  slope.uncertainty = std::sqrt(unexplained / rest(0, 0) * CORRELATED / seconds);
   return slope;
 }
 
@@ -118,6 +128,7 @@ RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
   for (const Parameters& parameters : joints)
   {
     Joint joint;
+    joint.ratio = RatioFit(nominalRatio(parameters.gear));
     joint.gain = parameters.telemetry.torque_per_current;
     joint.effort = parameters.telemetry.effort;
     for (const auto& [name, unit] : choiceNames(EffortUnit()))
@@ -133,6 +144,7 @@ void RecordingFit::reset() noexcept
   for (Joint& joint : joints_)
   {
     joint.time.reset();
+    joint.ratio.reset();
     joint.load = LoadRegression();
     joint.reach = JointReach();
     joint.moving_rows = 0;
@@ -141,8 +153,8 @@ void RecordingFit::reset() noexcept
   }
   last_time_ = std::numeric_limits<double>::quiet_NaN();
   moving_ = 0.0;
-  cut_ = 0.0;
-  cuts_ = 0;
+  slow_time_ = 0.0;
+  slow_rows_ = 0;
   rows_ = 0;
 }
 
@@ -153,10 +165,10 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
   bool moves = false;
   const bool follows = step > 0.0 && step <= MotionDifferentiator::MAX_GAP;
   ++rows_;
-  if (step > MotionDifferentiator::MAX_GAP)
+  if (step > SLOW_ROWS)
   {
-    cut_ += step;
-    ++cuts_;
+    slow_time_ += step;
+    ++slow_rows_;
   }
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
@@ -175,12 +187,13 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
     joint.time.add(sample.time, sample.position, sample.recorded_velocity);
+    joint.ratio.add(sample);
     joint.unchanged =
         sample.current != joint.last_current ? 0.0 : joint.unchanged + (follows && joint_moves ? step : 0.0);
     joint.last_current = sample.current;
     if (follows && joint_moves && std::isfinite(torques[i]))
     {
-      joint.load.add(step, sample.velocity, torques[i] / joint.gain, sample.current);
+      joint.load.add(step, sample.velocity, sample.acceleration, torques[i] / joint.gain, sample.current);
     }
   }
   moving_ += follows && moves ? step : 0.0;
@@ -227,8 +240,9 @@ FittedFactor RecordingFit::stampFactor() const
 
 EffortFit RecordingFit::effort() const
 {
-  constexpr double WIDE = 2.0;             // a payload or another gain make no more of it
-  constexpr double MAX_UNCERTAINTY = 0.2;  // of the factor itself
+  constexpr double WIDE = 2.0;  // a payload or another gain make no more of it
+  constexpr double MAX_UNCERTAINTY =
+      1.0 / DEVIATIONS;  // of the factor itself: beyond, the load may not be in the effort
   EffortFit fit;
   fit.unit = joints_.front().effort;
   double weights = 0.0;
@@ -274,21 +288,42 @@ EffortFit RecordingFit::effort() const
   return fit;
 }
 
+RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
+{
+  LoadRest sum;
+  double seconds = 0.0;
+  for (const Joint& joint : joints_)
+  {
+    const double scale = joint.current_per_effort[static_cast<std::size_t>(unit)] /
+                         joint.current_per_effort[static_cast<std::size_t>(joint.effort)];
+    const Eigen::Matrix2d left = joint.load.left();
+    sum.current += scale * scale * left(1, 1);
+    sum.left += std::max(0.0, scale * scale * left(1, 1) - 2.0 * scale * left(0, 1) + left(0, 0));
+    seconds += joint.load.seconds();
+  }
+  return { std::sqrt(sum.current / seconds), std::sqrt(sum.left / seconds) };
+}
+
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
   constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
-  if (rows_ >= MIN_ROWS && 2 * cuts_ > rows_)
+  if (refusal_.exists())
+  {
+    findings.push_back({ "reading", refusal_.clause, refusal_.reason });
+    return findings;
+  }
+  if (rows_ >= MIN_ROWS && 2 * slow_rows_ > rows_)
   {
     constexpr double LONG = 0.5;  // no telemetry comes so rarely [s]
-    const double period = cut_ / static_cast<double>(cuts_);
+    const double period = slow_time_ / static_cast<double>(slow_rows_);
     findings.push_back({ "period",
-                         "rows come " + rounded(period) + " s apart by their stamps, more than " +
-                             rounded(MotionDifferentiator::MAX_GAP) + " s: no speeds, no loads" +
+                         "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
+                             " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
                              (period > LONG ? " (are they in ms? of a recording --time-scale 0.001)" : ""),
-                         true });
+                         Reason::ROW_RATE });
     return findings;
   }
   const FittedFactor stamps = stampFactor();
@@ -298,9 +333,9 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back({ "stamps",
                          "by their stamps the angles change " + factor +
                              " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
-                             "recording --time-scale " +
-                             factor + " mends them)",
-                         true });
+                             "recording `joint_twin check` tries --time-scale " +
+                             factor + ")",
+                         Reason::STAMPS });
     return findings;  // the load is wrong too
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
@@ -308,7 +343,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back(
         { "angle_unit",
           "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
-          true });
+          Reason::ANGLE_UNIT });
   }
   const EffortFit found = effort();
   if (found.is_known && found.unit != joints_.front().effort)
@@ -317,15 +352,15 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
                              effortUnitName(joints_.front().effort) +
                              ": set telemetry.effort: " + effortKeyword(found.unit),
-                         true });
+                         Reason::EFFORT_UNIT });
   }
-  else if (std::isfinite(found.factor.value) && !found.is_known)
+  else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
   {
     findings.push_back({ "gain",
                          "effort changes " + rounded(found.factor.value) +
                              " times as much with the load as telemetry.torque_per_current says: another arm, gain or "
                              "payload than configured",
-                         false });
+                         std::nullopt });
   }
   return findings;
 }
@@ -340,8 +375,12 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (joint.reach.least_current == joint.reach.most_current || joint.unchanged > UNCHANGED)
   {
-    findings.push_back(
-        { "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes", true });
+    findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
+                         Reason::EFFORT_CONSTANT });
+  }
+  if (const std::string text = joint.ratio.text(); !text.empty())
+  {
+    findings.push_back({ "ratio", text, Reason::GEAR_RATIO });
   }
   const FittedFactor stamps = stampFactor();
   const double of_stamps = std::isfinite(stamps.value) ? stamps.value : 1.0;
@@ -357,15 +396,15 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
     findings.push_back(
         { "lag",
           "velocity " + rounded(std::abs(lag.value)) + " s " + (lag.value > 0.0 ? "after" : "before") + " the angle",
-          true });
+          Reason::VELOCITY_LAG });
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "velocity taken from the angles", false });
+    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < MOVED)
   {
-    findings.push_back({ "at_rest", "does not move", false });
+    findings.push_back({ "at_rest", "does not move", std::nullopt });
   }
   return findings;
 }
@@ -378,20 +417,20 @@ bool RecordingFit::isSettled() const
   return moving_ > PATIENCE || (knows_stamps && std::isfinite(effort().factor.value));
 }
 
-std::vector<std::string> RecordingFit::whyNotJudged() const
+std::vector<Misfit> RecordingFit::whyNotJudged() const
 {
   const auto first = [](const std::vector<RecordingFinding>& findings)
   {
-    const auto stops =
-        std::find_if(findings.begin(), findings.end(), [](const RecordingFinding& finding) { return finding.stops; });
-    return stops == findings.end() ? std::string() : stops->text;
+    const auto stops = std::find_if(findings.begin(), findings.end(),
+                                    [](const RecordingFinding& finding) { return finding.stops.has_value(); });
+    return stops == findings.end() ? Misfit() : Misfit{ *stops->stops, stops->text };
   };
-  const std::string of_arm = first(ofArm());
-  std::vector<std::string> reasons;
+  const Misfit of_arm = first(ofArm());
+  std::vector<Misfit> misfits;
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    reasons.push_back(of_arm.empty() ? first(ofJoint(i)) : of_arm);
+    misfits.push_back(of_arm.exists() ? of_arm : first(ofJoint(i)));
   }
-  return reasons;
+  return misfits;
 }
 }  // namespace hjt

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 
 #include "arm/arm_load.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/ratio_fit.hpp"
+#include "tracking/reason.hpp"
 #include "tracking/time_fit.hpp"
 
 namespace hjt
@@ -17,10 +20,11 @@ namespace hjt
 /// Something in a recording of an arm that does not fit.
 struct RecordingFinding
 {
-  std::string kind;  ///< for documents: period, stamps, angle_unit, effort_unit, gain, effort_constant, velocity_zero,
-                     ///< velocity_sign, velocity_unit, velocity_scale, lag, no_velocity, at_rest
-  std::string text;  ///< a clause without a full stop
-  bool stops{};      ///< nothing can be judged with it
+  std::string kind;             ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain,
+                                ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
+                                ///< no_velocity, at_rest
+  std::string text;             ///< a clause without a full stop
+  std::optional<Reason> stops;  ///< nothing can be judged with it
 };
 
 /// What a joint does in a recording; empty ranges before the first row.
@@ -72,26 +76,48 @@ public:
   /// Of angle and velocity of the joint.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
 
+  /// Nothing can be judged of any joint; none: nothing stands against it.
+  void refuse(const Misfit& misfit) { refusal_ = misfit; }
+
+  /// Of the moving joints, rms; NaN: nothing moved.
+  struct LoadRest
+  {
+    double current{};  ///< what constant, friction and rotor inertia fitted leave of the current [A]
+    double left{};     ///< and the load as it is too [A]
+
+    double share() const { return left / current; }  ///< of the current that the load leaves; not finite: no motion [-]
+  };
+  /// If the efforts were of this unit.
+  LoadRest loadRest(EffortUnit unit) const;
+
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
   /// It has seen enough for its findings, or PATIENCE of motion without.
   bool isSettled() const;
 
-  /// For each joint the text of the first finding of arm or joint with which nothing can be judged; empty: none.
-  std::vector<std::string> whyNotJudged() const;
+  /// For each joint the first finding of arm or joint with which nothing can be judged.
+  std::vector<Misfit> whyNotJudged() const;
 
 private:
-  /// Regression of the current on a constant, Coulomb and viscous friction and the load.
+  /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current of
+  /// the rotor's inertia, and the load.
   class LoadRegression
   {
   public:
-    void add(double step, double velocity, double load, double current) noexcept;
-    /// Slope of the current over the load; `content`: square of the load that no friction explains, summed over time.
+    void add(double step, double velocity, double acceleration, double load, double current) noexcept;
+    /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others do
+    /// not explain, summed over time.
     FittedFactor slope(double& content) const;
+    /// What constant, friction and acceleration leave of load and current [A^2 s].
+    Eigen::Matrix2d left() const;
+    double seconds() const { return sums_(0, 0); }
 
   private:
-    Eigen::Matrix<double, 5, 5> sums_{ Eigen::Matrix<double, 5, 5>::Zero() };  // of 1, sign, speed, load, current
+    static constexpr int OTHERS = 4;
+    static constexpr int TERMS = 6;
+    // of 1, sign, speed, acceleration, load, current
+    Eigen::Matrix<double, TERMS, TERMS> sums_{ Eigen::Matrix<double, TERMS, TERMS>::Zero() };
   };
 
   struct Joint
@@ -100,6 +126,7 @@ private:
     EffortUnit effort{};
     std::vector<double> current_per_effort;  // by unit [A], [A/(N.m)]
     TimeFit time;
+    RatioFit ratio;
     LoadRegression load;
     JointReach reach;
     std::uint64_t moving_rows{};
@@ -110,11 +137,12 @@ private:
 
   std::vector<FittedFactor> timeFactors() const;
 
+  Misfit refusal_;
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
-  double moving_{};  // time in which a joint moved [s]
-  double cut_{};     // time between rows too far from each other [s]
-  std::uint64_t cuts_{};
+  double moving_{};     // time in which a joint moved [s]
+  double slow_time_{};  // between rows too far from each other [s]
+  std::uint64_t slow_rows_{};
   std::uint64_t rows_{};
 };
 }  // namespace hjt

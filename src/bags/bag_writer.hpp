@@ -24,7 +24,7 @@ namespace hjt
 /// is always readable, also after an error or an interrupt. The same calls give the same bytes, those that rosbag::Bag
 /// would write, uncompressed; but a chunk goes to the disk as one, where that one seeks twice a message.
 ///
-/// Where the disk takes no more, the bag is given up: it stays as `PATH.active` without an index, and the InputError
+/// If the disk is full, the bag is given up: it stays as `PATH.active` without an index, and the InputError
 /// tells how much is in it. `rosbag reindex` makes it readable but for the last chunk, 0.8 MB at most. Nothing can be
 /// written after that.
 ///

@@ -17,7 +17,8 @@ namespace hjt
 class CheckedMessage
 {
 public:
-  /// False: the bytes are no JointState, or cannot be read. @throws InputError if the topic has another type.
+  /// False: the bytes are no JointState, or cannot be read. @throws InputError if the topic has another
+  /// type; a wrong md5sum alone is none.
   bool read(const rosbag::MessageInstance& instance);
 
   /// The same of a Temperature, whose type is known.
@@ -27,11 +28,11 @@ public:
   const sensor_msgs::Temperature& temperature() const noexcept { return temperature_; }
 
 private:
-  using Check = bool (*)(const std::vector<std::uint8_t>& bytes);
   template <class Message>
-  bool take(const rosbag::MessageInstance& instance, Check is_whole, Message& message);
+  bool take(const rosbag::MessageInstance& instance, Message& message);
 
   std::vector<std::uint8_t> bytes_;
+  bool has_read_{};  // a JointState
   sensor_msgs::JointState state_;
   sensor_msgs::Temperature temperature_;
 };

@@ -19,12 +19,17 @@ bool isBlank(char c)
   return c == ' ' || c == '\t';
 }
 
-/// The text between the two without blanks around it, ended by a zero.
-const char* trimmed(char* begin, char* end)
+/// The text between the two without blanks and then quotes around it, ended by a zero.
+char* trimmed(char* begin, char* end)
 {
   begin = std::find_if_not(begin, end, isBlank);
   while (end != begin && isBlank(end[-1]))
   {
+    --end;
+  }
+  if (end - begin > 1 && (*begin == '"' || *begin == '\'') && end[-1] == *begin)
+  {
+    ++begin;
     --end;
   }
   *end = '\0';
@@ -43,6 +48,14 @@ CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::b
     throw InputError(path_ + ":1: the header is missing");
   }
   header_.assign(texts_.begin(), texts_.end());
+  if (!header_.front().empty() && header_.front().front() == '#')
+  {
+    header_.front().erase(0, header_.front().find_first_not_of("# \t"));
+    if (header_.front().empty() && header_.size() > 1)
+    {
+      header_.erase(header_.begin());
+    }
+  }
 }
 
 bool CsvRows::next()
@@ -53,35 +66,75 @@ bool CsvRows::next()
   }
   if (texts_.size() != header_.size())
   {
+    was_cut_off_ =
+        allows_cut_off_ && texts_.size() < header_.size() && file_.peek() == std::ifstream::traits_type::eof();
+    if (was_cut_off_)
+    {
+      return false;
+    }
     throw InputError(place() + (texts_.size() < header_.size() ? ": too few columns" : ": too many columns"));
   }
   return true;
 }
 
+const char* CsvRows::separatorName() const
+{
+  switch (separator_)
+  {
+    case ';':
+      return "semicolons";
+    case '\t':
+      return "tabs";
+    case ' ':
+      return "blanks";
+    default:
+      return "commas";
+  }
+}
+
 bool CsvRows::readLine()
 {
-  file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
-  if (file_.bad())
+  const auto is_line_end = [](char c) { return isBlank(c) || c == '\r'; };
+  do
   {
-    throw InputError(path_ + " cannot be read: " + std::strerror(errno));
-  }
-  const std::size_t taken = static_cast<std::size_t>(file_.gcount());
-  if (taken == 0 && file_.eof())
-  {
-    return false;
-  }
-  ++line_number_;
-  if (file_.fail())
-  {
-    throw InputError(place() + ": a line of more than " + std::to_string(LONGEST_LINE) + " characters");
-  }
-  length_ = file_.eof() ? taken : taken - 1;
-  if (std::memchr(line_.data(), '\0', length_) != nullptr)
-  {
-    throw InputError(place() + ": a zero byte, so it is no text");
-  }
+    file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    if (file_.bad())
+    {
+      throw InputError(path_ + " cannot be read: " + std::strerror(errno));
+    }
+    const std::size_t taken = static_cast<std::size_t>(file_.gcount());
+    if (taken == 0 && file_.eof())
+    {
+      return false;
+    }
+    ++line_number_;
+    if (file_.fail())
+    {
+      throw InputError(place() + ": a line of more than " + std::to_string(LONGEST_LINE) + " characters");
+    }
+    length_ = file_.eof() ? taken : taken - 1;
+    if (std::memchr(line_.data(), '\0', length_) != nullptr)
+    {
+      throw InputError(place() + ": a zero byte, so it is no text");
+    }
+  } while (std::all_of(line_.data(), line_.data() + length_, is_line_end));
   split();
   return true;
+}
+
+/// By the header, in quotes or not.
+void CsvRows::findSeparator()
+{
+  const auto stands = [this](char c)
+  { return std::find(line_.data(), line_.data() + length_, c) != line_.data() + length_; };
+  for (const char c : { ',', ';', '\t', ' ' })
+  {
+    if (stands(c))
+    {
+      separator_ = c;
+      return;
+    }
+  }
 }
 
 void CsvRows::split()
@@ -97,11 +150,35 @@ void CsvRows::split()
   {
     --end;
   }
+  if (header_.empty())
+  {
+    findSeparator();
+  }
   texts_.clear();
+  if (separator_ == ' ')
+  {
+    splitAtBlanks(begin, end);
+    return;
+  }
+  if (separator_ == ';' && !header_.empty())
+  {
+    std::replace(begin, end, ',', '.');
+  }
   for (char* comma = nullptr; comma != end; begin = comma + 1)
   {
-    comma = std::find(begin, end, ',');
+    comma = std::find(begin, end, separator_);
     texts_.push_back(trimmed(begin, comma));
+  }
+}
+
+void CsvRows::splitAtBlanks(char* begin, char* end)
+{
+  while ((begin = std::find_if_not(begin, end, isBlank)) != end)
+  {
+    char* blank = std::find_if(begin, end, isBlank);
+    const bool is_last = blank == end;
+    texts_.push_back(trimmed(begin, blank));
+    begin = is_last ? end : blank + 1;
   }
 }
 }  // namespace hjt

@@ -8,8 +8,9 @@
 
 namespace hjt
 {
-/// Rows of a CSV file with a header: texts between commas, without quotes. Blanks around a text, a byte order mark and
-/// a carriage return before a line's end are not part of it.
+/// Rows of a table in a text file with a header. Commas, semicolons, tabs or blanks separate its texts; the header tells
+/// which. Blanks and quotes around a text, a byte order mark and a carriage return before a line's end are not part of
+/// it, nor is a # before the header. Between semicolons a comma is a decimal one. Empty lines are skipped.
 class CsvRows
 {
 public:
@@ -21,6 +22,14 @@ public:
   /// Reads the next row; false at the end. @throws InputError naming the line if it differs in columns from the header.
   bool next();
 
+  /// From now on a last line with too few columns is the end: its writer was stopped in it.
+  void allowCutOff() { allows_cut_off_ = true; }
+  /// Such a line was left out.
+  bool wasCutOff() const { return was_cut_off_; }
+
+  /// "commas", "blanks".
+  const char* separatorName() const;
+
   /// Of the row read last; valid until the next is.
   const char* text(std::size_t column) const { return texts_[column]; }
 
@@ -29,13 +38,18 @@ public:
 
 private:
   bool readLine();
+  void findSeparator();
   void split();
+  void splitAtBlanks(char* begin, char* end);
 
   std::string path_;
   std::ifstream file_;
   std::vector<char> line_;
   std::size_t length_ = 0;  // of the line
   std::size_t line_number_ = 0;
+  char separator_ = ',';
+  bool allows_cut_off_ = false;
+  bool was_cut_off_ = false;
   std::vector<std::string> header_;
   std::vector<const char*> texts_;
 };

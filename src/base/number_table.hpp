@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "base/csv_rows.hpp"
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
-/// N named columns of finite numbers in a CSV file with a header; other columns are skipped. Of the last `lenient`
+/// N named columns of finite numbers in a table with a header; other columns are skipped. Of the last `lenient`
 /// columns texts that are no finite number are NaN.
 template <std::size_t N>
 class NumberTable
@@ -23,23 +24,29 @@ class NumberTable
 public:
   using Names = std::array<std::string, N>;
 
-  /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header.
+  /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header: it names all
+  /// columns that are missing.
   NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0)
     : names_(names), strict_(N - lenient), rows_(path)
   {
     const std::vector<std::string>& header = rows_.header();
+    std::vector<std::string> missing;
     for (std::size_t i = 0; i < N; ++i)
     {
       const auto found = std::find(header.begin(), header.end(), names[i]);
       if (found == header.end() && i + optional < N)
       {
-        throw InputError(place() + ": column '" + names[i] + "' is missing");
+        missing.push_back("'" + names[i] + "'");
       }
       if (std::count(found, header.end(), names[i]) > 1)
       {
         throw InputError(place() + ": column '" + names[i] + "' is there twice");
       }
       places_[i] = static_cast<std::size_t>(found - header.begin());
+    }
+    if (!missing.empty())
+    {
+      throw InputError(place() + ": " + missingText(missing));
     }
   }
 
@@ -75,7 +82,26 @@ public:
 
   std::string place() const { return rows_.place(); }
 
+  void allowCutOff() { rows_.allowCutOff(); }
+  bool wasCutOff() const { return rows_.wasCutOff(); }
+
 private:
+  std::string missingText(const std::vector<std::string>& missing) const
+  {
+    const std::vector<std::string>& header = rows_.header();
+    const std::string columns = (missing.size() == 1 ? "column " : "columns ") + joined(missing) +
+                                (missing.size() == 1 ? " is missing" : " are missing");
+    if (std::all_of(header.begin(), header.end(),
+                    [](const std::string& text) { return decimalNumber(text).has_value(); }))
+    {
+      return columns + ": the first line holds numbers; it has to be the header, with the names of the columns";
+    }
+    constexpr std::size_t SHOWN = 8;
+    std::vector<std::string> first(header.begin(), header.begin() + std::min(header.size(), SHOWN));
+    return columns + "; between " + rows_.separatorName() + " the header has " + std::to_string(header.size()) +
+           (header.size() == 1 ? " column: " : " columns: ") + joined(first) + (header.size() > SHOWN ? ", ..." : "");
+  }
+
   double number(std::size_t column, const char* text) const
   {
     const std::optional<double> value = decimalNumber(text);

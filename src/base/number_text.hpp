@@ -11,10 +11,10 @@ namespace hjt
 /// The shortest text that reads back as the same number, spelt so that rosparam takes it for one: 1.0e-5, 31000.0.
 std::string numberText(double value);
 
-/// With so many significant digits.
+/// The number with so many significant digits.
 std::string roundedText(double value, int digits);
 
-/// With so many digits behind the decimal point.
+/// The number with so many digits behind the decimal point.
 std::string fixedText(double value, int digits);
 
 /// "8 ... 4000", or ">= 0.001" where there is no upper end.

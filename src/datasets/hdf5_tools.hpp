@@ -37,7 +37,7 @@ Hdf5Handle withoutTimes(hid_t kind);
 
 Hdf5Handle textType(std::size_t length);
 
-/// As an attribute of variable length: readers give that as text, one of fixed length as bytes.
+/// Writes an attribute of variable length: readers give it as text, one of fixed length as bytes.
 void writeText(hid_t object, const char* name, const std::string& text);
 
 void writeNumber(hid_t object, const char* name, double value);

@@ -23,7 +23,7 @@ public:
 
   bool hasPlay() const noexcept { return half_play_ > 0.0; }
 
-  /// Where its pin is.
+  /// Position of the brake's pin.
   struct Pin
   {
     double middle{};  ///< of the play, as an angle of the motor [rad]

@@ -62,7 +62,7 @@ public:
     double slipped{};                      ///< energy dissipated on the way to `rotation` from the state before [J]
   };
 
-  /// Without torque at a rotation [rad].
+  /// The state without torque at a rotation [rad].
   State relaxed(double rotation) const noexcept
   {
     State state;

@@ -56,7 +56,7 @@ public:
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// At a sliding speed along the flank [m/s]: the Stribeck curve [-].
+  /// Friction coefficient by the Stribeck curve, at a sliding speed along the flank [m/s], [-].
   double coefficient(double sliding_speed) const noexcept
   {
     const double relative = sliding_speed / stribeck_velocity_;

@@ -17,7 +17,7 @@
 
 namespace hjt
 {
-/// Where a tooth stands in its space.
+/// Position of a tooth in its space.
 struct ToothPlace
 {
   double across;  ///< of the axis of the space, counter-clockwise > 0 [m]

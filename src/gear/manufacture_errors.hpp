@@ -23,8 +23,8 @@ Eigen::VectorXd pitchDeviations(const PitchParameters& pitch, int teeth, const s
 Eigen::VectorXd flexsplinePitch(const ManufactureParameters& manufacture, const GearParameters& gear);
 Eigen::VectorXd circularSplinePitch(const ManufactureParameters& manufacture, const GearParameters& gear);
 
-/// Where the teeth of the flexspline and the spaces of the circular spline stand off their places, each at its own
-/// place in the axes of the perfect gear.
+/// Errors of position of the flexspline's teeth and the circular spline's spaces, each in the axes of the perfect gear
+/// at its own position.
 ///
 /// Flexspline, a the angle of a tooth at rest: its pitch deviations, and
 /// eccentricity (x, y):  along x cos a + y sin a,    across y cos a - x sin a            (run-out of the teeth)

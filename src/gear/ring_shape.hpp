@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Where the rigid parts stand: what the ring's shape is a function of.
+/// Angles of the rigid parts and the wave's amplitude: the arguments of the ring's shape.
 struct DrivePosition
 {
   double wave_generator_angle{};  ///< [rad]
@@ -55,8 +55,8 @@ inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
 ///
-/// Where the drive is the same again after half a turn, so is the ring: `solved` teeth are then the first half of them.
-/// All elements loop over these alone; the other half stands at the same points reversed.
+/// If the drive repeats after half a turn, the ring does too: the `solved` teeth are then the first half. All elements
+/// loop over these alone; the other half has the same points with the opposite sign.
 struct RingShape
 {
   explicit RingShape(int teeth)

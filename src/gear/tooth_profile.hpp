@@ -47,7 +47,7 @@ public:
   double straightAt(double zeta) const noexcept { return clearance_ + (full_engagement_ - zeta) * slope_; }
 
 private:
-  /// Where zeta lies on the table.
+  /// Interval of the table that zeta lies in.
   struct Place
   {
     const std::array<double, 4>& cubic;

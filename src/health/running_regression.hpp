@@ -23,7 +23,7 @@ public:
   void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets,
            double weight = 1.0) noexcept;
 
-  /// As if the column had been added less `share` of the other, each time.
+  /// Makes the sums those of the column less `share` of the other.
   void subtract(int column, int other, double share) noexcept;
   void drop(int column) noexcept;  ///< as if it had been added as zeros: its coefficient is 0
   /// Mean of the product of two columns [-].

@@ -23,9 +23,9 @@ namespace hjt
 /// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
 /// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says.
 /// Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed itself within
-/// indicators.speed_change of it. Lines are fitted to what is calm of that: nothing from 20 ms before until 0.4 s after
-/// a change of speed, for it is larger than they are by a factor of a thousand, and the drive rings on after it.
-/// Without a motor encoder, to all that is steady.
+/// indicators.speed_change of it. Lines are fitted to the calm part of the steady motion: not from 20 ms before to
+/// 0.4 s after a change of speed, which excites the drive a thousand times more than the lines. Without a motor encoder
+/// they are fitted to all steady motion.
 class SignalMonitor
 {
 public:

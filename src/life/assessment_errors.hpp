@@ -26,16 +26,16 @@ constexpr double detectionShare(FaultKind kind) noexcept
   }
 }
 
-/// Severity from which on it is found there, log-normal from drive to drive: median, standard deviation of the
-/// logarithm. Assumed: the smallest severity of a signature; 0.2 is found.
+/// Smallest severity that is found, log-normal from drive to drive: median, standard deviation of the logarithm.
+/// Assumed: the smallest severity of a signature; 0.2 is found.
 constexpr double DETECTED_SEVERITY = 0.1;
 constexpr double DETECTED_SPREAD = 0.3;
 
-/// Of alarms at severity 0.3 and more by these three kinds: the cause was right in 25 of 29, in the set in 26.
+/// In 29 alarms at severity >= 0.3 by these three kinds the first cause was right in 25, one of the reported set in 26.
 constexpr double RIGHT_CAUSE = (25.0 + 1.0) / (29.0 + 2.0);
 constexpr double IN_SET = (26.0 + 1.0) / (29.0 + 2.0);
 
-/// Sound check-ups and runs at work of the judged gears that ended with an alarm: none of 304.
+/// Of 304 check-ups and runs at work of sound gears none ended with an alarm.
 constexpr double FALSE_ALARMS = (0.0 + 1.0) / (304.0 + 2.0);
 }  // namespace assessment_errors
 }  // namespace hjt

@@ -30,7 +30,7 @@ struct DriveAge
   double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
 };
 
-/// In what one drive differs from the next: unknown from outside, constant over its life.
+/// Differences of one drive from the nominal one: unknown from outside, constant over its life.
 struct UnitVariation
 {
   double flank_factor{ 1.0 };      ///< its flank wear over that of the nominal drive [-]
@@ -59,7 +59,7 @@ inline EndOfLife fatigueAt(std::size_t place)
   return static_cast<EndOfLife>(static_cast<std::size_t>(EndOfLife::TOOTH_SPACE_FATIGUE) + place);
 }
 
-/// In words: flank wear, interface wear, root crack, bearing, fatigue of tooth space, transition, flange; still in use.
+/// Names: flank wear, interface wear, root crack, bearing, fatigue of tooth space, transition, flange; still in use.
 inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
 {
   constexpr std::array<const char*, ENDS_OF_LIFE> NAMES{ "flank wear",    "interface wear",      "root crack",

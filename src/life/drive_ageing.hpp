@@ -41,7 +41,7 @@ public:
     DriveAge age;
   };
 
-  /// From new: up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of
+  /// Ages a new drive up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of
   /// `every` hours and at the end. `grease_changes`: the grease is changed when it is due. Runge-Kutta of Dormand and
   /// Prince with its own steps, 1e-8 of the limits.
   Life live(const UnitVariation& variation, double hours, double every, bool grease_changes,

@@ -24,7 +24,7 @@ struct LifeEstimate
 
   double usedOf(EndOfLife limit) const { return used[static_cast<std::size_t>(limit)]; }
 
-  /// Limit of which most is used
+  /// The limit that is closest to being reached.
   EndOfLife nearest() const
   {
     return static_cast<EndOfLife>(std::max_element(used.begin(), used.end()) - used.begin());

@@ -67,7 +67,7 @@ struct RemainingHours
   static constexpr double FIRST_EDGE = 10.0;  // [h]
   static constexpr double BINS_PER_DECADE = 20.0;
 
-  /// Where bin `i` begins: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
+  /// Lower end of bin `i`: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
   static double edge(std::size_t i) noexcept
   {
     return i == 0 ? 0.0 : FIRST_EDGE * std::pow(10.0, (static_cast<double>(i) - 1.0) / BINS_PER_DECADE);
@@ -82,8 +82,8 @@ struct RemainingHours
   std::array<double, CAUSES.size()> by_cause{};  ///< that it ends so, in the order of CAUSES [-]
 };
 
-/// Whether an assessment counts in place of the one `before`: of a window that was compared, and not nothing found in
-/// one that shows little after nothing found in one that shows more.
+/// Whether an assessment replaces the one `before`. It does if its window was compared. A window without a departure
+/// that does not show play does not replace one that does.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&

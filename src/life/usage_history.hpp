@@ -32,7 +32,7 @@ public:
   /// A phase for each node in use: the duty cycle that has been gone through once.
   DutyCycle duty() const;
 
-  /// As a duty cycle that `joint_twin life` reads.
+  /// The use as a duty cycle that `joint_twin life` reads.
   std::string text() const;
 
 private:

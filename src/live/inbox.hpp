@@ -45,8 +45,8 @@ public:
   }
 
   /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`.
-  /// What has no room there waits here. If a callback holds the lock just now, the next call gets it all. Allocates
-  /// nothing.
+  /// Inputs without room there stay here. While a callback holds the lock, nothing is taken; the next call gets all.
+  /// Allocates nothing.
   void take(std::vector<LiveInput>& inputs) noexcept
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);

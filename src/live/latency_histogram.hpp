@@ -51,7 +51,7 @@ public:
 
   const std::array<std::uint64_t, BIN_COUNT>& bins() const noexcept { return bins_; }
 
-  /// Where a bin ends and the next begins [ns].
+  /// Upper end of a bin [ns].
   static Stamp binEnd(std::size_t bin) noexcept
   {
     const auto octave = static_cast<int>(FIRST_OCTAVE * BINS_PER_OCTAVE + bin) / BINS_PER_OCTAVE;

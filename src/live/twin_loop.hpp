@@ -45,11 +45,11 @@ private:
   }
 };
 
-/// Whose time the loop follows.
+/// Kind of the clock that the loop follows.
 enum class ClockKind : std::uint8_t
 {
   RUNNING,  ///< runs on by itself: every instant is due at a time of its own
-  STEPPED   ///< moves when somebody says so (/clock): all the instants of a step are due once it has been read
+  STEPPED   ///< driven by /clock: all instants of a step are due once the step has been read
 };
 
 /// What the loop shows of itself once per cycle.
@@ -118,7 +118,7 @@ private:
 /// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
 /// it.
 ///
-/// On a clock that runs, the loop sleeps until the next instant that somebody awaits, at least a fifth of `input.delay`
+/// On a clock that runs, the loop sleeps until the next output is due, at least a fifth of `input.delay`
 /// (one to SHORT_PAUSE), at most MAX_PAUSE. What it simulates then is what it would have simulated in between: inputs
 /// act by their stamps.
 class TwinLoop
@@ -126,11 +126,11 @@ class TwinLoop
 public:
   using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
   using AfterStep = std::function<void()>;       ///< called at every simulated instant; must not wait or allocate
-  /// Called after each cycle with the instant it has reached; returns the next one whose result somebody awaits [ns].
+  /// Called after each cycle with the instant it has reached; returns the instant of the next output [ns].
   /// Must not wait or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// Starts the thread. Without `after_cycle` every instant is awaited. `parameters`: of the twin or one of several.
+  /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: of the twin or one of several.
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
            AfterCycle after_cycle = {});
 

@@ -26,7 +26,7 @@ struct Channel
   double PublishParameters::*rate;     ///< [Hz]; divides solver.rate
   std::size_t slots;                   ///< messages that may wait for the publisher's thread
   Message (*make)(const Parameters&);  ///< with names and arrays in place
-  /// At the twin's current instant. No allocation, no throw. False: nothing to say.
+  /// Fills the message at the twin's current instant. No allocation, no throw. False: there is nothing to publish.
   bool (*fill)(Twin&, const SinceMessage&, Message&);
   bool of_signals{};  ///< filled only while the twin watches its signals
   bool summarises{};  ///< `fill` gets the spans of the signals since the last message
@@ -37,7 +37,7 @@ constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
 /// Slots for messages with arrays.
 constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
 
-/// In the order in which the messages of one instant go out.
+/// All channels, in the order in which the messages of one instant go out.
 inline constexpr auto CHANNELS = std::make_tuple(
     Channel<sensor_msgs::JointState>{ topics::JOINT_STATES, &PublishParameters::joint_states_rate, SMALL_MESSAGE_SLOTS,
                                       makeJointStates, fillJointStates },

@@ -58,4 +58,34 @@ void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_tw
   message.after_gap = comparison.after_gap;
   message.outside_band = comparison.isOutside();
 }
+
+void fillVerdict(Stamp stamp, const Verdict& verdict, harmonic_joint_twin::Verdict& message)
+{
+  message.header.stamp = toRosTime(stamp);
+  message.joint = verdict.joint;
+  message.level = static_cast<std::uint8_t>(verdict.level);
+  message.reason = static_cast<std::uint8_t>(verdict.reason);
+  message.friction_measured = std::isfinite(verdict.friction.factor);
+  message.friction_factor = message.friction_measured ? verdict.friction.factor : 0.0;
+  message.friction_lower = message.friction_measured ? verdict.friction.lower : 0.0;
+  message.friction_upper = message.friction_measured ? verdict.friction.upper : 0.0;
+  message.friction_has_interval = verdict.friction.has_interval;
+  message.causes.clear();
+  message.cause_weights.clear();
+  for (const WeightedCause& cause : causesOf(verdict))
+  {
+    message.causes.emplace_back(causeName(cause.cause));
+    message.cause_weights.push_back(cause.weight);
+  }
+  message.evidence_names.clear();
+  message.evidence_values.clear();
+  message.evidence_units.clear();
+  for (const NamedFigure& figure : evidenceOf(verdict))
+  {
+    message.evidence_names.push_back(figure.name);
+    message.evidence_values.push_back(figure.value);
+    message.evidence_units.emplace_back(figure.unit);
+  }
+  message.text = verdictText(verdict);
+}
 }  // namespace hjt

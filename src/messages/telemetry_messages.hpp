@@ -4,8 +4,10 @@
 #include <sensor_msgs/JointState.h>
 
 #include "harmonic_joint_twin/Comparison.h"
+#include "harmonic_joint_twin/Verdict.h"
 #include "messages/conversions.hpp"
 #include "tracking/tracker.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -24,4 +26,7 @@ TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const Join
 
 /// @param stamp of the row [ns].
 void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept;
+
+/// @param stamp of the last row that was judged [ns]. Allocates.
+void fillVerdict(Stamp stamp, const Verdict& verdict, harmonic_joint_twin::Verdict& message);
 }  // namespace hjt

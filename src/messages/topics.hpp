@@ -25,6 +25,7 @@ constexpr const char* STRESS = "stress";                          ///< out, harm
 constexpr const char* INDICATORS = "indicators";                  ///< out, harmonic_joint_twin/Indicators
 constexpr const char* ASSESSMENT = "assessment";                  ///< out, harmonic_joint_twin/Assessment
 constexpr const char* COMPARISON = "comparison";                  ///< out, harmonic_joint_twin/Comparison
+constexpr const char* VERDICT = "verdict";                        ///< out, latched, harmonic_joint_twin/Verdict
 constexpr const char* FAULTS = "faults";                          ///< out, latched, harmonic_joint_twin/Faults
 constexpr const char* REMAINING_LIFE = "remaining_life";          ///< out, harmonic_joint_twin/RemainingLife
 constexpr const char* TIMING = "timing";                          ///< out, live only, harmonic_joint_twin/Timing

@@ -18,7 +18,7 @@ inline std::vector<std::string> trackerTopics(const std::string& joint_namespace
 {
   std::vector<std::string> names;
   for (const char* name : { topics::COMPARISON, topics::INDICATORS, topics::ASSESSMENT, topics::CONTACT_FORCES,
-                            topics::ENCODERS, topics::HEALTH, topics::STRESS })
+                            topics::ENCODERS, topics::HEALTH, topics::STRESS, topics::VERDICT })
   {
     names.push_back(joint_namespace + "/" + name);
   }
@@ -42,6 +42,7 @@ public:
     , comparison_(context, topics::COMPARISON, makeMessage<harmonic_joint_twin::Comparison>(parameters))
     , indicators_(context, topics::INDICATORS, makeIndicators(parameters))
     , assessment_(context, topics::ASSESSMENT, makeAssessment(parameters))
+    , verdict_(context, topics::VERDICT, makeMessage<harmonic_joint_twin::Verdict>(parameters))
     , ring_topics_(RingTopic<harmonic_joint_twin::ContactForces>{ StampPeriods(parameters.publish.contact_forces_rate),
                                                                   { context, topics::CONTACT_FORCES,
                                                                     makeContactForces(parameters) } },
@@ -91,6 +92,13 @@ public:
     std::apply([&](auto&... topic) { (send(topic), ...); }, ring_topics_);
   }
 
+  /// `stamp`: of the last row that was judged.
+  void offer(Stamp stamp, const Verdict& verdict)
+  {
+    fillVerdict(stamp, verdict, verdict_.message());
+    verdict_.send();
+  }
+
   std::uint64_t failures() const { return drive_.failures(); }  ///< instants without an equilibrium
 
 private:
@@ -108,6 +116,7 @@ private:
   Sink<harmonic_joint_twin::Comparison> comparison_;
   Sink<harmonic_joint_twin::Indicators> indicators_;
   Sink<harmonic_joint_twin::Assessment> assessment_;
+  Sink<harmonic_joint_twin::Verdict> verdict_;
   std::tuple<RingTopic<harmonic_joint_twin::ContactForces>, RingTopic<harmonic_joint_twin::Encoders>,
              RingTopic<harmonic_joint_twin::Health>, RingTopic<harmonic_joint_twin::Stress>>
       ring_topics_;

@@ -35,8 +35,8 @@ private:
 
 /// All conservative elements on the ring.
 ///
-/// It changes by assignment and through `edit` and `setMeshed` alone, and each of them gives it another version: who
-/// has solved it before sees that.
+/// Assignment, `edit` and `setMeshed` change the model, and each change gives it another version. Solvers compare
+/// versions to drop results of the model before.
 class RingModel
 {
 public:

@@ -9,7 +9,7 @@ namespace hjt
 /// The signal that came within an InterruptScope of this process, as a guest of this one, or 0.
 int interruptSignal();
 
-/// As long as it lives, SIGINT, SIGTERM and SIGHUP end loops that ask for `interruptSignal` instead of the process, so
+/// While it lives, SIGINT, SIGTERM and SIGHUP end loops that ask for `interruptSignal` instead of the process, so
 /// that files are closed; a second one ends the process. A scope within another changes nothing.
 class InterruptScope
 {

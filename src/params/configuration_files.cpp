@@ -30,6 +30,13 @@ fs::path findDirectory(const std::string& given)
 }
 }  // namespace
 
+fs::path libraryDirectory()
+{
+  static const int HERE = 0;
+  Dl_info library{};
+  return dladdr(&HERE, &library) != 0 ? fs::absolute(library.dli_fname).parent_path() : "";
+}
+
 fs::path packageDirectory()
 {
   // PREFIX/share/harmonic_joint_twin belongs to the executable PREFIX/lib/harmonic_joint_twin/joint_twin, and to the
@@ -37,10 +44,8 @@ fs::path packageDirectory()
   // config is a link to that of the sources.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  static const int HERE = 0;
-  Dl_info library{};
-  const fs::path loaded = dladdr(&HERE, &library) != 0 ? fs::absolute(library.dli_fname) : "";
-  for (const fs::path& beside : { executable.parent_path() / "../..", loaded.parent_path() / ".." })
+  const fs::path libraries = libraryDirectory();
+  for (const fs::path& beside : { executable.parent_path() / "../..", libraries / ".." })
   {
     const fs::path config = fs::canonical(beside / "share/harmonic_joint_twin/config", error);
     if (!error && fs::exists(config / STAGES))
@@ -48,7 +53,7 @@ fs::path packageDirectory()
       return config.parent_path();
     }
   }
-  throw ParameterError("neither " + executable.string() + " nor " + loaded.string() +
+  throw ParameterError("neither " + executable.string() + " nor " + libraries.string() +
                        " lies in an installation or development space of harmonic_joint_twin: no default configuration "
                        "found; name its directory with --config-dir or HJT_CONFIG_DIR");
 }

@@ -6,7 +6,10 @@
 
 namespace hjt
 {
-/// Where config/ and scripts/ lie: in the installation, or in the sources of a development space.
+/// Folder of the library that this function is in.
+std::filesystem::path libraryDirectory();
+
+/// Folder with config/ and scripts/: in the installation, or in the sources of a development space.
 /// @throws ParameterError if the program lies in neither.
 std::filesystem::path packageDirectory();
 

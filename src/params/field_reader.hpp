@@ -64,7 +64,7 @@ public:
     readList(key, unit, field.data(), N, range, meaning);
   }
 
-  /// As many numbers as the field has.
+  /// Reads as many numbers as the field has.
   void operator()(const std::string& key, const char* unit, std::vector<double>& field, const Range& range,
                   const Meaning& meaning)
   {

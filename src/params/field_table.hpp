@@ -11,15 +11,15 @@
 
 namespace hjt
 {
-/// Whose the response surface's tables are made for, or with.
+/// Which response surface tables depend on a parameter.
 enum class Shapes
 {
-  SURFACE,  ///< the ring in equilibrium, or its friction by angle
-  FAULTS,   ///< the same, once there are faults
-  OTHERS    ///< neither: what is added to the tables' friction as they are read counts to these
+  SURFACE,  ///< all: it changes the equilibrium of the ring, or its friction by angle
+  FAULTS,   ///< those of a drive with faults
+  OTHERS    ///< none, or it is a friction that is added after a table is read
 };
 
-/// What a parameter means, and what it shapes: the surface unless stated otherwise.
+/// Meaning of a parameter, and the tables that depend on it: all unless stated otherwise.
 struct Meaning
 {
   // NOLINTNEXTLINE(google-explicit-constructor): most rows of the table give a text alone

@@ -190,7 +190,7 @@ void bindIndicators(py::module& module)
           "level", [](const Assessment& self) { return levelName(self.level); }, "'OK', 'WARN' or 'ERROR'")
       .def_property_readonly(
           "cause", [](const Assessment& self) { return causeName(self.cause); },
-          "most likely cause; 'none' at level OK, and at others if it is nothing of the table")
+          "most likely cause; 'none' at level OK, or if no known fault explains the departure")
       .def_readonly("confidence", &Assessment::confidence, "its probability, 0 at level OK [-]")
       .def_readonly("severity", &Assessment::severity, "of the fault if this is the cause, mean; 0 with 'none' [-]")
       .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of that [-]")

@@ -11,7 +11,7 @@ namespace hjt
 class InUse
 {
 public:
-  /// From construction to destruction; both with the interpreter's lock.
+  /// Marks the object as in use while it lives; constructed and destroyed with the interpreter's lock.
   class Hold
   {
   public:

@@ -20,7 +20,7 @@ double numberFrom(const py::handle& value, const std::string& key)
   return number;
 }
 
-/// Not so an array of no dimension, which is a number.
+/// A zero-dimensional array is a number, not a list.
 bool isList(const py::handle& value)
 {
   const bool is_list = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) >= 0;

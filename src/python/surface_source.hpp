@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Where response surfaces come from, for a builder that runs without the interpreter's lock.
+/// Source of response surfaces for a builder that runs without the interpreter's lock.
 class SurfaceSourceOf
 {
 public:

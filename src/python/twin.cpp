@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -188,7 +189,12 @@ class TwinObject
 {
 public:
   TwinObject(const Configuration& parameters, const std::optional<std::string>& cache, const py::object& progress)
-    : twin_(makeTwin(parameters.values(), cache, progress))
+    : TwinObject(makeTwin(parameters.values(), cache, progress), parameters)
+  {
+  }
+
+  TwinObject(Twin twin, const Configuration& parameters)
+    : twin_(std::move(twin))
     , forces_(std::make_shared<ToothForces>(twin_.makeToothForces()))
     , stress_(std::make_shared<ToothStress>(parameters.values().gear.teeth_flexspline))
     , parameters_(parameters)
@@ -358,6 +364,11 @@ py::array_t<StepRow> runTo(TwinObject& self, double time, const py::object& moto
   return self.run(py::ssize_t{ steps }, motor_torque, load_torque, brake, temperature, every, out);
 }
 
+std::unique_ptr<TwinObject> copyOf(TwinObject& self)
+{
+  return std::make_unique<TwinObject>(self.twin(), self.parameters());
+}
+
 py::list activeFaults(TwinObject& self)
 {
   py::list faults;
@@ -521,6 +532,11 @@ void bindTwin(py::module& module)
       .def(
           "reset", [](TwinObject& self, Stamp stamp) { self.twin().reset(checked(stamp)); }, py::arg("stamp") = 0,
           "Restarts at rest, zero angles, at the first instant not before stamp [ns], with the configured faults.")
+      .def("__copy__", &copyOf,
+           "A twin at the same instant, with what waits and what was learned: both go on with the same numbers.")
+      .def(
+          "__deepcopy__", [](TwinObject& self, const py::dict&) { return copyOf(self); }, py::arg("memo"),
+          "As copy.copy.")
       .def("__repr__",
            [](TwinObject& self)
            {

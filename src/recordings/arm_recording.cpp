@@ -2,22 +2,30 @@
 #include "recordings/arm_recording.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "arm/arm_configuration.hpp"
 #include "base/number_text.hpp"
 #include "elements/load.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/stated_gains.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
+#include "tracking/ratio_fit.hpp"
 
 namespace hjt
 {
 namespace
 {
-Parameters parametersOf(const ArmJoint& joint, const RecordingOptions& options)
+/// `gain`: that the recording states; NaN: none. What is identified or set counts in its place.
+Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
+  if (std::isfinite(gain) && options.identified.empty())
+  {
+    readAssignment("telemetry.torque_per_current=" + numberText(gain), map);
+  }
   readAssignment("telemetry.load=" + options.load, map);
   addOverlays(options, map);
   Parameters parameters = parseParameters(map);
@@ -60,13 +68,19 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   : watch_(options.watch)
   , rows_(options.rows)
   , joint_namespace_(options.joint_namespace)
+  , affixes_(options.affixes)
   , is_arm_(!options.arm.empty())
   , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
   , source_(motionSource(options))
 {
-  for (const ArmJoint& joint : arm_.joints)
+  stated_gains_.assign(arm_.joints.size(), std::numeric_limits<double>::quiet_NaN());
+  if (is_arm_ && isFile())
   {
-    parameters_.push_back(is_arm_ ? parametersOf(joint, options) : loadParameters(options));
+    stated_gains_ = readStatedGains(source_, arm_.joints.size());
+  }
+  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  {
+    parameters_.push_back(is_arm_ ? parametersOf(arm_.joints[i], stated_gains_[i], options) : loadParameters(options));
   }
   has_load_ = isFile() ? recordsLoad(source_) : options.rows_have_load;
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
@@ -89,7 +103,7 @@ MotionSource ArmRecording::source(std::size_t joint) const
 {
   const Parameters& parameters = parameters_[joint];
   MotionSource source = source_;
-  source.joint = arm_.joints[joint].name;
+  source.joint = is_arm_ ? affixes_(arm_.joints[joint].name) : source_.joint;
   source.csv_joint = is_arm_ ? static_cast<int>(joint) : source_.csv_joint;
   source.current_per_effort = currentPerEffort(parameters);
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
@@ -110,9 +124,9 @@ MotionFindings ArmRecording::read(const VisitRows& visit) const
   return found;
 }
 
-MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit) const
+MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit, double end) const
 {
-  return is_arm_ ? readArm(visit, fit) : readJoint(visit);
+  return is_arm_ ? readArm(visit, fit, end) : readJoint(visit, end);
 }
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
@@ -200,29 +214,35 @@ MotionCount ArmRecording::readRows(const std::function<bool(const std::vector<Mo
   return count;
 }
 
-MotionFindings ArmRecording::readJoint(const VisitRows& visit) const
+MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
 {
+  RatioFit ratio(nominalRatio(parameters_.front().gear));
   std::vector<ArmJointRow> rows(1);
   MotionFindings found;
   found.has_load = has_load_;
   const auto take = [&](const MotionRow& row)
   {
     rows.front() = { row, row.load, 0.0 };
+    ratio.add(row);
     visit(rows);
-    return !watch_.stopped();
+    return !watch_.stopped() && row.time < end;
   };
   static_cast<MotionCount&>(found) = isFile() ?
                                          readMotion(source(0), take, watch_.progress("reading")) :
                                          readRows([&](const std::vector<MotionRow>& row) { return take(row.front()); });
+  if (!found.misfit.exists())
+  {
+    found.misfit = { Reason::GEAR_RATIO, ratio.text() };
+  }
   return found;
 }
 
-MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit) const
+MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
 {
   std::vector<std::string> names;
   for (const ArmJoint& joint : arm_.joints)
   {
-    names.push_back(joint.name);
+    names.push_back(affixes_(joint.name));
   }
   ArmLoad load(arm_);
   std::vector<ArmJointRow> rows(names.size());
@@ -257,16 +277,16 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit) 
     }
     findings.refused += load.push(in_current) ? 0 : 1;
     forward(false);
-    return !watch_.stopped();
+    return !watch_.stopped() && motion.front().time < end;
   };
   static_cast<MotionCount&>(findings) =
       isFile() ? readArmMotion(source_, names, take, watch_.progress("reading")) : readRows(take);
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
+  fit.refuse(findings.misfit);
   return findings;
 }
 
-/// Why a joint of an arm cannot be judged. Wrong stamps are said of the whole.
 void ArmRecording::noticeOf(const RecordingFit& fit) const
 {
   const auto say = [this](const std::string& of, const std::vector<RecordingFinding>& findings)
@@ -294,6 +314,14 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
   if (const std::string text = wrongStamps(found); !text.empty())
   {
     watch_.notice(text);
+  }
+  for (const std::string& remark : found.remarks)
+  {
+    watch_.notice(source_.path + ": " + remark);
+  }
+  if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
+  {
+    watch_.notice(source_.path + ": " + found.misfit.clause);
   }
 }
 }  // namespace hjt

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -40,6 +41,9 @@ public:
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
+  /// Torque per current that an arm's recording states, see readStatedGains; it counts unless another was identified or
+  /// set [N.m/A].
+  const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
@@ -47,8 +51,13 @@ public:
   /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
   /// not fit. Without any load the rows' is 0. @throws InputError.
   MotionFindings read(const VisitRows& visit) const;
-  /// The same without notices; `fit` receives all rows of an arm.
-  MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
+  /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
+  MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
+
+  /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
+  void noticeOf(const RecordingFit& fit) const;
+  /// And of the whole recording.
+  void noticeOf(const MotionFindings& found) const;
 
   /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
   /// what it is configured to. @throws InputError.
@@ -59,17 +68,17 @@ private:
   using Read = std::function<MotionFindings(const VisitRows&)>;
 
   MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
-  MotionFindings readJoint(const VisitRows& visit) const;
-  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit) const;
+  MotionFindings readJoint(const VisitRows& visit, double end) const;
+  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings differentiate(const Read& read, const VisitSample& visit) const;
-  void noticeOf(const RecordingFit& fit) const;
-  void noticeOf(const MotionFindings& found) const;
 
   Watch watch_;
   const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file
   std::string joint_namespace_;
+  JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
+  std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
   std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
   MotionSource source_;

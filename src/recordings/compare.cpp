@@ -125,13 +125,13 @@ public:
 
   const JointEvidence& evidence() const { return comparison_.evidence(); }
 
-  MeasuredFriction friction(const std::string& misfit) const
+  MeasuredFriction friction(const Misfit& misfit) const
   {
     return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
   }
 
   /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
-  ComparedJoint write(const MotionFindings& found, double arm_friction, const std::string& misfit,
+  ComparedJoint write(const MotionFindings& found, double arm_friction, const Misfit& misfit,
                       const std::string& twin_topic)
   {
     windows_.close();
@@ -174,8 +174,8 @@ private:
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
-  { "level", [](const ComparedJoint& line) { return verdictName(line.verdict); }, "verdict" },
-  { "reason", [](const ComparedJoint& line) { return line.verdict.reason; } },
+  { "level", [](const ComparedJoint& line) { return levelName(line.verdict.level); }, "verdict" },
+  { "verdict", [](const ComparedJoint& line) { return verdictFields(line.verdict); } },
   { "friction_ratio", &ComparedJoint::friction_ratio, "friction [-]" },
   { "temperature", &ComparedJoint::temperature, "at [degC]" },
   { "temperature_source", [](const ComparedJoint& line) { return line.temperature_source; }, "which is" },
@@ -184,41 +184,41 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
 };
 
 /// Joints of the worst level, and what they have in common.
-std::string reasonOf(const std::vector<ComparedJoint>& lines, HealthLevel level, const ArmFriction& arm)
+std::string textOf(const std::vector<ComparedJoint>& lines, HealthLevel level, const ArmFriction& arm)
 {
-  std::string reason;
+  std::string text;
   if (arm.median != 1.0)
   {
-    reason = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-             " times the reference's: another temperature or gain, not a fault of one joint. ";
+    text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
+           " times the reference's: another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
-      reason += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
-                " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
+      text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
+              " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
   std::vector<std::string> unjudged;
   for (const ComparedJoint& line : lines)
   {
-    if (level != HealthLevel::OK && line.verdict.level == level)
+    if (level != HealthLevel::OK && severityOf(line.verdict.level) == level)
     {
-      reason += line.name + ": " + line.verdict.reason + " ";
+      text += line.name + ": " + verdictText(line.verdict) + " ";
     }
-    if (!line.verdict.judged)
+    if (!line.verdict.isJudged())
     {
       unjudged.push_back(line.name + (line.misfit.empty() ? "" : " (" + line.misfit + ")"));
     }
   }
   if (level == HealthLevel::OK && unjudged.size() < lines.size())
   {
-    reason += "No joint departs from a sound one. ";
+    text += "No joint departs from a sound one. ";
   }
   if (!unjudged.empty())
   {
-    reason += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
+    text += "This recording does not show whether these are sound: " + joined(unjudged) + ". ";
   }
-  reason.pop_back();
-  return reason;
+  text.pop_back();
+  return text;
 }
 
 /// The directory of a joint's report, or of its reference, in that of the whole.
@@ -249,20 +249,21 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
   return joints;
 }
 
-/// Level and reason of an arm by those of its joints. `misfits`: why the rows of each say nothing.
-void judgeArm(const std::vector<std::string>& misfits, ComparedRecording& compared)
+/// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
+void judgeArm(const std::vector<Misfit>& misfits, ComparedRecording& compared)
 {
   HealthLevel level = HealthLevel::OK;
   bool judged = false;
   for (const ComparedJoint& joint : compared.joints)
   {
-    level = std::max(level, joint.verdict.level);
-    judged = judged || joint.verdict.judged;
+    level = std::max(level, severityOf(joint.verdict.level));
+    judged = judged || joint.verdict.isJudged();
   }
-  compared.level = judged ? levelName(level) : NOT_JUDGED;
-  const bool same = !misfits.front().empty() && std::count(misfits.begin(), misfits.end(), misfits.front()) ==
-                                                    static_cast<std::ptrdiff_t>(misfits.size());
-  compared.reason = same ? sentence(misfits.front()) : reasonOf(compared.joints, level, compared.friction);
+  compared.level = judged ? levelName(level) : levelName(VerdictLevel::NOT_JUDGED);
+  const bool same = misfits.front().exists() &&
+                    std::all_of(misfits.begin(), misfits.end(),
+                                [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
+  compared.text = same ? sentence(misfits.front().clause) : textOf(compared.joints, level, compared.friction);
 }
 
 Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& compared)
@@ -276,7 +277,7 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "arm", options.arm },
            { "made_with", MADE_WITH },
            { "level", compared.level },
-           { "reason", compared.reason },
+           { "text", compared.text },
            { "load", options.load },
            { "temperature", temperatures / static_cast<double>(compared.joints.size()) },
            { "temperature_estimate", compared.friction.temperature },
@@ -302,24 +303,24 @@ ComparedRecording compare(const ComparisonOptions& options)
   {
     return compared;
   }
-  const std::vector<std::string> misfits =
-      recording.isArm() ? fit.whyNotJudged() : std::vector<std::string>(joints.size());
+  const std::vector<Misfit> misfits =
+      recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ compared.found.misfit };
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    frictions.push_back(joints[i]->friction(sentence(misfits[i])));
+    frictions.push_back(joints[i]->friction(misfits[i]));
   }
   compared.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(
-        joints[i]->write(compared.found, compared.friction.factors[i], sentence(misfits[i]),
-                         recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint =
+        compared.joints.emplace_back(joints[i]->write(compared.found, compared.friction.factors[i], misfits[i],
+                                                      recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
     joint.friction_ratio = frictions[i].ratio;
-    joint.misfit = misfits[i].empty() && joints[i]->evidence().isTouched() ?
+    joint.misfit = !misfits[i].exists() && joints[i]->evidence().isTouched() ?
                        contactText(joints[i]->evidence().contact().last()) :
-                       misfits[i];
+                       misfits[i].clause;
   }
   if (recording.isArm())
   {
@@ -330,8 +331,8 @@ ComparedRecording compare(const ComparisonOptions& options)
   else
   {
     const Verdict& verdict = compared.joints.front().verdict;
-    compared.level = verdictName(verdict);
-    compared.reason = verdict.reason;
+    compared.level = levelName(verdict.level);
+    compared.text = verdictText(verdict);
     compared.document = compared.joints.front().document;
   }
   makePage(options.report);

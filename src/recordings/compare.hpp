@@ -43,7 +43,7 @@ struct ComparedRecording
 {
   bool is_arm{};
   std::string level;
-  std::string reason;
+  std::string text;  ///< a sentence or two
   MotionFindings found;
   ArmFriction friction;               ///< what the joints have in common
   std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped

@@ -167,27 +167,65 @@ Json contentsJson(const RecordingContents& contents)
            { "not_used", contents.other_topics } };
 }
 
+Json namesOf(const std::vector<WeightedCause>& causes)
+{
+  std::vector<std::string> names;
+  for (const WeightedCause& cause : causes)
+  {
+    names.emplace_back(causeName(cause.cause));
+  }
+  return names;
+}
+
+/// With what else a page shows.
 Json verdictJson(const Verdict& verdict)
 {
-  const auto level = [](const Finding& finding) { return finding.judged ? levelName(finding.level) : NOT_JUDGED; };
-  const std::vector<Column<Finding>> columns{ { "title", &Finding::title },
-                                              { "level", level },
-                                              { "text", &Finding::text },
-                                              { "causes", [](const Finding& finding)
-                                                {
-                                                  std::vector<std::string> names;
-                                                  for (const Cause cause : finding.causes)
-                                                  {
-                                                    names.emplace_back(causeName(cause));
-                                                  }
-                                                  return Json(names);
-                                                } } };
-  return { { "level", verdictName(verdict) },
-           { "reason", verdict.reason },
-           { "findings", Table(columns, verdict.findings).rows() },
-           { "cannot_show", verdict.cannot_show } };
+  const std::vector<Column<Finding>> columns{
+    { "title", [](const Finding& finding) { return subjectTitle(finding.subject); } },
+    { "level", [](const Finding& finding) { return levelName(finding.level); } },
+    { "reason", [](const Finding& finding) { return reasonName(finding.reason); } },
+    { "text", [&](const Finding& finding) { return findingText(verdict, finding); } },
+    { "causes", [](const Finding& finding) { return namesOf(finding.causes); } }
+  };
+  Json all = verdictFields(verdict);
+  all["findings"] = Table(columns, verdict.findings).rows();
+  all["cannot_show"] = hiddenTexts(verdict);
+  return all;
 }
 }  // namespace
+
+Json verdictFields(const Verdict& verdict)
+{
+  const std::vector<WeightedCause> causes = causesOf(verdict);
+  std::vector<double> weights;
+  for (const WeightedCause& cause : causes)
+  {
+    weights.push_back(cause.weight);
+  }
+  std::vector<std::string> names;
+  std::vector<double> values;
+  std::vector<std::string> units;
+  for (const NamedFigure& figure : evidenceOf(verdict))
+  {
+    names.push_back(figure.name);
+    values.push_back(figure.value);
+    units.emplace_back(figure.unit);
+  }
+  return { { "joint", verdict.joint },
+           { "level", levelName(verdict.level) },
+           { "reason", reasonName(verdict.reason) },
+           { "friction_measured", std::isfinite(verdict.friction.factor) },
+           { "friction_factor", verdict.friction.factor },
+           { "friction_lower", verdict.friction.lower },
+           { "friction_upper", verdict.friction.upper },
+           { "friction_has_interval", verdict.friction.has_interval },
+           { "causes", namesOf(causes) },
+           { "cause_weights", weights },
+           { "evidence_names", names },
+           { "evidence_values", values },
+           { "evidence_units", units },
+           { "text", verdictText(verdict) } };
+}
 
 SoundJoint readSoundJoint(const std::string& directory, const Parameters& parameters)
 {
@@ -261,7 +299,7 @@ Json writeComparison(const std::string& directory, const RecordingComparison& co
                   { "friction_ratio", comparison.evidence().friction().ratio() },
                   { "compliance_ratio", comparison.evidence().torsion().compliance() },
                   { "line_orders", orders },
-                  { "highest_order", record.verdict.highest_order },
+                  { "highest_order", record.verdict[Figure::HIGHEST_ORDER] },
                   { "windows_assessed", comparison.evidence().assessedWindows() },
                   { "health", healthJson(comparison) } };
   writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");

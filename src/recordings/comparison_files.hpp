@@ -27,6 +27,9 @@ struct ComparisonRecord
   Verdict verdict;
 };
 
+/// The fields of Verdict.msg; level and reason by name.
+Json verdictFields(const Verdict& verdict);
+
 /// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
 /// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
 /// of the recording. Gives what COMPARISON_FILE holds.

@@ -274,7 +274,12 @@ try
     followers.push_back(std::make_unique<Follower>(recording, options, bag.get(), i));
     trackers.push_back(&followers.back()->tracker());
   }
+  if (bag)
+  {
+    bag->judge(trackers, !options.identified.empty());
+  }
   ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
+  RecordingFit fit(recording.parameters());
   Followed followed{ recording.isArm(), options.load, {}, {} };
   followed.found = recording.read(
       [&](const std::vector<ArmJointRow>& rows)
@@ -284,7 +289,14 @@ try
           followers[i]->add(rows[i]);
         }
         friction.look(rows.front().row.time);
-      });
+        if (bag)
+        {
+          bag->offerVerdicts(rows.front().row.time, recording.isArm() ? &fit : nullptr);
+        }
+      },
+      fit);
+  recording.noticeOf(fit);
+  recording.noticeOf(followed.found);
   for (std::size_t i = 0; i < followers.size(); ++i)
   {
     followed.joints.push_back(followers[i]->finish(recording.joints()[i].short_name));

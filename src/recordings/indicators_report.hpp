@@ -32,7 +32,7 @@ struct AssessedWindows
 /// A CSV file with a row per window; no path: none.
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows);
 
-/// With every window.
+/// The document with every window.
 Report reportOf(const AssessedWindows& found);
 
 /// The last window, for people.

@@ -9,13 +9,14 @@
 
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
 /// Which joint of which recording.
 struct MotionSource
 {
-  std::string path;                      ///< .bag or .csv
+  std::string path;                      ///< bag, .db3, .mcap, their directory, or CSV
   std::string joint;                     ///< its name in the messages
   int csv_joint{};                       ///< its number in the columns of a CSV file
   std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
@@ -33,11 +34,13 @@ struct MotionCount
   std::uint64_t corrupt{};  ///< messages that could not be read, hold no finite angle and current, or cannot be true
   double duration{};        ///< of the recording [s]
   Stamp start{};            ///< stamp of the first row [ns]
-  double least_delay{};     ///< bag: of the recording behind the stamps [s]
+  double least_delay{};     ///< messages: of the recording behind the stamps [s]
   double most_delay{};      ///< [s]
   std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have
   /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
+  std::vector<std::string> remarks;  ///< what was mended or left out in reading, clauses without a full stop
+  Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
 };
 
 /// What was found, and what stood in the way.
@@ -55,20 +58,24 @@ bool recordsLoad(const MotionSource& source);
 
 /// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index.
 ///
-/// Times start at the first row.
-/// Bag: header stamps count, or the time of recording where they are zero. A load counts for rows from its stamp on. A
-/// row that agrees neither with the one before nor with the one after, its angle beyond what a joint can reach in the
-/// time or its stamp more than a second off theirs, was damaged and is left out. CSV: columns timestamp, actual_q_N,
-/// actual_current_N, target_moment_N, as `joint_twin import`, and joint_temperatures_N [degC]. Temperatures of a bag
-/// are sensor_msgs/Temperature of any topic whose frame_id is the joint; a row has the latest one that is not too old
-/// (TemperatureRecord). `visit` returns false to stop. `progress`: 0 ... 1.
+/// Times start at the first row; a loop's rounds follow each other (RowTime). Angles folded into one turn are made
+/// continuous (UnfoldedAngle).
+/// Messages: header stamps count, or the time of recording where they are zero in all messages. A load counts for rows
+/// from its stamp on. Left out and counted: a row that agrees neither with the one before nor with the one after, its
+/// angle beyond what a joint can reach in the time or its stamp more than a second off theirs; one with all efforts zero
+/// where others have some; one without a stamp where others have one. `misfit` where two sources give the same joint.
+/// Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
+/// joint_temperatures_N [degC]. Temperatures of messages are sensor_msgs/Temperature of any topic whose frame_id is the
+/// joint; a row has the latest one that is not too old (TemperatureRecord). `visit` returns false to stop. `progress`:
+/// 0 ... 1.
 /// @throws InputError if the file, the topic or the joint is not there; it names those that are.
 MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
                        const std::function<void(double)>& progress);
 
 /// The same for all joints of an arm: `visit` gets a row for each of `names`, all of one time. `source` names recording
 /// and topics; its joint counts for nothing. CSV: the columns of joints 0 to 5, in the order of the names. Rows that
-/// hold not all of the joints are left out and counted as corrupt.
+/// hold not all of the joints are left out and counted as corrupt, but where no message holds all of them, each row of
+/// the first joint gets the angles and currents of the others from between their neighbours in time.
 /// @throws InputError likewise; it names the joints that are missing.
 MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
                           const std::function<bool(const std::vector<MotionRow>&)>& visit,

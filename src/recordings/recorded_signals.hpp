@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// Where in a recording the signals of the joint lie.
+/// Columns or topics of a recording with the signals of the joint.
 struct SignalSource
 {
   // Columns of a CSV or HDF5 file, which must be there; empty: those of `joint_twin simulate` and of a data set.

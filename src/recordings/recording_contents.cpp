@@ -4,11 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
-#include "bags/bag_file.hpp"
-#include "bags/checked_message.hpp"
+#include "bags/recorded_messages.hpp"
 #include "messages/conversions.hpp"
 
 namespace hjt
@@ -21,10 +17,7 @@ constexpr const char* LOAD = "load at the output; else weight and inertia as con
 constexpr const char* TEMPERATURE = "temperature of the drive; else as configured";
 constexpr const char* TWIN = "angle and speed of a twin that ran beside the robot";
 
-std::uint64_t messagesOn(const rosbag::Bag& bag, const std::string& topic)
-{
-  return rosbag::View(const_cast<rosbag::Bag&>(bag), rosbag::TopicQuery(topic)).size();
-}
+const auto NO_PROGRESS = [](double) {};
 }  // namespace
 
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
@@ -39,10 +32,9 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
                        { "joint_temperatures" + n, TEMPERATURE, temperature_rows, temperature_rows > 0 } };
     return contents;
   }
-  rosbag::Bag bag;
-  openForReading(bag, source.path);
-  const std::uint64_t loads = messagesOn(bag, source.load_topic);
-  const std::uint64_t twins = twin_topic == source.topic ? 0 : messagesOn(bag, twin_topic);
+  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
+  const std::uint64_t loads = recording->messagesOn(source.load_topic);
+  const std::uint64_t twins = twin_topic == source.topic ? 0 : recording->messagesOn(twin_topic);
   contents.lines = { { source.topic, ANGLE_AND_CURRENT, count.rows, true },
                      { source.topic + ": " + JointNames(source.joint).motor, MOTOR_ANGLE, motor_rows, motor_rows > 0 },
                      { source.load_topic, LOAD, loads, loads > 0 },
@@ -52,26 +44,22 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   {
     contents.lines.push_back({ twin_topic, TWIN, twins, twins > 0 });
   }
-  rosbag::View telemetry(bag, rosbag::TopicQuery(source.topic));
-  CheckedMessage message;
-  for (const rosbag::MessageInstance& instance : telemetry)
-  {
-    if (message.read(instance))
-    {
-      contents.joints = message.state().name;
-      break;
-    }
-  }
+  recording->visit(
+      { source.topic }, false,
+      [&](const RecordedMessage& message)
+      {
+        contents.joints = message.state == nullptr ? contents.joints : message.state->name;
+        return message.state == nullptr;
+      },
+      NO_PROGRESS);
   const std::set<std::string> used{ source.topic, source.load_topic, twin_topic };
   std::set<std::string> others;
-  rosbag::View all(bag);
-  for (const rosbag::ConnectionInfo* connection : all.getConnections())
+  for (const auto& [name, topic] : recording->topics())
   {
-    const bool is_temperature =
-        temperature_rows > 0 && connection->datatype == ros::message_traits::datatype<sensor_msgs::Temperature>();
-    if (!is_temperature && used.count(connection->topic) == 0)
+    const bool is_temperature = temperature_rows > 0 && topic.type == TEMPERATURE_TYPE;
+    if (!is_temperature && used.count(name) == 0)
     {
-      others.insert(connection->topic);
+      others.insert(name);
     }
   }
   contents.other_topics.assign(others.begin(), others.end());
@@ -85,26 +73,31 @@ Decimated<TwinState> readTwinStates(const MotionSource& source, const std::strin
   {
     return states;
   }
-  rosbag::Bag bag;
-  openForReading(bag, source.path);
-  rosbag::View view(bag, rosbag::TopicQuery(twin_topic));
-  CheckedMessage message;
-  const JointNames names(source.joint);
-  for (const rosbag::MessageInstance& instance : view)
+  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
+  if (recording->messagesOn(twin_topic) == 0)
   {
-    if (!message.read(instance))
-    {
-      continue;
-    }
-    const sensor_msgs::JointState& state = message.state();
-    const std::size_t joint = placeOf(state, names.joint);
-    const std::size_t motor = placeOf(state, names.motor);
-    if (joint < std::min(state.position.size(), state.velocity.size()) && motor < state.effort.size())
-    {
-      states.add({ state.header.stamp.toSec() - start, state.position[joint], state.velocity[joint],
-                   state.effort[motor] * source.current_per_motor_torque });
-    }
+    return states;
   }
+  const JointNames names(source.joint);
+  recording->visit(
+      { twin_topic }, false,
+      [&](const RecordedMessage& message)
+      {
+        if (message.state == nullptr)
+        {
+          return true;
+        }
+        const sensor_msgs::JointState& state = *message.state;
+        const std::size_t joint = placeOf(state, names.joint);
+        const std::size_t motor = placeOf(state, names.motor);
+        if (joint < std::min(state.position.size(), state.velocity.size()) && motor < state.effort.size())
+        {
+          states.add({ state.header.stamp.toSec() - start, state.position[joint], state.velocity[joint],
+                       state.effort[motor] * source.current_per_motor_torque });
+        }
+        return true;
+      },
+      NO_PROGRESS);
   return states;
 }
 }  // namespace hjt

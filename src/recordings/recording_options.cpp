@@ -38,7 +38,7 @@ MotionSource motionSource(const RecordingOptions& options)
   source.time_scale = options.time_scale;
   if (const std::optional<UrJoint> known = findUrJoint(options.joint))
   {
-    source.joint = known->name;
+    source.joint = options.affixes(known->name);
     source.csv_joint = known->number;
   }
   return source;

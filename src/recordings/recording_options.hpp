@@ -8,6 +8,7 @@
 #include "recordings/recorded_motion.hpp"
 #include "recordings/watch.hpp"
 
+#include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "twin/configuration_options.hpp"
 
@@ -20,13 +21,14 @@ constexpr const char* LOAD_RECORDED = "target_moment";
 /// The recording of a joint or an arm, the parameters of its twins, and how it is read.
 struct RecordingOptions : ConfigurationOptions
 {
-  std::string recording;                             ///< a bag, or a UR controller's CSV recording
+  std::string recording;                             ///< bag, .db3, .mcap, their directory, or a controller's CSV
   std::string joint;                                 ///< base, shoulder ..., or its name in the messages
   std::string arm;                                   ///< name in config/arms, or a file; empty: one joint
   std::string load{ LOAD_OF_ARM };                   ///< of an arm's joints: that or LOAD_RECORDED
   std::string identified;                            ///< directory of overlays, SHORT_NAME.yaml; empty: none
   std::string joint_namespace{ DEFAULT_NAMESPACE };  ///< of the twin's topics
   std::string topic{ DEFAULT_TOPIC };                ///< of the telemetry in a bag
+  JointAffixes affixes;                              ///< of an arm's joints in the messages
   double time_scale{ 1.0 };                          ///< multiplies the times of the rows
   bool force{};                                      ///< overwrite files
   /// A recording at hand: a row of each joint at each time, currents in A, times from 0 on; empty: it is a file.

@@ -45,8 +45,8 @@ public:
     bin.rows += 1.0;
   }
 
-  /// At every whole order of the joint's turn; amplitudes in the residual's unit. Empty: less than a motor turn was
-  /// visited.
+  /// Lines at every whole order of the joint's turn; amplitudes in the residual's unit. Empty: the joint passed less
+  /// than a motor turn.
   std::vector<SpectrumLine> lines() const
   {
     const int highest = static_cast<int>(MAX_ORDER * ratio_);

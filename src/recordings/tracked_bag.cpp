@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "bags/bag_file.hpp"
+#include "bags/recording_format.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 
 namespace hjt
 {
 TrackedBag::TrackedBag(const std::string& path, const MotionSource& source, const std::vector<Joint>& joints)
-  : source_path_(source.path), writer_(path)
+  : source_path_(source.path), writer_(path), joints_(joints)
 {
   if (source.time_scale != 1.0)
   {
@@ -38,7 +39,7 @@ TrackedBag::TrackedBag(const std::string& path, const MotionSource& source, cons
   {
     start_ += SIMULATION_EPOCH;  // a controller counts from its own start
   }
-  else
+  else if (formatOfRecording(source.path) == RecordingFormat::BAG)
   {
     openForReading(source_, source.path);
     for (const Joint& joint : joints)
@@ -60,6 +61,34 @@ void TrackedBag::offer(std::size_t joint, const Comparison& comparison, const Tr
   const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
   copyUntil(stamp + delay_);
   outputs_[joint]->offer(stamp, comparison, tracker);
+}
+
+void TrackedBag::judge(const std::vector<Tracker*>& trackers, bool is_identified)
+{
+  for (std::size_t i = 0; i < trackers.size(); ++i)
+  {
+    verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], joints_[i].parameters, is_identified));
+  }
+}
+
+void TrackedBag::offerVerdicts(double time, const RecordingFit* fit)
+{
+  if (!verdict_periods_.begins(start_ + std::llround(1e9 * time)))
+  {
+    return;
+  }
+  const std::vector<Misfit> misfits = fit == nullptr ? std::vector<Misfit>(verdicts_.size()) : fit->whyNotJudged();
+  std::vector<VerdictWatch*> verdicts;
+  for (std::size_t i = 0; i < verdicts_.size(); ++i)
+  {
+    verdicts_[i]->setMisfit(misfits[i], fit == nullptr || fit->isSettled());
+    verdicts.push_back(verdicts_[i].get());
+  }
+  judgeTogether(verdicts, joints_.front().parameters.comparison.repeat_tolerance);
+  for (std::size_t i = 0; i < verdicts_.size(); ++i)
+  {
+    outputs_[i]->offer(start_ + std::llround(1e9 * verdicts_[i]->lastRow()), verdicts_[i]->now());
+  }
 }
 
 void TrackedBag::copyUntil(Stamp recorded)

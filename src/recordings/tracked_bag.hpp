@@ -9,14 +9,16 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include "arm/recording_fit.hpp"
 #include "bags/recorded_topic.hpp"
 #include "messages/tracker_outputs.hpp"
 #include "recordings/recorded_motion.hpp"
+#include "tracking/verdict_watch.hpp"
 
 namespace hjt
 {
 /// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
-/// too, it holds all of its messages as they are.
+/// of ROS 1 too, it holds all of its messages as they are.
 class TrackedBag
 {
 public:
@@ -35,10 +37,19 @@ public:
   /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker);
 
+  /// The joints are judged too: `trackers` in the order of the list. `is_identified`: their friction is that of these
+  /// very joints.
+  void judge(const std::vector<Tracker*>& trackers, bool is_identified);
+
+  /// After the comparisons of a row: a verdict of each joint about once a second, as the node's. `fit`: of an arm.
+  void offerVerdicts(double time, const RecordingFit* fit);
+
   /// Takes over the rest. @throws InputError if not all could be written.
   void close();
 
 private:
+  static constexpr double VERDICT_RATE = 1.0;  // [Hz]
+
   void copyUntil(Stamp recorded);
 
   const std::string source_path_;
@@ -48,6 +59,9 @@ private:
   BagWriter writer_;
   Stamp start_{};  // stamp of the first row [ns]
   Stamp delay_{};  // of its recording behind that [ns]
+  const std::vector<Joint> joints_;
   std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
+  std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
+  StampPeriods verdict_periods_{ VERDICT_RATE };
 };
 }  // namespace hjt

@@ -23,10 +23,8 @@ using diagnostic_updater::DiagnosticStatusWrapper;
 constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// The verdict is of the rows of up to this long; then it starts again [s].
-constexpr double JUDGED_SPAN = 1800.0;
-/// A worse verdict is reported once it has stood for this long: the first rows of a motion are few [s].
-constexpr double CONFIRMED_AFTER = 10.0;
+/// Between two messages of a verdict of the same level and reason [s].
+constexpr double VERDICT_PERIOD = 1.0;
 /// Warn when a stamp differs from the clock by more than this [s].
 constexpr double OFFSET_WARNING = 0.5;
 
@@ -44,6 +42,11 @@ const char* levelName(std::uint8_t level)
 {
   return level == DiagnosticStatus::STALE ? "STALE" : levelName(static_cast<HealthLevel>(level));
 }
+
+std::string notJudged(const Misfit& misfit)
+{
+  return "Not judged: " + misfit.clause;
+}
 }  // namespace
 
 JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, bool is_identified,
@@ -53,10 +56,10 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , name_(node.getNamespace().substr(1))
   , names_(parameters.joint.name)
   , parameters_(parameters)
-  , is_identified_(is_identified)
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
+  , verdict_(tracker_, parameters, is_identified)
   , outputs_(node, parameters)
   , life_(node, parameters)
   , tasks_(name_, parameters.joint.hardware_id)
@@ -114,7 +117,7 @@ void JointTracker::start(bool reset)
 void JointTracker::forgetAll()
 {
   tracker_.reset();
-  judgeEvidence(1.0);
+  verdict_.judge(1.0);
 }
 
 void JointTracker::push(const MotionRow& row)
@@ -123,11 +126,10 @@ void JointTracker::push(const MotionRow& row)
   publish();
 }
 
-void JointTracker::setMisfit(const std::string& reason, bool settled)
+void JointTracker::setMisfit(const Misfit& misfit, bool settled)
 {
-  misfit_ = reason;
-  fit_settled_ = settled;
-  tracker_.setFits(reason.empty());
+  verdict_.setMisfit(misfit, settled);
+  tracker_.setFits(!misfit.exists());
 }
 
 void JointTracker::receiveLoad(const sensor_msgs::JointState& message, Stamp received)
@@ -241,12 +243,13 @@ void JointTracker::look(const ros::WallTime& now)
   const StreamTimingReport timing = stream_.timing.report();
   const TrackerCounters counters = tracker_.counters();
   recent_refusals_.update(refusals_.incomplete + refusals_.not_finite + refusals_.load + refusals_.temperature +
-                              stream_.far_stamps + stream_.too_large,
+                              stream_.far_stamps + stream_.too_large + stream_.without_effort,
                           now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);
   recent_restarts_.update(counters.restarts + stream_.clock_changes, now);
   recent_failures_.update(counters.solver_failures, now);
+  publishVerdict(now);
   tasks_.look();
   logState();
 }
@@ -276,53 +279,36 @@ bool JointTracker::hasStopped() const
   return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
 }
 
-bool JointTracker::loadIsUnknown() const
+/// That of the rows, or that the twin fails.
+Verdict JointTracker::verdictNow() const
 {
-  return parameters_.telemetry.load != LoadSource::MODEL && tracker_.counters().compared > 0 &&
-         !comparison_.load_provided;
+  Verdict verdict = verdict_.now();
+  if (recent_failures_.areRecent())
+  {
+    verdict.dismiss({ Reason::SOLVER_FAILED, "" });
+    verdict.level = VerdictLevel::ERROR;
+  }
+  return verdict;
 }
 
-JointContext JointTracker::context(double arm_friction) const
+/// At once when it changes, else while rows come. The last one stays.
+void JointTracker::publishVerdict(const ros::WallTime& now)
 {
-  return { OwnReference(), is_identified_, 0.0, arm_friction, sentence(misfit_) };
-}
-
-MeasuredFriction JointTracker::measuredFriction() const
-{
-  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0));
-}
-
-void JointTracker::judgeEvidence(double arm_friction)
-{
-  const MotionReach& reach = tracker_.evidence().reach();
-  const bool is_new = confirmed_ > reach.end;  // the telemetry started again
-  Verdict verdict = judge(tracker_.evidence(), parameters_, context(arm_friction));
-  // After JUDGED_SPAN the last verdict stands until there is another.
-  const bool is_open = !verdict.judged && verdict_.judged && whyNotJudged().empty() && !is_new;
-  if (!is_open && (is_new || verdict.level <= verdict_.level || reach.end - confirmed_ >= CONFIRMED_AFTER))
+  if (tracker_.counters().compared == 0)
   {
-    verdict_ = std::move(verdict);
-    confirmed_ = reach.end;
+    return;
   }
-  if (reach.end - reach.begin > JUDGED_SPAN)
+  const Verdict verdict = verdictNow();
+  const std::pair<VerdictLevel, Reason> state{ verdict.level, verdict.reason };
+  const bool has_rows = comparison_.time != published_time_;
+  if (published_ == state && (!has_rows || (now - published_at_).toSec() < VERDICT_PERIOD))
   {
-    tracker_.forgetEvidence();
+    return;
   }
-}
-
-/// Empty: it is judged.
-std::string JointTracker::whyNotJudged() const
-{
-  if (!misfit_.empty())
-  {
-    return misfit_;
-  }
-  if (loadIsUnknown())
-  {
-    return "the load is unknown";
-  }
-  const JointEvidence& evidence = tracker_.evidence();
-  return evidence.isTouched() ? contactText(evidence.contact().last()) : std::string();
+  published_ = state;
+  published_time_ = comparison_.time;
+  published_at_ = now;
+  outputs_.offer(stream_.clock.stamp(comparison_.time), verdict);
 }
 
 DiagnosticVerdict JointTracker::judgeTelemetry() const
@@ -332,32 +318,41 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
   const bool refused = recent_refusals_.areRecent();
   return firstOf(
       { { ros::Time::isSimTime() && ros::Time::now().isZero(), { D::WARN, "No time on /clock yet" } },
+        { !stream_.lack.empty() && (timing.rows == 0 || hasStopped()),
+          { D::WARN, "Messages arrive on " + stream_.topic + " without a usable row: " + stream_.lack } },
         { timing.rows == 0,
           { D::WARN, refused ? "No usable row of " + names_.joint + " yet" : "No telemetry yet on " + stream_.topic } },
         { hasStopped(), { D::WARN, "The telemetry has stopped" } },
         { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
         { refused,
           { D::WARN,
-            "Messages refused: incomplete, not finite, too large, stamped far off, a temperature that no drive has, or "
+            "Messages refused: incomplete, not finite, efforts all zero, too large, stamped far off, a temperature "
+            "that no drive has, or "
             "a load beside the arm's" } },
         { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
         { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
-        { !misfit_.empty(), { D::OK, "Telemetry arrives; friction and faults are not judged: " + misfit_ } },
-        { loadIsUnknown(), { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
+        { verdict_.misfit().exists(),
+          { D::OK, "Telemetry arrives; friction and faults are not judged: " + verdict_.misfit().clause } },
+        { !tracker_.isLoadKnown(),
+          { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
       { D::OK, "Telemetry arrives" });
 }
 
 DiagnosticVerdict JointTracker::judgeComparison() const
 {
-  using D = DiagnosticStatus;
-  return firstOf(
-      { { recent_failures_.areRecent(), { D::ERROR, "The solver did not converge: the last good state is held" } },
-        { hasStopped(), { D::STALE, "Nothing to compare with" } },
-        { !whyNotJudged().empty(), { D::OK, "Not judged: " + whyNotJudged() } },
-        { verdict_.level != HealthLevel::OK && !fit_settled_,
-          { D::OK, "Not judged yet: whether angles and efforts fit is not known" } } },
-      { static_cast<std::uint8_t>(verdict_.level), withoutStop(verdict_.reason) });
+  if (tracker_.counters().compared == 0)
+  {
+    return { DiagnosticStatus::STALE, "Nothing to compare with" };
+  }
+  const Verdict verdict = verdictNow();
+  const std::string text = withoutStop(verdictText(verdict));
+  if (hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " +
+                                          (verdict.isJudged() ? levelName(verdict.level) + (". " + text) : text) };
+  }
+  return { static_cast<std::uint8_t>(severityOf(verdict.level)), text };
 }
 
 DiagnosticVerdict JointTracker::judgeHealth() const
@@ -367,9 +362,9 @@ DiagnosticVerdict JointTracker::judgeHealth() const
   {
     return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
   }
-  if (const std::string reason = whyNotJudged(); !reason.empty())
+  if (const std::optional<Misfit> misfit = verdict_.whyNotJudged())
   {
-    return { DiagnosticStatus::OK, "Not judged: " + reason };
+    return { DiagnosticStatus::OK, notJudged(*misfit) };
   }
   return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
 }
@@ -393,6 +388,8 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Unknown joint, refused", refusals_.unknown_joint);
   status.add("Names in the last of those", stream_.found_names);
   status.add("Without position or effort, refused", refusals_.incomplete);
+  status.add("Efforts all zero, refused", stream_.without_effort);
+  status.add("Jumps of angles by a turn, taken out", stream_.folds);
   status.add("Not finite, refused", refusals_.not_finite);
   status.add("Too large, refused", stream_.too_large.load());
   status.add("Stamp far from the clock, refused", stream_.far_stamps);
@@ -412,10 +409,11 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   const TrackerCounters counters = tracker_.counters();
   const std::optional<double> lag = tracker_.lag();
   const MotionReach& reach = tracker_.evidence().reach();
-  status.add("Verdict", verdictName(verdict_));
-  for (const Finding& finding : verdict_.findings)
+  const Verdict& verdict = verdict_.confirmed();
+  status.add("Verdict", levelName(verdict.level));
+  for (const Finding& finding : verdict.findings)
   {
-    status.add(finding.title, (finding.judged ? levelName(finding.level) : NOT_JUDGED) + (". " + finding.text));
+    status.add(subjectTitle(finding.subject), levelName(finding.level) + (". " + findingText(verdict, finding)));
   }
   status.add("Verdict is of the last [s]", reach.end - reach.begin);
   status.add("Residual of the current [A]", comparison_.current.residual());

@@ -27,7 +27,7 @@
 #include "ros_io/recent_events.hpp"
 #include "ros_io/telemetry_stream.hpp"
 #include "tracking/tracker.hpp"
-#include "tracking/verdict.hpp"
+#include "tracking/verdict_watch.hpp"
 
 namespace hjt
 {
@@ -37,7 +37,7 @@ class PublishedTopic
 {
 public:
   PublishedTopic(ros::NodeHandle& node, const char* name, Message first)
-    : message_(std::move(first)), publisher_(node.advertise<Message>(name, QUEUE_SIZE))
+    : message_(std::move(first)), publisher_(node.advertise<Message>(name, QUEUE_SIZE, IS_LATCHED))
   {
   }
 
@@ -50,6 +50,7 @@ private:
   // Comparisons come in bursts.
   static constexpr std::uint32_t QUEUE_SIZE =
       std::is_same_v<Message, harmonic_joint_twin::Comparison> ? InputTopics::QUEUE_SIZE : 100;
+  static constexpr bool IS_LATCHED = std::is_same_v<Message, harmonic_joint_twin::Verdict>;
 
   Message message_;
   ros::Publisher publisher_;
@@ -78,8 +79,8 @@ public:
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
   void push(const MotionRow& row);
 
-  /// Why nothing can be judged of this joint, as a clause; empty: its telemetry fits, or that is not yet `settled`.
-  void setMisfit(const std::string& reason, bool settled);
+  /// What does not fit in its telemetry; none: nothing, or that is not yet `settled`.
+  void setMisfit(const Misfit& misfit, bool settled);
 
   Tracker& tracker() { return tracker_; }
 
@@ -87,11 +88,7 @@ public:
   /// nothing, or the twin predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
-  /// As `joint_twin compare` measures it, of the rows that the verdict is of.
-  MeasuredFriction measuredFriction() const;
-
-  /// Makes the verdict again; `arm_friction`: what all joints have in common of `measuredFriction` [-].
-  void judgeEvidence(double arm_friction);
+  VerdictWatch& verdict() { return verdict_; }
 
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
@@ -135,9 +132,8 @@ private:
   void publish();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  JointContext context(double arm_friction) const;
-  bool loadIsUnknown() const;
-  std::string whyNotJudged() const;
+  Verdict verdictNow() const;
+  void publishVerdict(const ros::WallTime& now);
   bool hasStopped() const;
   DiagnosticVerdict judgeTelemetry() const;
   DiagnosticVerdict judgeComparison() const;
@@ -152,12 +148,10 @@ private:
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
   const Parameters parameters_;
-  const bool is_identified_;
   const double current_per_effort_;  // [A], [A/(N.m)]
-  std::string misfit_;
-  bool fit_settled_{ true };
   double arm_friction_{ 1.0 };
   Tracker tracker_;
+  VerdictWatch verdict_;
   TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;
   std::optional<Stamp> last_load_stamp_;            // [ns]
@@ -170,8 +164,9 @@ private:
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
-  Verdict verdict_;
-  double confirmed_{};  // time up to which no worse verdict was found [s]
+  std::optional<std::pair<VerdictLevel, Reason>> published_;  // the last one
+  double published_time_{};                                   // of its last row [s]
+  ros::WallTime published_at_;
   std::optional<std::uint8_t> logged_level_;
   DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;

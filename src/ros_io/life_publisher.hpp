@@ -17,9 +17,9 @@
 
 namespace hjt
 {
-/// Keeps the drive's record of use and publishes what is left of its life. Whoever runs the twin counts; ageing,
-/// publishing and the file are done in a thread of its own, every life.forecast_period by the wall clock and at the
-/// end.
+/// Keeps the drive's record of use and publishes what is left of its life. The thread that runs the twin counts the
+/// use. A thread of this class forecasts, publishes and writes the file every life.forecast_period by the wall clock,
+/// and at the end.
 ///
 /// A record with a row that cannot be read is renamed, and the count restarts.
 class LifePublisher

@@ -29,7 +29,7 @@ public:
   /// The faults published last, for a human reader.
   std::string activeFaults() const;
 
-  /// In the order of CHANNELS.
+  /// Counters of the channels, in the order of CHANNELS.
   std::array<ChannelCounters, CHANNEL_COUNT> counters() const noexcept;
 
 private:

@@ -10,6 +10,7 @@
 #include "base/number_text.hpp"
 #include "base/printable.hpp"
 #include "base/text_stream.hpp"
+#include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/joint_name.hpp"
@@ -57,6 +58,7 @@ void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, b
 {
   joints_.push_back(std::make_unique<JointTracker>(node, parameters, is_identified, stream_, mutex_));
   rows_.emplace_back();
+  angles_.emplace_back();
 }
 
 void TrackerNode::subscribe(ros::NodeHandle& node)
@@ -71,6 +73,33 @@ void TrackerNode::subscribe(ros::NodeHandle& node)
       topics::LOAD, [this](const JointStateEvent& event) { receiveLoad(event); });
   temperature_subscriber_ = inputs.subscribe<sensor_msgs::Temperature>(
       topics::JOINT_TEMPERATURES, [this](const auto& event) { receiveTemperature(event); });
+}
+
+/// Why there is no row in it, as a clause.
+std::string TrackerNode::lackOf(const sensor_msgs::JointState& message) const
+{
+  std::vector<std::string> names;
+  for (const auto& joint : joints_)
+  {
+    names.push_back(joint->joint());
+  }
+  const std::string unnamed = lackText(names, message.name);
+  if (!unnamed.empty())
+  {
+    return printable(unnamed, MAX_NAMES) + (joints_.size() > 1 ? "; one message has to hold them all" : "");
+  }
+  const std::size_t size = message.name.size();
+  return "their " +
+         std::string(message.position.size() < size ? "position is empty or too short" :
+                     message.effort.size() < size   ? "effort is empty or too short: it has to be the motors' current" :
+                                                      "position or effort is not finite (NaN)");
+}
+
+/// Of all joints of an arm at once, which no measurement gives.
+bool TrackerNode::isWithoutEffort() const
+{
+  return rows_.size() > 1 &&
+         std::all_of(rows_.begin(), rows_.end(), [](const MotionRow& row) { return row.current == 0.0; });
 }
 
 void TrackerNode::receiveTelemetry(const JointStateEvent& event)
@@ -98,8 +127,16 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   }
   if (found < joints_.size())
   {
+    stream_.lack = lackOf(message);
     return;
   }
+  if (has_efforts_ && isWithoutEffort())
+  {
+    ++stream_.without_effort;
+    return;
+  }
+  has_efforts_ = has_efforts_ || !isWithoutEffort();
+  stream_.lack.clear();
   const Stamp stamp = stampOr(message.header.stamp, event.getReceiptTime());
   stream_.last_received = fromRosTime(event.getReceiptTime());
   push(stamp);
@@ -133,8 +170,20 @@ void TrackerNode::push(Stamp stamp)
     {
       joints_[i]->start(moved);
     }
+    if (taken != TelemetryClock::Row::TAKEN)
+    {
+      angles_[i].reset();
+    }
+    const std::uint64_t folds = angles_[i].folds();
+    rows_[i].position = angles_[i].take(time, rows_[i].position);
+    stream_.folds += angles_[i].folds() - folds;
     rows_[i].time = time;
     rows_[i].received = stream_.clock.seconds(stream_.last_received);
+  }
+  if (stream_.folds > 0)
+  {
+    ROS_WARN_STREAM_ONCE("Angles on " << stream_.topic
+                                      << " are folded into one turn: their jumps by 2 pi are taken out");
   }
   if (std::all_of(rows_.begin(), rows_.end(), isPlausible))
   {
@@ -205,10 +254,10 @@ void TrackerNode::updateFit(const ArmSample& sample)
   }
   next_fit_ = time + FIT_PERIOD;
   const bool settled = fit_->isSettled();
-  const std::vector<std::string> reasons = fit_->whyNotJudged();
+  const std::vector<Misfit> misfits = fit_->whyNotJudged();
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joints_[i]->setMisfit(reasons[i], settled);
+    joints_[i]->setMisfit(misfits[i], settled);
   }
 }
 
@@ -245,16 +294,12 @@ void TrackerNode::judge(const ros::WallTime& now)
     return;
   }
   next_verdict_ = now + ros::WallDuration(VERDICT_PERIOD);
-  std::vector<MeasuredFriction> frictions;
+  std::vector<VerdictWatch*> verdicts;
   for (const auto& joint : joints_)
   {
-    frictions.push_back(joint->measuredFriction());
+    verdicts.push_back(&joint->verdict());
   }
-  const ArmFriction arm = commonFriction(frictions, repeat_tolerance_);
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints_[i]->judgeEvidence(arm.factors[i]);
-  }
+  judgeTogether(verdicts, repeat_tolerance_);
 }
 
 void TrackerNode::look()

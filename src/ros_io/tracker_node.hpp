@@ -17,6 +17,7 @@
 #include "arm/arm_load.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
+#include "tracking/unfolded_angle.hpp"
 
 namespace hjt
 {
@@ -41,6 +42,8 @@ private:
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);
   void receiveTemperature(const ros::MessageEvent<const sensor_msgs::Temperature>& event);
+  std::string lackOf(const sensor_msgs::JointState& message) const;
+  bool isWithoutEffort() const;
   void push(Stamp stamp);
   void resetFit();
   void lookAtFriction(double time);
@@ -58,7 +61,9 @@ private:
   ros::WallTime next_verdict_;
   double next_fit_{};            // when its findings are looked at [s]
   std::vector<MotionRow> rows_;  // of the joints, in the message at hand
-  double last_time_{};           // [s]
+  std::vector<UnfoldedAngle> angles_;
+  bool has_efforts_{};  // a row had
+  double last_time_{};  // [s]
   ros::WallTimer timer_;
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;

@@ -115,6 +115,13 @@ private:
 
   struct Instant
   {
+    Instant() = default;
+    Instant(const Instant& other) noexcept  // a reading of the copy finds the same errors
+      : step(other.step), angles(other.angles), motor_torque(other.motor_torque)
+    {
+    }
+    Instant& operator=(const Instant&) = delete;
+
     std::int64_t step{};
     Angles angles;
     double motor_torque{};  // [N.m]
@@ -124,7 +131,7 @@ private:
     mutable std::atomic<double> sensed_output{};  // [rad]
   };
 
-  /// That of `back` steps ago, or the first there was.
+  /// The instant `back` steps ago, or the first one.
   const Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);

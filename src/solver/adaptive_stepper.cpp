@@ -28,7 +28,7 @@ Eigen::Vector4d perUnit(double tolerance, double ratio, double frequency) noexce
 }  // namespace
 
 AdaptiveStepper::AdaptiveStepper(JointDynamics& dynamics, double tolerance, double ratio, double frequency) noexcept
-  : dynamics_(dynamics)
+  : dynamics_(&dynamics)
   , controlled_(ErrorChecker{ perUnit(tolerance, ratio, frequency) },
                 boost::numeric::odeint::default_step_adjuster<double, double>(MAX_PHASE / frequency))
   , speed_tolerance_(tolerance * frequency)
@@ -38,14 +38,14 @@ AdaptiveStepper::AdaptiveStepper(JointDynamics& dynamics, double tolerance, doub
 
 bool AdaptiveStepper::covers(const JointInputs& inputs) const noexcept
 {
-  const JointModel& model = dynamics_.model();
+  const JointModel& model = dynamics_->model();
   return !model.cup_friction.isTerm() && !(model.brake.hasPlay() && inputs.brake_engaged);
 }
 
 void AdaptiveStepper::start(JointState& x) noexcept
 {
-  x[DISSIPATED] += dynamics_.accept();
-  x[DRIVE_TORQUE] = dynamics_.drive_torque = dynamics_.explicitDriveTorque(x);
+  x[DISSIPATED] += dynamics_->accept();
+  x[DRIVE_TORQUE] = dynamics_->drive_torque = dynamics_->explicitDriveTorque(x);
   end_ = x;
   start_ = x;
   at_ = 0.0;
@@ -66,7 +66,7 @@ bool AdaptiveStepper::advance(double length, JointState& x, double& left) noexce
     if (steps_ == MOST_STEPS || !takeStep())
     {
       x = steps_ == MOST_STEPS ? end_ : start_;
-      x[DRIVE_TORQUE] = dynamics_.drive_torque;
+      x[DRIVE_TORQUE] = dynamics_->drive_torque;
       left = at_;
       return false;
     }
@@ -74,7 +74,7 @@ bool AdaptiveStepper::advance(double length, JointState& x, double& left) noexce
   interpolate(at_, x);
   State unused;
   (*this)(x, unused, at_);
-  x[DRIVE_TORQUE] = dynamics_.drive_torque;
+  x[DRIVE_TORQUE] = dynamics_->drive_torque;
   left = 0.0;
   return true;
 }
@@ -88,7 +88,7 @@ bool AdaptiveStepper::takeStep() noexcept
     return false;
   }
   cup_rate_ = cupRate(end_);
-  end_[DISSIPATED] += dynamics_.accept();
+  end_[DISSIPATED] += dynamics_->accept();
   lag_ += length_;
   if (event_)
   {
@@ -143,8 +143,8 @@ void AdaptiveStepper::endAtEvent() noexcept
   double end = whole_;
   const Eigen::Vector2d excess = push_.cwiseAbs() - strength_;
   const double turned = cupRate(end_);
-  const double stiffness = dynamics_.cupStiffness();
-  const double by_output = std::abs(dynamics_.cupRates()[1]);
+  const double stiffness = dynamics_->cupStiffness();
+  const double by_output = std::abs(dynamics_->cupRates()[1]);
   for (int i = 0; i < 2; ++i)
   {
     const int mode = mode_[static_cast<std::size_t>(i)];
@@ -187,7 +187,7 @@ void AdaptiveStepper::endAtEvent() noexcept
     // The sliders are turned from end to end of a step. Where the rim goes beyond an end by more than counts, the step
     // ends there.
     const double beyond = 0.5 * whole_ * std::min(std::abs(turned), std::abs(cup_rate_));
-    const double kick = stiffness * by_output * beyond * whole_ / dynamics_.inertia()[1];
+    const double kick = stiffness * by_output * beyond * whole_ / dynamics_->inertia()[1];
     if (kick > speed_tolerance_)
     {
       const auto forward = [&](double time)
@@ -205,7 +205,7 @@ void AdaptiveStepper::endAtEvent() noexcept
     }
   }
   const double room = roomToFade(end_);
-  if (start_[MOTOR_SPEED] * dynamics_.inputs.motor_torque > 0.0 && (fades_ ? room > 0.0 : room < 0.0))
+  if (start_[MOTOR_SPEED] * dynamics_->inputs.motor_torque > 0.0 && (fades_ ? room > 0.0 : room < 0.0))
   {
     const auto left = [&](double time)
     {
@@ -236,7 +236,7 @@ void AdaptiveStepper::endAtEvent() noexcept
 void AdaptiveStepper::chooseModes() noexcept
 {
   mode_ = { signOf(start_[MOTOR_SPEED]), signOf(start_[OUTPUT_SPEED]) };
-  fades_ = dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, start_[MOTOR_SPEED]);
+  fades_ = dynamics_->model().motor.fades(dynamics_->inputs.motor_torque, start_[MOTOR_SPEED]);
   (*this)(start_, end_rate_, 0.0);
   for (int i = 0; i < 2; ++i)
   {
@@ -297,26 +297,26 @@ void AdaptiveStepper::interpolate(double time, JointState& x) const noexcept
 
 bool AdaptiveStepper::place(const JointState& x) noexcept
 {
-  return dynamics_.placeOnSurface(x[MOTOR_ANGLE], x[OUTPUT_ANGLE]);
+  return dynamics_->placeOnSurface(x[MOTOR_ANGLE], x[OUTPUT_ANGLE]);
 }
 
 /// Of the rim, at the ring in place [rad/s].
 double AdaptiveStepper::cupRate(const JointState& x) const noexcept
 {
-  return dynamics_.cupRates().dot(x.segment<2>(MOTOR_SPEED));
+  return dynamics_->cupRates().dot(x.segment<2>(MOTOR_SPEED));
 }
 
 /// Up to where the drive's torque fades [rad/s].
 double AdaptiveStepper::roomToFade(const JointState& x) const noexcept
 {
-  return dynamics_.model().motor.fadeSpeed() - std::abs(x[MOTOR_SPEED]);
+  return dynamics_->model().motor.fadeSpeed() - std::abs(x[MOTOR_SPEED]);
 }
 
 /// Of the drive's current, `time` after the start of the step.
 double AdaptiveStepper::currentTorque(const JointState& x, double time) const noexcept
 {
-  const Motor& motor = dynamics_.model().motor;
-  const double wanted = dynamics_.inputs.motor_torque;
+  const Motor& motor = dynamics_->model().motor;
+  const double wanted = dynamics_->inputs.motor_torque;
   if (fades_)
   {
     return motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : motor.faded(wanted, x[MOTOR_SPEED]);
@@ -328,26 +328,26 @@ double AdaptiveStepper::currentTorque(const JointState& x, double time) const no
 bool AdaptiveStepper::isAtRest() const noexcept
 {
   constexpr double SETTLED = 1e-12;
-  return mode_[0] == 0 && mode_[1] == 0 && dynamics_.model().motor.currentLeft(lag_) < SETTLED;
+  return mode_[0] == 0 && mode_[1] == 0 && dynamics_->model().motor.currentLeft(lag_) < SETTLED;
 }
 
 void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double time) noexcept
 {
   rate.setZero();
-  dynamics_.drive_torque = currentTorque(x, time);
+  dynamics_->drive_torque = currentTorque(x, time);
   if (!place(x))
   {
     left_surface_ = true;
     return;
   }
   const Eigen::Vector2d speeds = x.segment<2>(MOTOR_SPEED);
-  dynamics_.updateFriction(speeds);
-  const JointFriction& friction = dynamics_.friction();
-  const double follow = std::abs(dynamics_.velocityRatio());
+  dynamics_->updateFriction(speeds);
+  const JointFriction& friction = dynamics_->friction();
+  const double follow = std::abs(dynamics_->velocityRatio());
   const bool motor_sticks = mode_[0] == 0;
   strength_.setZero();
   Eigen::Vector2d drag = -(friction.viscous * speeds);
-  drag[0] += dynamics_.preslidingTorque();
+  drag[0] += dynamics_->preslidingTorque();
   for (const FrictionTerm& term : friction.terms)
   {
     if (term.slip[1] == 0.0)
@@ -372,23 +372,23 @@ void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double t
       drag -= (term.strength * slip / std::sqrt(slip * slip + width * width)) * term.slip;
     }
   }
-  const Eigen::Vector2d torque = dynamics_.torque();
+  const Eigen::Vector2d torque = dynamics_->torque();
   push_ = torque + drag;
   for (int i = 0; i < 2; ++i)
   {
     const int mode = mode_[static_cast<std::size_t>(i)];
     drag[i] -= mode != 0 ? mode * strength_[i] : std::clamp(push_[i], -strength_[i], strength_[i]);
     rate[MOTOR_ANGLE + i] = speeds[i];
-    rate[MOTOR_SPEED + i] = mode != 0 ? (torque[i] + drag[i]) / dynamics_.inertia()[i] : 0.0;
+    rate[MOTOR_SPEED + i] = mode != 0 ? (torque[i] + drag[i]) / dynamics_->inertia()[i] : 0.0;
   }
-  rate[MOTOR_WORK] = dynamics_.driveTorque() * speeds[0];
-  rate[LOAD_WORK] = dynamics_.inputs.load_torque * speeds[1];
+  rate[MOTOR_WORK] = dynamics_->driveTorque() * speeds[0];
+  rate[LOAD_WORK] = dynamics_->inputs.load_torque * speeds[1];
   rate[DISSIPATED] = -drag.dot(speeds);
   if (fades_)
   {
-    const Motor& motor = dynamics_.model().motor;
+    const Motor& motor = dynamics_->model().motor;
     rate[DRIVE_TORQUE] =
-        motor.currentRate() * (motor.faded(dynamics_.inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
+        motor.currentRate() * (motor.faded(dynamics_->inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
   }
   drag_ = drag;
 }

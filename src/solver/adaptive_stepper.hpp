@@ -33,10 +33,12 @@ public:
   /// `frequency` [rad/s] times those.
   AdaptiveStepper(JointDynamics& dynamics, double tolerance, double ratio, double frequency) noexcept;
 
+  void setDynamics(JointDynamics& copied) noexcept { dynamics_ = &copied; }  ///< of a copy
+
   /// Whether it knows all friction that acts: not a cup as one Coulomb element, nor an engaged brake with play.
   bool covers(const JointInputs& inputs) const noexcept;
 
-  /// From here on by the dynamics' inputs. `x`: state, of the ring in place, on the surface; gets what has slipped.
+  /// Starts from state `x`, whose ring is in place, with the dynamics' inputs. `x` gets what has slipped.
   void start(JointState& x) noexcept;
 
   /// State `length` [s] further. The ring is in place there. False: the surface ends, or no step is short enough; `x`
@@ -82,7 +84,7 @@ private:
   template <class Function>
   double firstZero(Function&& function, double end, double at_start, double at_end) const noexcept;
 
-  JointDynamics& dynamics_;
+  JointDynamics* dynamics_;
   Controlled controlled_;
   double speed_tolerance_;  // of the output [rad/s]
   double first_;            // step after a start [s]

@@ -22,7 +22,7 @@ constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
 constexpr int SCHUR = 4 * COUNT;  ///< unknowns of the separators
 
-/// Where the arcs lie. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
+/// Layout of the arcs. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
 struct Layout
 {
   int steps;         ///< length of the longest arc

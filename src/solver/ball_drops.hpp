@@ -43,7 +43,7 @@ struct BallTable
   int lines{};       ///< intervals of w; there are lines + 3 coefficients
   int columns{};     ///< intervals of u over a pitch
   int places{};      ///< intervals of chi over a turn
-  /// That of line i (-1 ... lines + 1), column j, place k is number ((i + 1) columns + j) places + k.
+  /// Coefficients of line i (-1 ... lines + 1), column j, place k have the index ((i + 1) columns + j) places + k.
   std::vector<Coefficients> coefficients;
 };
 
@@ -59,8 +59,8 @@ public:
 
   const std::shared_ptr<const BallTable>& table() const noexcept { return table_; }
 
-  /// By which the ball that has dropped changes the gear. The wave generator takes the balls along: by u is at the
-  /// same v. The friction of the outer race, a hundredth of the flanks', stays as it is.
+  /// Change of the gear by the ball that has dropped. The wave generator takes the balls along: derivatives by u are
+  /// at the same v. The friction of the outer race, a hundredth of the flanks', is left as it is.
   struct Change
   {
     SurfaceEnergy energy;

@@ -7,7 +7,7 @@
 namespace hjt
 {
 EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
-  : model_(model)
+  : model_(&model)
   , tolerance_(tolerance)
   , start_points_(model.rest.points())
   , start_forces_(start_points_)
@@ -109,9 +109,9 @@ bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingSt
 bool EnergyDescent::pairsAgain(RingState& state) noexcept
 {
   old_space_ = state.shape.space;
-  if (model_.meshed())
+  if (model_->meshed())
   {
-    model_.of<ToothMesh>().pairNearest(state.position, state.shape);
+    model_->of<ToothMesh>().pairNearest(state.position, state.shape);
   }
   return old_space_ != state.shape.space;
 }

@@ -18,6 +18,8 @@ public:
   /// `tolerance`: largest out-of-balance force of an equilibrium [N].
   EnergyDescent(const RingModel& model, double tolerance);
 
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+
   /// One Newton step on a factored tangent, which is shifted where it is not positive along the step: all the way if
   /// that is still downhill or nearly level, else to where the energy is lowest. Looks at slopes only: energies near a
   /// minimum differ by less than their rounding. False: no way down.
@@ -33,7 +35,7 @@ private:
   bool dampedStep(double damping, RingLinearisation& system, RingState& state) noexcept;
   bool pairsAgain(RingState& state) noexcept;
 
-  const RingModel& model_;
+  const RingModel* model_;
   double tolerance_;  // [N]
   // Scratch, sized once.
   Eigen::VectorXd start_points_;

@@ -9,7 +9,7 @@
 namespace hjt
 {
 JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& parameters)
-  : model_(model)
+  : model_(&model)
   , inertia_(model.inertia())
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
@@ -23,12 +23,12 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
 SolveStatus JointDynamics::solveAtRest() noexcept
 {
   constexpr int MAX_ITERATIONS = 50;
-  SolveStatus result = ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude });
+  SolveStatus result = ring_.insert({ 0.0, 0.0, model_->ring.gear.wave_amplitude });
   // Gravity changes with the output angle; the joint is stiff, so taking it as constant and repeating converges fast.
   double torque = 0.0;
   for (int i = 0; result.ok(); ++i)
   {
-    const double wanted = inputs.load_torque - model_.load.gravityTorque(ring_.position().output_angle);
+    const double wanted = inputs.load_torque - model_->load.gravityTorque(ring_.position().output_angle);
     if (i > 0 && std::abs(wanted - torque) <= balanceTolerance(ring_))
     {
       break;
@@ -44,12 +44,12 @@ SolveStatus JointDynamics::solveAtRest() noexcept
     result = balanceOutput(ring_, 0.0, torque);
   }
   status = result;
-  viscosity_ = model_.bearing.viscosity(temperature_);
+  viscosity_ = model_->bearing.viscosity(temperature_);
   on_surface_ = false;
   takeRing();
   accepted_ = {};
   accepted_.motor_angle = motor_angle_;
-  accepted_.cup = model_.cup_friction.relaxed(now_.cup.rotation);
+  accepted_.cup = model_->cup_friction.relaxed(now_.cup.rotation);
   now_ = accepted_;
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
   return result;
@@ -104,7 +104,7 @@ void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
 SolveStatus JointDynamics::updateModel() noexcept
 {
   const SolveStatus result = ring_.updateModel();
-  viscosity_ = model_.bearing.viscosity(temperature_);
+  viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
   accept();  // what slips meanwhile is part of what the edit sets free
   return result;
@@ -126,7 +126,7 @@ void JointDynamics::takeRing() noexcept
   response_.motor_stiffness = k(0, 0);
   motor_angle_ = ring_.position().wave_generator_angle;
   output_angle_ = ring_.position().output_angle;
-  if (model_.cup_friction.hasState())
+  if (model_->cup_friction.hasState())
   {
     const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
     turnCup(ring_.forces().of<CupTorsion>().rotation, rates.meanRotation());
@@ -137,10 +137,10 @@ void JointDynamics::takeRing() noexcept
 /// What friction remembers, by the surface's response at the present angles.
 void JointDynamics::takeSurface() noexcept
 {
-  if (model_.cup_friction.hasState())
+  if (model_->cup_friction.hasState())
   {
     // The rim turns with the torque that it leans on the housing with.
-    const auto& cup = model_.ring.of<CupTorsion>();
+    const auto& cup = model_->ring.of<CupTorsion>();
     const double torque = -(response_.wave_generator_torque + response_.output_torque);
     turnCup(cup.rotationAtTorque(torque), housing_stiffness_ / cup.stiffnessAtTorque(torque));
   }
@@ -149,13 +149,13 @@ void JointDynamics::takeSurface() noexcept
 
 void JointDynamics::turnCup(double rotation, const Eigen::Vector2d& rates) noexcept
 {
-  now_.cup = model_.cup_friction.turned(accepted_.cup, rotation);
+  now_.cup = model_->cup_friction.turned(accepted_.cup, rotation);
   cup_rates_ = rates;
 }
 
 void JointDynamics::slideShaft() noexcept
 {
-  const double angle = model_.motor.preslidingAngle();
+  const double angle = model_->motor.preslidingAngle();
   if (angle > 0.0)
   {
     now_.share = mobilised(accepted_.share, motor_angle_ - accepted_.motor_angle, angle);
@@ -192,7 +192,7 @@ bool JointDynamics::surfaceAgrees() const noexcept
 
 SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) noexcept
 {
-  const SolveStatus result = ring_.reach({ motor_angle, output_angle, model_.ring.gear.wave_amplitude });
+  const SolveStatus result = ring_.reach({ motor_angle, output_angle, model_->ring.gear.wave_amplitude });
   status.iterations += result.iterations;
   status.cuts += result.cuts;
   status.jumps += result.jumps;
@@ -213,16 +213,16 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     RingFrictionResponse ring_friction;
     surface_->friction(place_, ring_friction);
     Eigen::Vector2d cup_slip = cup_rates_;
-    if (!model_.cup_friction.hasState())
+    if (!model_->cup_friction.hasState())
     {
       const double torque = response_.wave_generator_torque + response_.output_torque;
-      cup_slip = housing_stiffness_ / model_.ring.of<CupTorsion>().stiffnessAtTorque(torque);
+      cup_slip = housing_stiffness_ / model_->ring.of<CupTorsion>().stiffnessAtTorque(torque);
     }
-    model_.friction(ring_friction, cup_slip, running, friction_);
+    model_->friction(ring_friction, cup_slip, running, friction_);
     return;
   }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  model_.friction(ring_.forces(), rates, velocityRatio(), running, friction_);
+  model_->friction(ring_.forces(), rates, velocityRatio(), running, friction_);
 }
 
 /// That the brake holds the shaft with, at the present angle.
@@ -230,7 +230,7 @@ double JointDynamics::brakeTorque(double motor_speed) noexcept
 {
   now_.pin = accepted_.pin;
   const double push = motor_speed != 0.0 ? motor_speed : torque()[0];
-  return model_.brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
+  return model_->brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
 }
 
 /// Of the bearing's grease, at the present temperature.
@@ -239,7 +239,7 @@ double JointDynamics::viscosity() noexcept
   if (inputs.temperature != temperature_)
   {
     temperature_ = inputs.temperature;
-    viscosity_ = model_.bearing.viscosity(temperature_);
+    viscosity_ = model_->bearing.viscosity(temperature_);
   }
   return viscosity_;
 }
@@ -260,7 +260,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   const Eigen::Vector2d presliding(preslidingTorque(), 0.0);
   rate.segment<2>(MOTOR_SPEED) = (torque() + presliding + drag).cwiseQuotient(inertia_);
   rate[DRIVE_TORQUE] =
-      model_.motor.currentRate() * (model_.motor.limited(inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
+      model_->motor.currentRate() * (model_->motor.limited(inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
   rate[MOTOR_WORK] = driveTorque() * speeds[0];
   rate[LOAD_WORK] = inputs.load_torque * speeds[1];
   rate[DISSIPATED] = -(drag + presliding).dot(speeds);

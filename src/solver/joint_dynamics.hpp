@@ -27,10 +27,10 @@ public:
   /// Inserts the wave generator and lets the output settle under its load, the motor held at angle 0.
   SolveStatus solveAtRest() noexcept;
 
-  /// From now on by this surface where it holds, which must outlive its use; null: by the full ring.
+  /// Uses this surface where it holds, else the full ring; null: the full ring alone. The surface must outlive its use.
   void useSurface(const ResponseSurface* surface) noexcept;
 
-  /// After an edit of the model: the ring in its equilibrium at the present angles, by the full ring.
+  /// After an edit of the model: solves the full ring at the present angles.
   SolveStatus updateModel() noexcept;
 
   /// The present equilibrium is the surface's.
@@ -38,7 +38,7 @@ public:
   const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< while there
 
   /// Of the present equilibrium. While the surface is in use the full ring is elsewhere.
-  DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_.ring.gear.wave_amplitude }; }
+  DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_->ring.gear.wave_amplitude }; }
 
   /// Ring in equilibrium at these angles. On failure the last good ring stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
@@ -54,36 +54,37 @@ public:
   /// All torques at the present ring but those of dry and viscous friction [N.m].
   Eigen::Vector2d torque() const noexcept
   {
-    return model_.torque(response_, position(), shaftTorque(), inputs.load_torque) - now_.cup.torque * cup_rates_;
+    return model_->torque(response_, position(), shaftTorque(), inputs.load_torque) - now_.cup.torque * cup_rates_;
   }
 
   /// Of the drive, at the temperature of its magnets, without ripple [N.m].
-  double shaftTorque() const noexcept { return drive_torque * model_.motor.torqueFactor(inputs.temperature); }
+  double shaftTorque() const noexcept { return drive_torque * model_->motor.torqueFactor(inputs.temperature); }
 
   /// Of the current as part of the state, or where it follows at once [N.m].
   double explicitDriveTorque(const JointState& x) const noexcept
   {
-    return model_.motor.currentRate() > 0.0 ? x[joint_state::DRIVE_TORQUE] :
-                                              model_.motor.limited(inputs.motor_torque, x[joint_state::MOTOR_SPEED]);
+    return model_->motor.currentRate() > 0.0 ? x[joint_state::DRIVE_TORQUE] :
+                                               model_->motor.limited(inputs.motor_torque, x[joint_state::MOTOR_SPEED]);
   }
 
-  /// That the drive does work with at the present angle of the motor [N.m]; over the torque of its current [-].
-  double driveTorque() const noexcept { return model_.motor.rippled(shaftTorque(), motor_angle_); }
+  /// Torque that the drive does work with at the present angle of the motor [N.m], and its ratio to the current's
+  /// torque [-].
+  double driveTorque() const noexcept { return model_->motor.rippled(shaftTorque(), motor_angle_); }
   double driveGain() const noexcept
   {
-    return model_.motor.rippled(model_.motor.torqueFactor(inputs.temperature), motor_angle_);
+    return model_->motor.rippled(model_->motor.torqueFactor(inputs.temperature), motor_angle_);
   }
 
   /// Of friction at the motor shaft that builds up over its presliding angle, at the present ring [N.m].
   double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
 
-  /// By which friction that remembers stiffens the joint at the present ring [N.m/rad].
+  /// Stiffness of the joint by friction with a memory (presliding), at the present ring [N.m/rad].
   Eigen::Matrix2d frictionStiffness() const noexcept
   {
     Eigen::Matrix2d stiffness = now_.cup.stiffness * cup_rates_ * cup_rates_.transpose();
     if (friction_.presliding > 0.0)
     {
-      stiffness(0, 0) += friction_.presliding * (1.0 + std::abs(now_.share)) / model_.motor.preslidingAngle();
+      stiffness(0, 0) += friction_.presliding * (1.0 + std::abs(now_.share)) / model_->motor.preslidingAngle();
     }
     return stiffness;
   }
@@ -98,7 +99,12 @@ public:
 
   void operator()(const JointState& x, JointState& rate, double t) noexcept;
 
-  const JointModel& model() const noexcept { return model_; }
+  const JointModel& model() const noexcept { return *model_; }
+  void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium
+  {
+    model_ = &copied;
+    ring_.setModel(copied.ring);
+  }
   /// Of motor and output: the model's, or with that of an arm around the joint [kg.m^2].
   const Eigen::Vector2d& inertia() const noexcept { return inertia_; }
   void setOutputInertia(double inertia) noexcept
@@ -113,7 +119,7 @@ public:
   const DryFriction& dryFriction() const noexcept { return dry_; }
   /// Output speed over motor speed at constant load: from the ring's stiffness, not from the tooth numbers [-].
   double velocityRatio() const noexcept { return response_.velocity_ratio; }
-  double storedEnergy() const noexcept { return model_.storedEnergy(response_, position()) + now_.cup.energy; }
+  double storedEnergy() const noexcept { return model_->storedEnergy(response_, position()) + now_.cup.energy; }
 
   JointInputs inputs;
   double drive_torque{};  ///< of the motor's current at 25 degC: what limit and lag leave of that wanted [N.m]
@@ -139,7 +145,7 @@ private:
     Brake::Pin pin;
   };
 
-  const JointModel& model_;
+  const JointModel* model_;
   Eigen::Vector2d inertia_;
   RingEquilibrium ring_;
   RingResponse response_;  // present

@@ -16,8 +16,8 @@ namespace hjt
 class JointStepper
 {
 public:
-  /// At this phase a step the leapfrog's swing runs ahead by phase^2 / 24 = 0.04 %: a hundredth of the swing's height
-  /// after four swings [rad].
+  /// Largest phase of a swing per step. The leapfrog then runs ahead by phase^2 / 24 = 0.04 %: after four swings its
+  /// error is a hundredth of the swing's height [rad].
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
   /// Within an arm, whose light links swing at kilohertz that nothing of it excites: 0.7 % ahead [rad].
   static constexpr double MAX_PHASE_ADVANCE_IN_ARM = 0.4;
@@ -29,16 +29,25 @@ public:
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
-  JointStepper(const JointStepper&) = delete;
+  JointStepper(const JointStepper&) = default;  ///< to be followed by setModel
   JointStepper& operator=(const JointStepper&) = delete;
 
-  /// At rest where the joint has settled under a load [N.m]. @returns false if it has not.
+  void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium
+  {
+    dynamics_.setModel(copied);
+    if (adaptive_)
+    {
+      adaptive_->setDynamics(dynamics_);
+    }
+  }
+
+  /// Puts the joint at rest where it settles under a load [N.m]. @returns false if it does not settle.
   bool reset(double load_torque = 0.0) noexcept;
 
   /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
   /// the ring did not converge; the last good angles stay, at rest.
   ///
-  /// Where it would be too long for the joint's fastest swing it is done in `substeps()` equal ones. Their number is
+  /// A step that is too long for the joint's fastest swing is done in `substeps()` equal ones. Their number is
   /// fixed by the parameters and an arm's inertia, so that live equals offline, and odd: inputs then act from half a
   /// step before their instant on, as in a step that is not divided.
   ///

@@ -30,8 +30,8 @@ public:
 
   void do_step(JointDynamics& system, JointState& x, double t, double dt) noexcept;
 
-  /// From speeds at the instant of the angles to those half a step ahead, and back: half of a kick, with half of its
-  /// work. Forth at the ring in place; back from the last step.
+  /// `goAhead` turns speeds at the instant of the angles into those half a step ahead: half of a kick, with half of its
+  /// work, at the present ring. `comeBack` undoes it after the last step.
   void goAhead(JointDynamics& system, JointState& x, double dt) noexcept;
   void comeBack(JointState& x) const noexcept;
 

@@ -136,10 +136,10 @@ struct DeviationTable
   struct Pitch
   {
     int columns{};              ///< intervals of u, equal
-    std::vector<double> lines;  ///< v of the lines, ascending [rad]; none: nothing departs
+    std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: no deviation
     SurfaceNodes nodes;         ///< (columns + 1) a line
   };
-  std::vector<Pitch> pitches;  ///< none: there are no deviations
+  std::vector<Pitch> pitches;  ///< empty: no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
   int shift{};                 ///< of the pattern against that of the table [teeth]; >= 0
 };
@@ -234,7 +234,7 @@ public:
   struct Place
   {
     SurfaceCell cell;
-    SurfaceCell deviation;  ///< empty where nothing departs
+    SurfaceCell deviation;  ///< empty: no deviation here
     bool lobes_swapped{};   ///< against how the deviations were measured
     double at{};            ///< v [rad]
     BallDrops::Change balls;

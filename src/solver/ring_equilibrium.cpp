@@ -18,7 +18,7 @@ DrivePosition between(const DrivePosition& a, const DrivePosition& b, double fra
 }  // namespace
 
 RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters& parameters)
-  : model_(model)
+  : model_(&model)
   , model_version_(model.version())
   , now_(model)
   , start_(now_)
@@ -41,7 +41,7 @@ double RingEquilibrium::measureRounding() noexcept
 {
   system_.updateForces(now_);
   system_.updateTangent(now_);
-  return std::numeric_limits<double>::epsilon() * model_.gear.flexspline_inner_radius * system_.stiffest();
+  return std::numeric_limits<double>::epsilon() * model_->gear.flexspline_inner_radius * system_.stiffest();
 }
 
 SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
@@ -92,10 +92,10 @@ SolveStatus RingEquilibrium::solveFrom(const Eigen::VectorXd& points, const Driv
 /// The round ring about the wave generator's centre, before the insertion.
 void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
 {
-  const Eigen::Vector2d centre = model_.of<WaveGeneratorContact>().centre(target);
+  const Eigen::Vector2d centre = model_->of<WaveGeneratorContact>().centre(target);
   for (int i = 0; i < now_.shape.teeth(); ++i)
   {
-    round_.segment<2>(2 * i) = model_.rest.points().segment<2>(2 * i) + centre;
+    round_.segment<2>(2 * i) = model_->rest.points().segment<2>(2 * i) + centre;
   }
   begin(round_, { target.wave_generator_angle, target.output_angle, 0.0 });
 }
@@ -107,7 +107,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.shape.points = points;
   prediction_.forget();
   followModel();
-  model_.of<ToothMesh>().pairAtRest(now_.position, now_.shape);
+  model_->of<ToothMesh>().pairAtRest(now_.position, now_.shape);
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
@@ -118,10 +118,10 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
 /// Notes the model's version, and how much of the ring there is to solve.
 void RingEquilibrium::followModel() noexcept
 {
-  model_version_ = model_.version();
-  now_.shape.solved = model_.solvedTeeth();
+  model_version_ = model_->version();
+  now_.shape.solved = model_->solvedTeeth();
   now_.shape.updateGeometry();
-  now_.shape.repeatSpaces(model_.gear.teeth_circular_spline);
+  now_.shape.repeatSpaces(model_->gear.teeth_circular_spline);
 }
 
 /// Back to an equilibrium of before.
@@ -173,7 +173,7 @@ bool RingEquilibrium::refreshSensitivities() noexcept
 
 SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
 {
-  if (model_version_ != model_.version())
+  if (model_version_ != model_->version())
   {
     const SolveStatus followed = updateModel();
     return followed.ok() ? moveTo(target).addEffort(followed) : followed;
@@ -219,7 +219,7 @@ SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
   {
     return status;
   }
-  if (!model_.of<WaveGeneratorContact>().hasKinks())
+  if (!model_->of<WaveGeneratorContact>().hasKinks())
   {
     status = descend(target).addEffort(status);
   }
@@ -265,7 +265,7 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
   prediction_.predict(target, now_);
-  const int jumps = model_.meshed() ? model_.of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
+  const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
   system_.updateForces(now_);
   if (prediction_.fromKept())
   {

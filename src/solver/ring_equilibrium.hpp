@@ -17,7 +17,7 @@ namespace hjt
 {
 /// The ring in equilibrium for a position of wave generator and circular spline.
 ///
-/// From a prediction (RingPrediction) Newton's method (NewtonSolver); a target that is not reached directly is
+/// Starts Newton's method (NewtonSolver) from a prediction (RingPrediction); a target that is not reached directly is
 /// approached over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good
 /// state stays. An insertion that fails so is done once more down the stored energy (EnergyDescent).
 class RingEquilibrium
@@ -29,22 +29,22 @@ public:
   /// converge, without it, and the circular spline is added afterwards.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
-  /// From a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
+  /// Solves from a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
   SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
   /// Repeats the insertion during a run after `moveTo` failed: the teeth are paired again. On failure the state is
   /// unchanged.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After a change of the model: to its equilibrium at the present position, inserted again if there is no way to it.
-  /// `moveTo` does so first if nobody has.
+  /// After a change of the model: solves for its equilibrium at the present position and, if that fails, repeats the
+  /// insertion. `moveTo` calls it if it was not called since the change.
   SolveStatus updateModel() noexcept;
 
-  /// Rates and stiffness of the present shape itself, where one a Newton step away does not do. False: its tangent has
-  /// no inverse; they stay as they are.
+  /// Computes rates and stiffness at the present shape itself; `moveTo` leaves those of one Newton step before it.
+  /// False: the tangent has no inverse; rates and stiffness stay as they are.
   bool refreshSensitivities() noexcept;
 
-  /// From the present equilibrium to another position.
+  /// Solves for the equilibrium at another position, from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
   /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their
@@ -54,7 +54,15 @@ public:
   /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  const RingModel& model() const noexcept { return model_; }
+  const RingModel& model() const noexcept { return *model_; }
+  /// A copy refers to the same model, until it gets a copy of that.
+  void setModel(const RingModel& copied) noexcept
+  {
+    model_ = &copied;
+    system_.setModel(copied);
+    prediction_.setModel(copied);
+    descent_.setModel(copied);
+  }
   const RingShape& shape() const noexcept { return now_.shape; }
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return system_.forces(); }
@@ -87,7 +95,7 @@ private:
   SolveStatus solve(const DrivePosition& target) noexcept;
   double measureRounding() noexcept;
 
-  const RingModel& model_;
+  const RingModel* model_;
   std::uint64_t model_version_;  // that the present state is of
   RingState now_;
   RingState start_;    // of the present move; its directions and lengths are not known

@@ -17,7 +17,7 @@ int copiesOf(const RingTangent& tangent) noexcept
 }  // namespace
 
 RingLinearisation::RingLinearisation(const RingModel& model)
-  : model_(model)
+  : model_(&model)
   , solver_(model.rest.teeth())
   , half_solver_(std::max(model.rest.teeth() / 2, 8))
   , tangent_(model.rest.teeth())
@@ -32,12 +32,12 @@ RingLinearisation::RingLinearisation(const RingModel& model)
 
 void RingLinearisation::updateForces(const RingState& state) noexcept
 {
-  model_.forces(state.shape, state.position, forces_, circular_spline_in);
+  model_->forces(state.shape, state.position, forces_, circular_spline_in);
 }
 
 void RingLinearisation::updateTangent(const RingState& state) noexcept
 {
-  model_.tangent(state.shape, forces_, tangent_);
+  model_->tangent(state.shape, forces_, tangent_);
 }
 
 void RingLinearisation::shift(double stiffness) noexcept
@@ -58,13 +58,13 @@ bool RingLinearisation::refactor(const RingState& state) noexcept
 
 bool RingLinearisation::slopesChanged() const noexcept
 {
-  if (!factored_ || copiesOf(tangent_) * model_.of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) !=
+  if (!factored_ || copiesOf(tangent_) * model_->of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) !=
                         tangent_.cup_stiffness)
   {
     return true;
   }
   return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
-         (model_.of<WaveGeneratorContact>().hasKinks() &&
+         (model_->of<WaveGeneratorContact>().hasKinks() &&
           ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_, tangent_.solved) != 0);
 }
 
@@ -117,7 +117,7 @@ void RingLinearisation::moveSensitivities(RingState& state) noexcept
 
 double RingLinearisation::residual() const noexcept
 {
-  return ring_vectors::largest(forces_.teeth, model_.rest.teeth());
+  return ring_vectors::largest(forces_.teeth, model_->rest.teeth());
 }
 
 double RingLinearisation::stiffest() const noexcept

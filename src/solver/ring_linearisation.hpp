@@ -16,7 +16,9 @@ class RingLinearisation
 public:
   explicit RingLinearisation(const RingModel& model);
 
-  /// Without the circular spline while `circular_spline_in` is false.
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+
+  /// Forces at `state`; without the circular spline while `circular_spline_in` is false.
   void updateForces(const RingState& state) noexcept;
   void updateTangent(const RingState& state) noexcept;  ///< with the forces of the same state
   void shift(double stiffness) noexcept;                ///< adds to every tooth's own stiffness [N/m]
@@ -50,7 +52,7 @@ public:
 private:
   CyclicSolver& solver() noexcept { return tangent_.solved < tangent_.teeth() ? half_solver_ : solver_; }
 
-  const RingModel& model_;
+  const RingModel* model_;
   CyclicSolver solver_;
   CyclicSolver half_solver_;  // of a ring that repeats after half a turn
   RingTangent tangent_;

@@ -30,7 +30,7 @@ RingPrediction::Kept::Kept(const RingModel& model)
 }
 
 RingPrediction::RingPrediction(const RingModel& model)
-  : model_(model)
+  : model_(&model)
   , pitch_cos_(std::cos(model.rest.pitchAngle()))
   , pitch_sin_(std::sin(model.rest.pitchAngle()))
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
@@ -87,8 +87,8 @@ RingPrediction::Kept& RingPrediction::keptAt(double pitches) noexcept
 
 void RingPrediction::keep(const RingState& state) noexcept
 {
-  const double pitches = state.position.wave_generator_angle / model_.rest.pitchAngle();
-  if (state.shape.copies() == 1 || !model_.meshed() || !(std::abs(pitches) < MAX_PITCHES))
+  const double pitches = state.position.wave_generator_angle / model_->rest.pitchAngle();
+  if (state.shape.copies() == 1 || !model_->meshed() || !(std::abs(pitches) < MAX_PITCHES))
   {
     return;
   }
@@ -96,7 +96,7 @@ void RingPrediction::keep(const RingState& state) noexcept
   Kept& kept = keptAt(pitches);
   if (kept.known &&
       std::abs(state.position.wave_generator_angle - kept.position.wave_generator_angle) * KEPT <
-          model_.rest.pitchAngle() &&
+          model_->rest.pitchAngle() &&
       std::abs(twistSince(kept, state.position)) < SAME_TWIST)
   {
     return;  // hardly moved
@@ -115,17 +115,17 @@ double RingPrediction::twistSince(const Kept& kept, const DrivePosition& positio
 {
   return position.output_angle - kept.position.output_angle -
          (position.wave_generator_angle - kept.position.wave_generator_angle) * pitch_output_angle_ /
-             model_.rest.pitchAngle();
+             model_->rest.pitchAngle();
 }
 
 /// False: none is near enough, and nothing is done.
 bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double NEAR_TWIST = 2e-5;  // rad
-  const double pitch = model_.rest.pitchAngle();
+  const double pitch = model_->rest.pitchAngle();
   const double pitches = target.wave_generator_angle / pitch;
   const double moved = std::abs(target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
-  if (state.shape.copies() == 1 || !model_.meshed() || !(std::abs(pitches) < MAX_PITCHES) || moved < 0.5 / KEPT)
+  if (state.shape.copies() == 1 || !model_->meshed() || !(std::abs(pitches) < MAX_PITCHES) || moved < 0.5 / KEPT)
   {
     return false;
   }
@@ -150,9 +150,9 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
-  const double pitch = model_.rest.pitchAngle();
+  const double pitch = model_->rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
-  if (model_.meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
+  if (model_->meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
   {
     const int whole = static_cast<int>(pitches);
     if (whole != 0)
@@ -196,22 +196,22 @@ void RingPrediction::shift(int pitches, RingState& state) noexcept
   }
   turnSpaces(state.shape.space, pitches, old_space_);
   state.shape.space.swap(old_space_);
-  state.position.wave_generator_angle += pitches * model_.rest.pitchAngle();
+  state.position.wave_generator_angle += pitches * model_->rest.pitchAngle();
   state.position.output_angle += pitches * pitch_output_angle_;
 }
 
 /// Values of a ring turned by `pitches` tooth pitches: those of tooth i, rotated, take the place of tooth i + pitches.
 void RingPrediction::turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept
 {
-  const double angle = pitches * model_.rest.pitchAngle();
-  ring_vectors::turn(values, wrapped(pitches, model_.rest.teeth()), std::cos(angle), std::sin(angle), turned);
+  const double angle = pitches * model_->rest.pitchAngle();
+  ring_vectors::turn(values, wrapped(pitches, model_->rest.teeth()), std::cos(angle), std::sin(angle), turned);
 }
 
 /// The spaces turned likewise.
 void RingPrediction::turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept
 {
-  const int spaces = model_.gear.teeth_circular_spline;
-  const int places = wrapped(pitches, model_.rest.teeth());
+  const int spaces = model_->gear.teeth_circular_spline;
+  const int places = wrapped(pitches, model_->rest.teeth());
   const int further = wrapped(pitches, spaces);
   std::rotate_copy(space.begin(), space.end() - places, space.end(), turned.begin());
   for (int& one : turned)

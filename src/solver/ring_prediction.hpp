@@ -22,10 +22,12 @@ class RingPrediction
 public:
   explicit RingPrediction(const RingModel& model);
 
-  /// From the equilibrium that the last prediction has led to.
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+
+  /// Predicts from the equilibrium that the last prediction has led to.
   void predict(const DrivePosition& target, RingState& state) noexcept;
 
-  /// The state has come about otherwise.
+  /// To be called if the state was reached otherwise than by `predict`.
   void forget() noexcept;
 
   /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.
@@ -55,7 +57,7 @@ private:
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
   void turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept;
 
-  const RingModel& model_;
+  const RingModel* model_;
   double pitch_cos_;
   double pitch_sin_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// At which a catalogue gives its torques of friction.
+/// Conditions under which a catalogue gives its torques of friction.
 constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
 constexpr int FRICTION_POSITIONS = 8;                   // of a tooth pitch, over which friction is averaged
@@ -42,7 +42,7 @@ struct GearFigures
   double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
 };
 
-/// Those of the family HFUS/CSF; of a size or ratio that it does not have, size 25 scaled.
+/// Catalogue values of the family HFUS/CSF; a size or ratio that it does not have is scaled from size 25.
 GearFigures gearFigures(const GearRequest& request);
 
 /// A parameter of the gear and the rule by which it follows from the configured gear.

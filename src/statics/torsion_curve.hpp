@@ -125,7 +125,7 @@ public:
   {
   }
 
-  /// At rest without load.
+  /// Puts the joint at rest without load.
   void reset() noexcept { state_ = CupFriction::State(); }
 
   /// @returns the torsion [rad] under the next load, reached from the last one without a reversal [N.m].

@@ -92,7 +92,7 @@ private:
   static constexpr double MAX_CHANGE = 5.0;
   static constexpr double MIN_RATIO = 1e-6;  // an error of nothing is not taken for more than luck
 
-  /// In which the accelerations at hand move no tooth by more than the tolerance [s].
+  /// Length in which the present accelerations move no tooth by more than the tolerance [s].
   double firstStep(const RingMotion& motion, double length) noexcept
   {
     ring_.evaluate(motion.q, motion.v, motion.time);

@@ -31,7 +31,7 @@ struct RingDrive
   double load_torque{};   ///< on an output that is not driven; > 0 resists positive motion [N.m]
 };
 
-/// Where power goes at one instant [W].
+/// Powers at one instant [W].
 struct RingPower
 {
   double supplied{};    ///< by motor or drive, load and the wave generator's growth

@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// Where a dynamic ring is, with its energy ledger.
+/// State of a dynamic ring, with its energy ledger.
 struct RingMotion
 {
   explicit RingMotion(int coordinates) : q(Eigen::VectorXd::Zero(coordinates)), v(Eigen::VectorXd::Zero(coordinates)) {}

@@ -6,7 +6,7 @@
 namespace hjt
 {
 /// Every entry of a tangent over all coordinates as (row, column, value); the order does not depend on the values.
-/// Without the cup, whose matrix of rank one is dense.
+/// Visits the entries without the cup's, whose matrix of rank one is dense.
 template <class Visitor>
 void visitEntries(const RingTangent& tangent, Visitor&& visit)
 {

@@ -25,7 +25,7 @@ public:
   SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
   SurfaceRing& operator=(const SurfaceRing&) = delete;
 
-  /// At angle 0 of both, from cold. False: not converged.
+  /// Solves at angle 0 of both, without a guess. False: not converged.
   bool insert();
 
   /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.
@@ -48,15 +48,15 @@ public:
   /// Departure from no load that brings about this torque on the softest slope of the cup [rad].
   double twist(double torque) const noexcept { return torque / softest_; }
 
-  /// How far a table's output torque may be off at a node: what 0.002 seconds of arc make [N.m].
+  /// Largest error of a table's output torque at a node: the torque of 0.002 seconds of arc [N.m].
   double outputTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Likewise the motor's torque: a share of the motor's torque limit, or without one of what the load's limit is at
-  /// the motor [N.m].
+  /// The same for the motor's torque: a share of the motor's torque limit or, without one, of the load's limit
+  /// reduced to the motor [N.m].
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Likewise the friction at the motor: as its torque; on balls, where teeth that begin to touch change the rates of
-  /// all by some per cent and no grid resolves that, not below 1 % of the friction [N.m].
+  /// The same for the friction at the motor: as for its torque. On balls at least 1 % of the friction: each tooth that
+  /// begins to touch changes the rates of all balls by some per cent, which no grid resolves [N.m].
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
   /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].

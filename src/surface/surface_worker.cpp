@@ -124,6 +124,16 @@ SurfaceWorker::SurfaceWorker(const Parameters& parameters, const FaultList& faul
 {
 }
 
+SurfaceWorker::SurfaceWorker(const SurfaceWorker& other)
+  : parameters_(other.parameters_)
+  , source_(other.source_)
+  , faults_(other.faults_)
+  , surface_(other.isDone() ? other.surface_ : nullptr)
+  , done_(surface_ ? 1 : 0)
+  , thread_([this] { run(); })
+{
+}
+
 SurfaceWorker::~SurfaceWorker()
 {
   {
@@ -151,7 +161,7 @@ bool SurfaceWorker::request(const FaultList& faults) noexcept
 void SurfaceWorker::run()
 {
   std::unique_lock<std::mutex> lock(mutex_);
-  for (std::uint64_t taken = 0; !stopping_;)
+  for (std::uint64_t taken = done_; !stopping_;)
   {
     if (taken == asked_)
     {

@@ -27,6 +27,9 @@ public:
   /// Starts the thread with a first request.
   SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source);
 
+  /// The same surface, or a thread of its own in search of it; to be called where `request` is.
+  SurfaceWorker(const SurfaceWorker& other);
+
   /// Gives up what is not finished.
   ~SurfaceWorker();
 
@@ -35,12 +38,13 @@ public:
   bool request(const FaultList& faults) noexcept;
 
   /// The surface requested last, once it is ready; null until then or if there is none. Neither waits nor allocates.
-  const ResponseSurface* surface() const noexcept
-  {
-    return done_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed) ? surface_.get() : nullptr;
-  }
+  const ResponseSurface* surface() const noexcept { return isDone() ? surface_.get() : nullptr; }
 
 private:
+  bool isDone() const noexcept
+  {
+    return done_.load(std::memory_order_acquire) == asked_.load(std::memory_order_relaxed);
+  }
   void run();
   void obtain(std::uint64_t request, const FaultList& faults);
 

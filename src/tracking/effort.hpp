@@ -22,7 +22,7 @@ inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) 
   return 1.0;
 }
 
-/// As configured.
+/// Current per effort in the configured unit.
 inline double currentPerEffort(const Parameters& parameters) noexcept
 {
   return currentPerEffort(parameters.telemetry.effort, parameters);

@@ -34,7 +34,8 @@ public:
   /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under load.
   explicit FrictionMap(const Parameters& parameters);
 
-  /// At motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the largest.
+  /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the
+  /// largest.
   FrictionShares at(double motor_speed, double load, double temperature) const noexcept;
 
 private:

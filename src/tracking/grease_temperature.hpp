@@ -27,7 +27,7 @@ public:
   {
   }
 
-  /// That friction has at a sample, by the losses booked before it [degC].
+  /// Temperature of the grease at a sample, by the losses booked before it [degC].
   double at(const MotionSample& sample) noexcept
   {
     if (!on_)
@@ -72,7 +72,7 @@ public:
     copper_power_ = copper_loss_ * motor_torque * motor_torque;
   }
 
-  /// With two nodes; else that of the grease [degC].
+  /// Temperature of the housing with two nodes; else that of the grease [degC].
   double housing(double grease) const noexcept { return on_ ? heat_.housing() : grease; }
 
 private:

@@ -78,7 +78,7 @@ public:
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// At a time [s] from any zero; outside LOWEST ... HIGHEST [degC] or not finite: refused.
+  /// Keeps a temperature of a time [s] from any zero; refuses one outside LOWEST ... HIGHEST [degC] or not finite.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))

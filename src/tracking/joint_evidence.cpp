@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -190,6 +191,13 @@ double JointEvidence::counted() const
 Cause JointEvidence::cause() const
 {
   return static_cast<Cause>(std::max_element(now_.votes.begin(), now_.votes.end()) - now_.votes.begin());
+}
+
+double JointEvidence::causeShare() const
+{
+  const std::uint64_t all = std::accumulate(now_.votes.begin(), now_.votes.end(), std::uint64_t{ 0 });
+  const std::uint64_t own = now_.votes[static_cast<std::size_t>(cause())];
+  return all > 0 ? static_cast<double>(own) / static_cast<double>(all) : 0.0;
 }
 
 double JointEvidence::currentRms() const

@@ -120,6 +120,7 @@ public:
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }  ///< the last one of too few windows
   double alarmTime() const { return now_.alarm_time; }                      ///< when the level first left OK [s]
   Cause cause() const;                                                      ///< that most windows in alarm name
+  double causeShare() const;  ///< of the windows in alarm that name it; 0: none is [-]
 
 private:
   /// What adds up over the rows.

@@ -16,9 +16,9 @@ namespace hjt
 {
 /// The gear of a measured joint: all teeth in equilibrium at the measured angle under the joint's torque of the moment.
 ///
-/// Where all teeth are alike, the drive is the same again after the wave generator has turned by a tooth pitch p of the
-/// flexspline and the output by p / ratio, but for the numbers of the teeth: the ring is solved within one pitch, and
-/// what it holds is turned into place. After construction nothing throws or allocates.
+/// If all teeth are alike, the drive repeats after the wave generator has turned by a tooth pitch p of the flexspline
+/// and the output by p / ratio; only the numbers of the teeth differ. The ring is then solved within one pitch, and its
+/// result is turned into place. After construction nothing throws or allocates.
 class MeasuredGear
 {
 public:

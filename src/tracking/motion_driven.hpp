@@ -56,6 +56,8 @@ public:
   {
   }
 
+  double ratio() const noexcept { return ratio_; }  ///< nominal, signed [-]
+
   MotionPrediction step(const MotionSample& sample) noexcept
   {
     if (!started_ || sample.after_gap)

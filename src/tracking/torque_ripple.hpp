@@ -28,7 +28,7 @@ public:
 
   TorqueRipple(const TelemetryParameters& parameters, double ratio);
 
-  /// At the joint's angle [rad] and speed [rad/s], [N.m].
+  /// Ripple at the joint's angle [rad] and speed [rad/s], [N.m].
   double at(double position, double velocity) const noexcept
   {
     return std::abs(velocity) > fastest_ ? 0.0 : torque(orders_, position, velocity, values_.data());

@@ -241,6 +241,7 @@ std::optional<Comparison> Tracker::pop(bool at_end) noexcept
   const std::optional<double> received = loadAt(sample->time);
   const bool is_all = received && holdsAll(load_source_);
   const bool is_known = received || load_source_ == LoadSource::MODEL;
+  load_is_known_ = is_known;
   sample->load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
   // What of the motor's inertia a controller reckons with is not there a second time.
   const double external =

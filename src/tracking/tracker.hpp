@@ -106,6 +106,9 @@ public:
   /// none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
+  /// The last comparison had the load that is expected, or none is.
+  bool isLoadKnown() const noexcept { return load_is_known_; }
+
   TrackerCounters counters() const noexcept;
   StreamTimingReport timing() const noexcept { return timing_.report(); }
 
@@ -164,6 +167,7 @@ private:
   MotionDifferentiator smoother_;
   bool restarted_{};
   bool fits_{ true };
+  bool load_is_known_{ true };
   double last_time_{};
   HeldValues loads_;
   TemperatureRecord temperatures_;

@@ -2,28 +2,22 @@
 #include "tracking/verdict.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
-#include "base/joined.hpp"
-#include "base/number_text.hpp"
 #include "gear/angle.hpp"
 
 namespace hjt
 {
 namespace
 {
-std::string rounded(double value, int digits)
-{
-  return fixedText(value, digits);
-}
-
 /// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
-HealthLevel levelOf(double deviation, double tolerance, double error_factor)
+VerdictLevel levelOf(double deviation, double tolerance, double error_factor)
 {
   const double size = std::abs(deviation) / tolerance;
-  return size > error_factor ? HealthLevel::ERROR : size > 1.0 ? HealthLevel::WARN : HealthLevel::OK;
+  return size > error_factor ? VerdictLevel::ERROR : size > 1.0 ? VerdictLevel::WARN : VerdictLevel::OK;
 }
 
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
@@ -38,49 +32,36 @@ constexpr double MIN_CHANGE = 0.02;
 /// One quantity as a multiple of the twin's.
 struct Ratio
 {
-  const char* what;
-  double value;
+  double to_twin;
   double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
   double of_arm;              ///< multiple that all joints of the arm have in common
   double of_kind;             ///< share by which sound joints differ from the twin
   ScalarIndicator indicator;  ///< that says the same
   double when_larger;         ///< the indicator moves up: +1, down: -1
-  const char* besides;        ///< what else moves it
   const SignatureSet& signatures;
+
+  bool isOwnKnown() const { return std::isfinite(to_own); }
+  double value() const { return (isOwnKnown() ? to_own : to_twin) / of_arm; }
+  double tolerance(const Parameters& parameters) const
+  {
+    return isOwnKnown() ? parameters.comparison.repeat_tolerance : of_kind;
+  }
 };
 
 /// Against the joint's own when sound where that is known, else against the twin.
-void judgeRatio(const Ratio& ratio, const Parameters& parameters, Finding& finding)
+void judgeRatio(const Ratio& ratio, const Parameters& parameters, Reason departs, Finding& finding)
 {
-  const bool known = std::isfinite(ratio.to_own);
-  const double tolerance = known ? parameters.comparison.repeat_tolerance : ratio.of_kind;
-  const double value = (known ? ratio.to_own : ratio.value) / ratio.of_arm;
-  finding.judged = true;
-  finding.level = levelOf(value - 1.0, tolerance, parameters.indicators.error_factor);
-  // As many digits as it takes to see on which side of the bound the value lies.
-  const double lowest = std::max(0.0, 1.0 - tolerance);
-  const double highest = 1.0 + tolerance;
-  int digits = 2;
-  while (digits < 6 && finding.level != HealthLevel::OK &&
-         (rounded(value, digits) == rounded(lowest, digits) || rounded(value, digits) == rounded(highest, digits)))
+  finding.level = levelOf(ratio.value() - 1.0, ratio.tolerance(parameters), parameters.indicators.error_factor);
+  finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : departs;
+  if (finding.level == VerdictLevel::OK)
   {
-    ++digits;
+    return;
   }
-  const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
-  finding.text = std::string(ratio.what) + " is " + rounded(ratio.value, digits) + " times the twin's" +
-                 (known ? " and " + rounded(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
-                 (ratio.of_arm == 1.0 ? "" :
-                                        ", " + rounded(value, digits) + " times what the " +
-                                            rounded(ratio.of_arm, digits) + " times of the whole arm make") +
-                 " (" + sound + ").";
-  if (finding.level != HealthLevel::OK)
+  const std::vector<Cause> causes = causesThatMove(
+      ratio.signatures, ratio.indicator, ratio.value() > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
+  for (const Cause cause : causes)
   {
-    finding.causes = causesThatMove(ratio.signatures, ratio.indicator,
-                                    value > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
-    finding.text += (ratio.signatures.signatures.empty() ? std::string() :
-                     finding.causes.empty()              ? std::string(" No fault in the list has this effect.") :
-                                              " Possible faults: " + joined(finding.causes, ", ", causeName) + ".") +
-                    " Other causes: " + ratio.besides + ".";
+    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
   }
 }
 
@@ -89,27 +70,13 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
-/// What to say of a load that is not the joint's.
-const char* wrongLoad(LoadOrigin load)
+/// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
+std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters,
+                                      const JointContext& context)
 {
-  switch (load)
+  if (context.misfit.exists())
   {
-    case LoadOrigin::CONFIGURED:
-      break;
-    case LoadOrigin::RECORDED:
-      return "the load is not the one that was recorded.";
-    case LoadOrigin::ARM:
-      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
-  }
-  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
-}
-
-/// Why the recorded current says nothing about the drive: not that of its motor, or of another load; empty: it fits.
-std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
-{
-  if (!context.misfit.empty())
-  {
-    return context.misfit;
+    return context.misfit.reason;
   }
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
@@ -120,27 +87,18 @@ std::string whyItDoesNotFit(const JointEvidence& evidence, const Parameters& par
   const double predicted = evidence.predictedRms();
   if (predicted > noticeable && measured < MIN_RATIO * predicted)
   {
-    return "The recorded effort is " + rounded(measured, 2) + " A rms where this motion takes some " +
-           rounded(predicted, 2) + " A: it is not the motor's current.";
+    return Reason::EFFORT_NOT_CURRENT;
   }
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted)
   {
-    return "The recorded effort is " + rounded(measured / predicted, 1) +
-           " times the current that this motion takes: it is expected in A, not in N.m; or "
-           "telemetry.torque_per_current is wrong.";
+    return Reason::EFFORT_TOO_LARGE;
   }
   const double unexplained = evidence.unexplainedRms();
   if (unexplained > noticeable && unexplained > MAX_UNEXPLAINED * measured)
   {
-    return "Of " + rounded(measured, 2) + " A rms " + rounded(unexplained, 2) +
-           " A are neither predicted nor explained by another friction or a constant: " +
-           wrongLoad(evidence.loadOrigin());
+    return Reason::LOAD_WRONG;
   }
-  if (evidence.isTouched())
-  {
-    return sentence(contactText(evidence.contact().last()));
-  }
-  return {};
+  return evidence.isTouched() ? std::make_optional(Reason::CONTACT) : std::nullopt;
 }
 
 /// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
@@ -161,23 +119,18 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
   return 0.0;
 }
 
-/// Why the recording does not show the joint's friction; empty: it does.
-std::string whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin load)
+/// Why the recording does not show the joint's friction; none: it does.
+std::optional<Reason> whyNoFriction(const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
   if (points.empty())
   {
-    return "The joint never moves steadily for long enough to measure its friction.";
+    return Reason::NO_STEADY_MOTION;
   }
   if (!movesBothWays(points) && load == LoadOrigin::CONFIGURED)
   {
-    return "The joint moves one way only and no load was recorded: friction and load cannot be separated.";
+    return Reason::ONE_DIRECTION;
   }
-  if (const double way = impossibleWay(points); way != 0.0)
-  {
-    return std::string("Friction would push the joint along in ") + (way > 0.0 ? "positive" : "negative") +
-           " motion, which it cannot: " + wrongLoad(load);
-  }
-  return {};
+  return impossibleWay(points) != 0.0 ? std::make_optional(Reason::LOAD_WRONG) : std::nullopt;
 }
 
 /// Friction as a multiple of the joint's own when sound; NaN: that is not known.
@@ -188,48 +141,62 @@ double frictionToOwn(const JointEvidence& evidence, const JointContext& context)
                                                                  friction.ratioTo(context.own.friction);
 }
 
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
+Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
+                      Verdict& verdict)
 {
-  Finding finding{ HealthLevel::OK, false, "Friction", "", {} };
+  Finding finding;
+  finding.subject = FindingSubject::FRICTION;
   const std::vector<FrictionPoint> points = evidence.friction().points();
-  finding.text = whyNoFriction(points, evidence.loadOrigin());
-  if (!finding.text.empty())
+  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
+  if (!points.empty())
   {
+    verdict[Figure::LOWEST_SPEED] = points.front().speed;
+    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
+  }
+  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
+  if (const std::optional<Reason> reason = whyNoFriction(points, evidence.loadOrigin()))
+  {
+    finding.reason = *reason;
+    if (*reason == Reason::LOAD_WRONG)
+    {
+      verdict[Figure::FRICTION_PUSHES] = impossibleWay(points);
+    }
     return finding;
   }
   if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
   {
-    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
-                   " times the reference's, more than temperature makes: gain or unit of the currents are not the "
-                   "configured ones.";
+    finding.reason = Reason::COMMON_FRICTION;
     return finding;
   }
-  judgeRatio({ "Friction", evidence.friction().ratio(), frictionToOwn(evidence, context), context.arm_friction,
-               parameters.comparison.friction_tolerance, ScalarIndicator::RUNNING_TORQUE, +1.0,
-               "grease at another temperature, another preload, a wrong gain", evidence.assessor().signatures() },
-             parameters, finding);
-  finding.text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
-  finding.text += std::isfinite(context.own.temperature) ?
-                      ", the reference at " + rounded(context.own.temperature, 0) +
-                          " degC; the twin's law of friction makes up for the difference." :
-                      ".";
-  finding.text += " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
-                  " to " + rounded(points.back().speed, 2) + " rad/s.";
+  const Ratio ratio{ evidence.friction().ratio(),
+                     frictionToOwn(evidence, context),
+                     context.arm_friction,
+                     parameters.comparison.friction_tolerance,
+                     ScalarIndicator::RUNNING_TORQUE,
+                     +1.0,
+                     evidence.assessor().signatures() };
+  verdict[Figure::FRICTION_OF_TWIN] = ratio.to_twin;
+  verdict[Figure::FRICTION_OF_OWN] = ratio.to_own;
+  verdict[Figure::FRICTION_TOLERANCE] = ratio.tolerance(parameters);
+  verdict.friction = { ratio.value(), ratio.value(), ratio.value(), false };
+  judgeRatio(ratio, parameters, Reason::FRICTION, finding);
   return finding;
 }
 
-Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own)
+Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own,
+                     Verdict& verdict)
 {
-  Finding finding{ HealthLevel::OK, false, "Torsion", "", {} };
+  Finding finding;
+  finding.subject = FindingSubject::TORSION;
   if (evidence.torsion().rows() == 0)
   {
-    finding.text = "One angle a joint: torsion needs encoders at the motor and at the output.";
+    finding.reason = Reason::NO_MOTOR_ANGLE;
     return finding;
   }
   const double compliance = evidence.torsion().compliance();
   if (!std::isfinite(compliance))
   {
-    finding.text = "The load hardly varies, so the stiffness of the drive cannot be measured.";
+    finding.reason = Reason::LOAD_CONSTANT;
     return finding;
   }
   // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
@@ -238,74 +205,70 @@ Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / evidence.ratio() / std::sqrt(2.0)) /
                               twin;
-  judgeRatio({ "Torsion", compliance, compliance / own.compliance_ratio, 1.0,
-               parameters.comparison.compliance_tolerance + eccentricity, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0,
-               "a wrong load, eccentric encoders", evidence.assessor().signatures() },
-             parameters, finding);
+  const Ratio ratio{ compliance,
+                     compliance / own.compliance_ratio,
+                     1.0,
+                     parameters.comparison.compliance_tolerance + eccentricity,
+                     ScalarIndicator::TORSIONAL_STIFFNESS,
+                     -1.0,
+                     evidence.assessor().signatures() };
+  verdict[Figure::TORSION_OF_TWIN] = ratio.to_twin;
+  verdict[Figure::TORSION_OF_OWN] = ratio.to_own;
+  verdict[Figure::TORSION_TOLERANCE] = ratio.tolerance(parameters);
+  judgeRatio(ratio, parameters, Reason::TORSION, finding);
   constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
-  if (!std::isfinite(own.compliance_ratio) && finding.level != HealthLevel::OK && turn > MIN_TURN)
+  if (!ratio.isOwnKnown())
   {
-    finding.text += " An error of the output encoder once a turn, of amplitude " +
-                    rounded(1e3 * std::abs(compliance - 1.0) * twin / turn, 2) +
-                    " mrad or more, would look the same: sensors.output_eccentricity is " +
-                    rounded(1e3 * parameters.sensors.output_eccentricity, 2) + " mrad.";
-  }
-  if (!std::isfinite(own.compliance_ratio) && eccentricity > 0.01)
-  {
-    finding.text += " Of the tolerance " + rounded(eccentricity, 2) +
-                    " is for the encoders' eccentricity: a recording of "
-                    "the sound joint (--reference) would narrow it.";
+    verdict[Figure::ENCODER_SHARE] = eccentricity;
+    verdict[Figure::ENCODER_ECCENTRICITY] = parameters.sensors.output_eccentricity;
+    if (turn > MIN_TURN)
+    {
+      verdict[Figure::ENCODER_ERROR] = std::abs(compliance - 1.0) * twin / turn;
+    }
   }
   return finding;
 }
 
-Finding judgeSignals(const JointEvidence& evidence, const JointContext& context)
+Finding judgeSignals(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
-  Finding finding{ HealthLevel::OK, false, "Signals by windows", "", {} };
-  const std::string reference = evidence.baselineGiven() ? "the reference given" :
-                                                           "the reference learned from the first windows of this "
-                                                           "recording";
+  Finding finding;
+  finding.subject = FindingSubject::SIGNALS;
+  verdict[Figure::WINDOWS] = static_cast<double>(evidence.assessedWindows());
   if (!evidence.worst())
   {
-    finding.text = evidence.tooFew() ? sentence(whyNotJudged(*evidence.tooFew())) :
-                   evidence.baselineGiven() ?
-                                       "No window of the recording is at an operating point that the reference knows." :
-                                       "No reference was given, and the recording is too short to learn one (" +
-                                           std::to_string(evidence.assessor().baseline().windowsNeeded()) +
-                                           " windows at one operating point).";
+    if (evidence.tooFew())
+    {
+      verdict[Figure::WINDOWS_HERE] = evidence.tooFew()->windows_here;
+      verdict[Figure::WINDOWS_NEEDED] = evidence.tooFew()->windows_needed;
+    }
+    else
+    {
+      verdict[Figure::WINDOWS_NEEDED] = evidence.assessor().baseline().windowsNeeded();
+    }
+    finding.reason = evidence.tooFew()        ? Reason::TOO_FEW_WINDOWS :
+                     evidence.baselineGiven() ? Reason::NO_REFERENCE :
+                                                Reason::TOO_SHORT;
     return finding;
   }
   const Assessment& assessment = evidence.worst()->assessment;
   if (assessment.level != HealthLevel::OK && evidence.baselineGiven() && context.arm_friction != 1.0)
   {
-    finding.text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
-                   " times that of the reference: its signals are of another temperature or gain.";
+    finding.reason = Reason::COMMON_FRICTION;
     return finding;
   }
-  finding.judged = true;
-  finding.level = assessment.level;
-  const std::string windows = std::to_string(evidence.assessedWindows()) + " windows compared with " + reference;
+  finding.level = static_cast<VerdictLevel>(assessment.level);
   if (assessment.level == HealthLevel::OK)
   {
-    finding.text = windows + ": nothing out of the ordinary.";
     return finding;
   }
-  const bool known = evidence.cause() != Cause::NONE;
-  if (known)
+  finding.reason = Reason::SIGNALS;
+  if (evidence.cause() != Cause::NONE)
   {
-    finding.causes = { evidence.cause() };
+    finding.causes = { { evidence.cause(), evidence.causeShare() } };
   }
-  finding.text = "From " + rounded(evidence.alarmTime(), 1) + " s on the signals depart from " + reference +
-                 (known ? std::string(". Most likely cause: ") + causeName(evidence.cause()) : ", cause not known") +
-                 ". Strongest: ";
-  for (std::size_t i = 0; i < assessment.evidence_count; ++i)
-  {
-    const Evidence& evidence = assessment.evidence[i];
-    finding.text += (i == 0 ? "" : "; ") + std::string(indicatorName(evidence.indicator)) + ' ' +
-                    roundedText(evidence.value, 3) + ' ' + indicatorUnit(evidence.indicator) + " where " +
-                    roundedText(evidence.expected, 3) + " is sound";
-  }
-  finding.text += ".";
+  verdict[Figure::ALARM_TIME] = evidence.alarmTime();
+  verdict.evidence.assign(assessment.evidence.begin(),
+                          assessment.evidence.begin() + static_cast<std::ptrdiff_t>(assessment.evidence_count));
   return finding;
 }
 
@@ -322,126 +285,39 @@ double highestOrder(const JointEvidence& evidence, double duration)
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
-std::vector<std::string> cannotShow(const JointEvidence& evidence, const Parameters& parameters,
-                                    const JointContext& context)
+std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Parameters& parameters, const Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();
-  std::vector<std::string> missing;
-  if (reach.motor_rows == 0)
-  {
-    missing.emplace_back(
-        "Torsion, stiffness, lost motion, kinematic error, ratcheting: the recording has one angle a "
-        "joint; the motor's is needed too.");
-  }
-  if (evidence.loadOrigin() == LoadOrigin::ARM)
-  {
-    missing.emplace_back(
-        "Whether the payload is as configured, and what presses on the arm all the time: no torque was recorded; both "
-        "look like current.");
-  }
-  if (evidence.loadOrigin() == LoadOrigin::CONFIGURED)
-  {
-    missing.emplace_back(
-        "Whether the load is as configured: no load was recorded, so weight and inertia of the "
-        "configuration are taken; a payload left out looks like current.");
-  }
-  if (!evidence.isTemperatureReceived())
-  {
-    missing.emplace_back(
-        "Temperature: none is recorded; grease at another one changes the friction by some per cent a "
-        "kelvin.");
-  }
-  if (!evidence.baselineGiven())
-  {
-    missing.emplace_back(
-        "A fault that was there from the first window, unless it is larger than what joints of one kind "
-        "differ by: no reference of this joint was given.");
-  }
-  if (reach.touched_rows > 0)
-  {
-    missing.emplace_back("What the joint did while something touched the arm, and shortly after: " +
-                         std::to_string(reach.touched_rows) + " of " + std::to_string(reach.rows) +
-                         " rows are left out. The strongest: " + contactText(evidence.contact().largest()) + ".");
-  }
   const std::vector<FrictionPoint> points = evidence.friction().points();
-  if (!points.empty() && !movesBothWays(points))
+  const std::pair<bool, Hidden> all[] = {
+    { reach.motor_rows == 0, Hidden::TORSION },
+    { evidence.loadOrigin() == LoadOrigin::ARM, Hidden::PAYLOAD },
+    { evidence.loadOrigin() == LoadOrigin::CONFIGURED, Hidden::LOAD },
+    { !evidence.isTemperatureReceived(), Hidden::TEMPERATURE },
+    { !evidence.baselineGiven(), Hidden::EARLY_FAULT },
+    { reach.touched_rows > 0, Hidden::CONTACT },
+    { !points.empty() && !movesBothWays(points), Hidden::FRICTION_FROM_LOAD },
+    { points.size() < 3, Hidden::FRICTION_OVER_SPEED },
+    { reach.most_load - reach.least_load < MIN_LOADING * parameters.output.load_torque_limit, Hidden::LOADED },
+    { verdict[Figure::HIGHEST_ORDER] > 0.0, Hidden::HIGH_ORDERS }
+  };
+  std::vector<Hidden> hidden;
+  for (const auto& [is_hidden, what] : all)
   {
-    missing.emplace_back("Friction apart from a load that is wrong: the joint moves one way only.");
-  }
-  if (points.size() < 3)
-  {
-    missing.emplace_back("How friction depends on the speed: fewer than three speeds.");
-  }
-  if (reach.most_load - reach.least_load < MIN_LOADING * parameters.output.load_torque_limit)
-  {
-    missing.emplace_back("Anything that shows under load only, such as stiffness and cracks: the load varies by " +
-                         rounded(reach.most_load - reach.least_load, 1) + " N.m.");
-  }
-  const double order = highestOrder(evidence, context.duration);
-  if (order > 0.0)
-  {
-    missing.emplace_back(
-        "Lines above order " + rounded(order, 1) +
-        " of the motor's turn at the highest speed: the recording has too few rows a turn to show them; "
-        "slower motion shows more.");
-  }
-  return missing;
-}
-std::string lowerTitle(const Finding& finding)
-{
-  std::string title = finding.title;
-  title.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
-  return title;
-}
-
-/// The deviations with possible faults, or that there are none.
-std::string reasonOf(const Verdict& verdict)
-{
-  std::vector<std::string> departing;
-  std::vector<std::string> sound;
-  std::vector<std::string> open;
-  for (const Finding& finding : verdict.findings)
-  {
-    if (finding.level != HealthLevel::OK)
+    if (is_hidden)
     {
-      departing.push_back(
-          lowerTitle(finding) + " (" +
-          (finding.causes.empty() ? "no fault in the list does this" : joined(finding.causes, " or ", causeName)) +
-          ")");
-    }
-    else
-    {
-      (finding.judged ? sound : open).push_back(lowerTitle(finding));
+      hidden.push_back(what);
     }
   }
-  if (!departing.empty())
-  {
-    return "Not as in a sound joint: " + joined(departing, "; ") + ".";
-  }
-  return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.findings.front().text :
-                         "As in a sound joint: " + joined(sound) + "." +
-                             (open.empty() ? "" : " The motion does not show: " + joined(open) + ".");
-}
-}  // namespace
-
-std::string sentence(std::string clause)
-{
-  if (!clause.empty())
-  {
-    clause[0] = static_cast<char>(std::toupper(clause[0]));
-    clause += ".";
-  }
-  return clause;
+  return hidden;
 }
 
-namespace
-{
 /// Friction as a multiple of the joint's own when sound, else of the twin's; none: the rows do not show it.
 std::optional<double> frictionRatio(const JointEvidence& evidence, const Parameters& parameters,
                                     const JointContext& context)
 {
-  if (!whyItDoesNotFit(evidence, parameters, context).empty() ||
-      !whyNoFriction(evidence.friction().points(), evidence.loadOrigin()).empty())
+  if (whyItDoesNotFit(evidence, parameters, context) ||
+      whyNoFriction(evidence.friction().points(), evidence.loadOrigin()))
   {
     return std::nullopt;
   }
@@ -449,6 +325,53 @@ std::optional<double> frictionRatio(const JointEvidence& evidence, const Paramet
   return std::isfinite(to_own) ? to_own : evidence.friction().ratio();
 }
 
+/// What does not depend on what is judged.
+void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
+{
+  const MotionReach& reach = evidence.reach();
+  verdict[Figure::ROWS] = static_cast<double>(reach.rows);
+  verdict[Figure::TOUCHED_ROWS] = static_cast<double>(reach.touched_rows);
+  verdict[Figure::SPAN] = reach.end - reach.begin;
+  verdict[Figure::CURRENT] = evidence.currentRms();
+  verdict[Figure::CURRENT_PREDICTED] = evidence.predictedRms();
+  verdict[Figure::CURRENT_RESIDUAL] = evidence.residualRms();
+  verdict[Figure::CURRENT_UNEXPLAINED] = evidence.unexplainedRms();
+  verdict[Figure::LEAST_LOAD] = reach.least_load;
+  verdict[Figure::MOST_LOAD] = reach.most_load;
+  verdict[Figure::TEMPERATURE] = evidence.temperature();
+  verdict[Figure::REFERENCE_TEMPERATURE] = context.own.temperature;
+  verdict[Figure::HIGHEST_ORDER] = highestOrder(evidence, context.duration);
+  if (evidence.contact().hasSeen() || reach.touched_rows > 0)
+  {
+    const Contact& last = evidence.contact().last();
+    const Contact& largest = evidence.contact().largest();
+    verdict[Figure::CONTACT_SINCE] = last.since;
+    verdict[Figure::CONTACT_LASTED] = last.lasted;
+    verdict[Figure::CONTACT_TORQUE] = last.largest;
+    verdict[Figure::LARGEST_CONTACT_SINCE] = largest.since;
+    verdict[Figure::LARGEST_CONTACT_LASTED] = largest.lasted;
+    verdict[Figure::LARGEST_CONTACT_TORQUE] = largest.largest;
+  }
+  verdict.load = evidence.loadOrigin();
+  verdict.is_temperature_received = evidence.isTemperatureReceived();
+  verdict.is_reference_given = evidence.baselineGiven();
+  verdict.has_signatures = !evidence.assessor().signatures().signatures.empty();
+}
+
+/// Level and reason of all findings.
+void sumUp(Verdict& verdict)
+{
+  verdict.reason = verdict.findings.front().reason;
+  for (const Finding& finding : verdict.findings)
+  {
+    const bool is_worse = !verdict.isJudged() || severityOf(finding.level) > severityOf(verdict.level);
+    if (finding.level != VerdictLevel::NOT_JUDGED && is_worse)
+    {
+      verdict.level = finding.level;
+      verdict.reason = finding.reason;
+    }
+  }
+}
 }  // namespace
 
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
@@ -458,24 +381,59 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); } };
 }
 
+std::vector<WeightedCause> causesOf(const Verdict& verdict)
+{
+  std::vector<WeightedCause> causes;
+  for (const Finding& finding : verdict.findings)
+  {
+    for (const WeightedCause& found : finding.causes)
+    {
+      const auto known = std::find_if(causes.begin(), causes.end(),
+                                      [&](const WeightedCause& cause) { return cause.cause == found.cause; });
+      if (known == causes.end())
+      {
+        causes.push_back(found);
+      }
+      else
+      {
+        known->weight = std::max(known->weight, found.weight);
+      }
+    }
+  }
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const WeightedCause& a, const WeightedCause& b) { return a.weight > b.weight; });
+  return causes;
+}
+
 Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
 {
   Verdict verdict;
-  verdict.findings = { judgeFriction(evidence, parameters, context), judgeTorsion(evidence, parameters, context.own),
-                       judgeSignals(evidence, context) };
-  const std::string why_not = whyItDoesNotFit(evidence, parameters, context);
-  for (Finding& finding : verdict.findings)
+  verdict.joint = parameters.joint.name;
+  setFigures(evidence, context, verdict);
+  verdict.findings = { judgeFriction(evidence, parameters, context, verdict),
+                       judgeTorsion(evidence, parameters, context.own, verdict),
+                       judgeSignals(evidence, context, verdict) };
+  if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, parameters, context))
   {
-    if (!why_not.empty())
-    {
-      finding = { HealthLevel::OK, false, finding.title, why_not, {} };
-    }
-    verdict.level = std::max(verdict.level, finding.level);
-    verdict.judged = verdict.judged || finding.judged;
+    verdict.dismiss(
+        { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().last()) : context.misfit.clause });
   }
-  verdict.reason = reasonOf(verdict);
-  verdict.highest_order = highestOrder(evidence, context.duration);
-  verdict.cannot_show = cannotShow(evidence, parameters, context);
+  sumUp(verdict);
+  verdict.cannot_show = cannotShow(evidence, parameters, verdict);
   return verdict;
+}
+
+void Verdict::dismiss(const Misfit& why_not)
+{
+  fits = false;
+  level = VerdictLevel::NOT_JUDGED;
+  reason = why_not.reason;
+  misfit = why_not.clause;
+  friction = JudgedFriction();
+  evidence.clear();
+  for (Finding& finding : findings)
+  {
+    finding = { finding.subject, VerdictLevel::NOT_JUDGED, why_not.reason, {} };
+  }
 }
 }  // namespace hjt

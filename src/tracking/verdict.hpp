@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "tracking/common_friction.hpp"
 #include "tracking/joint_evidence.hpp"
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
@@ -27,42 +29,171 @@ struct JointContext
   double duration{};     ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  std::string misfit;  ///< why the rows say nothing of this joint; empty: it fits
+  Misfit misfit;  ///< of its rows
 };
 
-/// One thing that was judged, in words.
+/// Numbers are those of Verdict.msg; the first three those of HealthLevel.
+enum class VerdictLevel : std::uint8_t
+{
+  OK = 0,
+  WARN = 1,
+  ERROR = 2,
+  NOT_JUDGED = 3
+};
+
+const char* levelName(VerdictLevel level) noexcept;  ///< "WARN", "NOT JUDGED"
+
+/// How bad: OK where nothing was judged.
+inline HealthLevel severityOf(VerdictLevel level)
+{
+  return level == VerdictLevel::NOT_JUDGED ? HealthLevel::OK : static_cast<HealthLevel>(level);
+}
+
+/// A number that a verdict rests on.
+enum class Figure : std::uint8_t
+{
+  ROWS,                    ///< that count
+  TOUCHED_ROWS,            ///< left out: something touched the arm
+  SPAN,                    ///< of the rows [s]
+  CURRENT,                 ///< measured, rms [A]
+  CURRENT_PREDICTED,       ///< rms [A]
+  CURRENT_RESIDUAL,        ///< measured less predicted, rms [A]
+  CURRENT_UNEXPLAINED,     ///< left by the best constant and the best multiple of the friction, rms [A]
+  LEAST_LOAD,              ///< [N.m]
+  MOST_LOAD,               ///< [N.m]
+  TEMPERATURE,             ///< judged at [degC]
+  REFERENCE_TEMPERATURE,   ///< of the joint's own reference [degC]
+  HIGHEST_ORDER,           ///< of the motor's turn that the rows resolve at the highest speed [-]
+  SPEEDS,                  ///< at which the friction was measured [-]
+  LOWEST_SPEED,            ///< with its sign [rad/s]
+  HIGHEST_SPEED,           ///< [rad/s]
+  FRICTION_OF_TWIN,        ///< over the twin's [-]
+  FRICTION_OF_OWN,         ///< over the joint's own when it was sound [-]
+  FRICTION_OF_ARM,         ///< that all joints of the arm have in common [-]
+  FRICTION_TOLERANCE,      ///< by which a sound joint's may differ from 1 [-]
+  FRICTION_PUSHES,         ///< the direction in which it would push the joint along: +1, -1 [-]
+  TORSION_OF_TWIN,         ///< torsion over the twin's [-]
+  TORSION_OF_OWN,          ///< over the drive's own when it was sound [-]
+  TORSION_TOLERANCE,       ///< by which a sound drive's may differ from 1 [-]
+  ENCODER_SHARE,           ///< of the tolerance, for the encoders' eccentricity [-]
+  ENCODER_ERROR,           ///< of the output encoder once a turn, that would look the same [rad]
+  ENCODER_ECCENTRICITY,    ///< of the output encoder as configured [rad]
+  WINDOWS,                 ///< of the signals, compared [-]
+  WINDOWS_HERE,            ///< of them at one operating point, where those are too few [-]
+  WINDOWS_NEEDED,          ///< at one operating point [-]
+  ALARM_TIME,              ///< from which on the signals depart [s]
+  CONTACT_SINCE,           ///< of the last contact [s]
+  CONTACT_LASTED,          ///< [s]
+  CONTACT_TORQUE,          ///< [N.m]
+  LARGEST_CONTACT_SINCE,   ///< of the strongest contact [s]
+  LARGEST_CONTACT_LASTED,  ///< [s]
+  LARGEST_CONTACT_TORQUE   ///< [N.m]
+};
+constexpr std::size_t FIGURE_COUNT = 36;
+
+const char* figureName(Figure figure) noexcept;  ///< "rows"
+const char* figureUnit(Figure figure) noexcept;
+
+/// A kind of fault and how much speaks for it.
+struct WeightedCause
+{
+  Cause cause{};
+  double weight{};  ///< of the windows in alarm that name it; of causes that cannot be told apart an equal share [-]
+};
+
+/// What is judged of a joint.
+enum class FindingSubject
+{
+  FRICTION,
+  TORSION,
+  SIGNALS
+};
+
+const char* subjectTitle(FindingSubject subject);  ///< "Signals by windows"
+
 struct Finding
 {
-  HealthLevel level{};
-  bool judged{};  ///< false: the text says why not
-  std::string title;
-  std::string text;
-  std::vector<Cause> causes;  ///< that would show like this; none at level OK
+  FindingSubject subject{};
+  VerdictLevel level{ VerdictLevel::NOT_JUDGED };
+  Reason reason{};                    ///< SOUND at level OK
+  std::vector<WeightedCause> causes;  ///< that would show like this; none at level OK
 };
+
+/// Friction of the joint: a multiple of its own when sound where that is known, else of the twin's; in an arm over what
+/// all joints have in common.
+struct JudgedFriction
+{
+  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [-]
+  double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< of its interval; without one the factor [-]
+  double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< [-]
+  bool has_interval{};
+};
+
+/// What a recording cannot show.
+enum class Hidden
+{
+  TORSION,             ///< no angle of the motor
+  PAYLOAD,             ///< no torque recorded, load of the arm
+  LOAD,                ///< as configured
+  TEMPERATURE,         ///< none received
+  EARLY_FAULT,         ///< no reference
+  CONTACT,             ///< rows left out
+  FRICTION_FROM_LOAD,  ///< one way only
+  FRICTION_OVER_SPEED,
+  LOADED,  ///< the load hardly varies
+  HIGH_ORDERS
+};
+
+/// Findings of a measured joint, as data: `verdictText` and `findingText` make the sentences.
+struct Verdict
+{
+  Verdict() { figures.fill(std::numeric_limits<double>::quiet_NaN()); }
+
+  bool isJudged() const { return level != VerdictLevel::NOT_JUDGED; }
+  double operator[](Figure figure) const { return figures[static_cast<std::size_t>(figure)]; }  ///< NaN: not known
+  /// Nothing is judged.
+  void dismiss(const Misfit& why_not);
+  double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
+
+  VerdictLevel level{ VerdictLevel::NOT_JUDGED };
+  Reason reason{ Reason::NO_STEADY_MOTION };  ///< of the worst finding; if none is judged of the first
+  std::string joint;
+  JudgedFriction friction;
+  std::vector<Finding> findings;    ///< none: nothing was looked at
+  std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
+  std::vector<Hidden> cannot_show;  ///< by these rows
+  bool fits{ true };                ///< false: telemetry or load are why nothing is judged
+  std::string misfit;               ///< a clause of contact or telemetry that does not fit; empty: none
+  LoadOrigin load{};
+  bool is_temperature_received{};
+  bool is_reference_given{};  ///< of the signals
+  bool has_signatures{};      ///< of faults: causes can be named
+  std::array<double, FIGURE_COUNT> figures{};
+};
+
+/// Of all findings, each kind once, the heaviest first.
+std::vector<WeightedCause> causesOf(const Verdict& verdict);
+
+/// One number with its unit.
+struct NamedFigure
+{
+  std::string name;
+  double value;
+  const char* unit;
+};
+
+/// What is known of a verdict's figures, and the indicators of the worst window with their sound values.
+std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
+
+// Sentences for people and documents.
+std::string verdictText(const Verdict& verdict);
+std::string findingText(const Verdict& verdict, const Finding& finding);
+std::vector<std::string> hiddenTexts(const Verdict& verdict);
 
 /// A clause as a sentence.
 std::string sentence(std::string clause);
 
-constexpr const char* NOT_JUDGED = "NOT JUDGED";
-
-/// Findings of a measured joint.
-struct Verdict
-{
-  HealthLevel level{};
-  bool judged{};       ///< false: no finding is
-  std::string reason;  ///< in a sentence or two
-  std::vector<Finding> findings;
-  double highest_order{};  ///< of the motor's turn that the rows resolve at the highest speed; 0: it does not move [-]
-  std::vector<std::string> cannot_show;  ///< by this recording, each with the reason
-};
-
-/// For people and documents.
-inline const char* verdictName(const Verdict& verdict)
-{
-  return verdict.judged ? levelName(verdict.level) : NOT_JUDGED;
-}
-
-/// Live and offline alike.
+/// Live and offline alike. `joint`: its name.
 Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
 
 /// Where the temperature that a joint was judged at is from, for people and documents.

@@ -22,7 +22,7 @@ struct ConfigurationOptions
   bool isDefault() const { return configs.empty() && assignments.empty() && values.empty(); }
 };
 
-/// Where the default configuration lies. @throws ParameterError if there is none.
+/// Folder of the default configuration. @throws ParameterError if there is none.
 std::filesystem::path configDirectory(const ConfigurationOptions& options);
 
 /// Steps of loadParameterMap: the default configuration, one overlay as given or beside it, those of the options.

@@ -15,6 +15,8 @@ public:
   /// `model` must outlive this.
   ObservedRing(const RingModel& model, const SolverParameters& parameters) : ring_(model, parameters) {}
 
+  void setModel(const RingModel& copied) noexcept { ring_.setModel(copied); }  ///< see RingEquilibrium
+
   /// To be called after a reset of the joint or an edit of its model.
   void restart() noexcept { started_ = false; }
 

@@ -31,6 +31,13 @@ Twin::~Twin() = default;
 Twin::Twin(Twin&&) noexcept = default;
 Twin& Twin::operator=(Twin&&) noexcept = default;
 
+Twin::Twin(const Twin& other) : impl_(Impl::copyOf(*other.impl_)) {}
+
+Twin& Twin::operator=(const Twin& other)
+{
+  return *this = Twin(other);
+}
+
 const Parameters& Twin::parameters() const noexcept
 {
   return impl_->parameters;

@@ -26,10 +26,9 @@ bool isSame(const FaultList& one, const FaultList& other) noexcept
 Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   : parameters(given)
   , faults(given)
-  , model(faults.model())
   , waiting(given)
-  , stepper(given, model)
-  , observed_ring(model.ring, given.solver)
+  , stepper(given, model())
+  , observed_ring(model().ring, given.solver)
   , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
   , sensors(given.sensors, 1.0 / given.solver.rate)
   , monitor(given.health, given.gear)
@@ -40,7 +39,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
         std::ceil(static_cast<double>(assessor.searchLength()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
   , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
   , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
-                                            (given.gear.teeth_flexspline - 1) * model.ring.rest.pitchAngle()))
+                                            (given.gear.teeth_flexspline - 1) * model().ring.rest.pitchAngle()))
 {
   if (given.thermal.model == ThermalModel::TWO_NODES)
   {
@@ -59,13 +58,21 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   }
 }
 
+std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
+{
+  std::unique_ptr<Impl> copy(new Impl(other));
+  copy->stepper.setModel(copy->model());
+  copy->observed_ring.setModel(copy->model().ring);
+  return copy;
+}
+
 /// The surfaces of the drive with its configured faults, or a thread that obtains that of the present ones.
 void Twin::Impl::prepareSurface(const SurfaceSource& source)
 {
   if (source.background)
   {
     surface_faults = active;
-    surface_worker = std::make_unique<SurfaceWorker>(parameters, active, source);
+    surface_worker.emplace(parameters, active, source);
   }
   else
   {
@@ -139,7 +146,7 @@ void Twin::Impl::useSurface() noexcept
 {
   const ResponseSurface* present = presentSurface();
   stepper.useSurface(present);
-  surface_awaited = surface_worker && present == nullptr;
+  surface_awaited = surface_worker.has_value() && present == nullptr;
 }
 
 bool Twin::Impl::reset(Stamp stamp) noexcept
@@ -182,7 +189,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   waiting.clear();
   for (const Fault& fault : parameters.faults)
   {
-    if (fault.isThereFromTheStart())
+    if (fault.isActiveAtStart())
     {
       active.set(fault, stamp);
     }
@@ -296,7 +303,7 @@ void Twin::Impl::step() noexcept
   moveBrake();
   takeSurface();
   const double wanted = commandInForce();
-  const double within_limit = model.motor.clamped(wanted);
+  const double within_limit = model().motor.clamped(wanted);
   converged = stepper.step({ within_limit, load_torque + arm_torque, brake_engaged, greaseTemperature() }) && followed;
   takeHeat(stepper.driveTorque());
   ++counters.steps;

@@ -23,11 +23,14 @@ namespace hjt
 struct Twin::Impl
 {
   Impl(const Parameters& given, const SurfaceSource& surface_source);
+  Impl& operator=(const Impl&) = delete;
+  static std::unique_ptr<Impl> copyOf(const Impl& other);
 
   static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
 
   /// @returns false if the joint found no equilibrium.
   bool reset(Stamp stamp) noexcept;
+  const JointModel& model() const noexcept { return faults.model(); }
   void step() noexcept;
   LobeLoads lobes() const noexcept;
   SolverState solverState(Stamp since) const noexcept;
@@ -35,7 +38,6 @@ struct Twin::Impl
 
   Parameters parameters;
   JointFaults faults;
-  const JointModel& model;
   FaultList active;
   FaultSchedule waiting;
   static constexpr int MAX_STAGE_TABLES = 4;
@@ -48,7 +50,7 @@ struct Twin::Impl
   };
   std::vector<Stage> stages;  // where the twin waits for its surfaces
   FaultList surface_faults;   // of the surface requested, where it does not
-  std::unique_ptr<SurfaceWorker> surface_worker;
+  std::optional<SurfaceWorker> surface_worker;
   bool surface_awaited{};
   JointStepper stepper;
   ObservedRing observed_ring;
@@ -87,6 +89,8 @@ struct Twin::Impl
   Stamp last_doubtful{};         // likewise of one that was cut, too long, or in which a tooth jumped
 
 private:
+  Impl(const Impl&) = default;  // its parts refer to the model of the other: copyOf
+
   void prepareSurface(const SurfaceSource& source);
   void prepareStages(SurfaceSource source);
   const ResponseSurface* presentSurface() const noexcept;

@@ -161,7 +161,7 @@ Robot withElbow(const std::function<void(Given&)>& change)
 void expectOnlyElbow(const RecordingFit& fit, const std::string& kind, bool stops)
 {
   EXPECT_THAT(kinds(fit.ofArm()), IsEmpty());
-  const std::vector<std::string> reasons = fit.whyNotJudged();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
   for (std::size_t i = 0; i < JOINTS; ++i)
   {
     if (i == ELBOW)
@@ -172,7 +172,7 @@ void expectOnlyElbow(const RecordingFit& fit, const std::string& kind, bool stop
     {
       EXPECT_THAT(kinds(fit.ofJoint(i)), IsEmpty()) << i;
     }
-    EXPECT_EQ(!reasons[i].empty(), i == ELBOW && stops) << i << ": " << reasons[i];
+    EXPECT_EQ(misfits[i].exists(), i == ELBOW && stops) << i << ": " << misfits[i].clause;
   }
 }
 
@@ -203,7 +203,7 @@ TEST(RecordingFit, StampsOfAnotherPeriodAreFound)
     const RecordingFit fit = Robot([factor](std::size_t, Given& given) { given.time /= factor; }).fit();
     EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("stamps")) << factor;
     EXPECT_NEAR(fit.stampFactor().value, factor, 0.01 * factor);
-    EXPECT_THAT(fit.whyNotJudged()[ELBOW], testing::HasSubstr("--time-scale"));
+    EXPECT_THAT(fit.whyNotJudged()[ELBOW].clause, testing::HasSubstr("--time-scale"));
   }
 }
 
@@ -211,7 +211,7 @@ TEST(RecordingFit, RowsTooFarApartAreFound)
 {
   const RecordingFit fit = Robot([](std::size_t, Given& given) { given.time *= 1000.0; }).fit();
   EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("period"));
-  EXPECT_THAT(fit.whyNotJudged()[ELBOW], testing::HasSubstr("in ms"));
+  EXPECT_THAT(fit.whyNotJudged()[ELBOW].clause, testing::HasSubstr("in ms"));
 }
 
 TEST(RecordingFit, LostRowsDoNotLookLikeAnotherPeriod)
@@ -265,7 +265,7 @@ TEST(RecordingFit, ADeadEffortIsFoundAndDoesNotCountForTheUnit)
 {
   const RecordingFit zero = withElbow([](Given& given) { given.effort = 0.0; }).fit();
   expectOnlyElbow(zero, "effort_constant", true);
-  EXPECT_THAT(zero.whyNotJudged()[ELBOW], testing::HasSubstr("zero"));
+  EXPECT_THAT(zero.whyNotJudged()[ELBOW].clause, testing::HasSubstr("zero"));
   EXPECT_NEAR(zero.effort().factor.value, 1.0, 0.05);
   expectOnlyElbow(withElbow([](Given& given) { given.effort = 1.5; }).fit(), "effort_constant", true);
   expectOnlyElbow(withElbow([](Given& given) { given.effort *= given.time < 30.0 ? 1.0 : 0.0; }).fit(),
@@ -280,7 +280,7 @@ TEST(RecordingFit, UnitOfTheEffortIsFound)
   const RecordingFit joint = Robot(at_joint).fit();
   EXPECT_THAT(kinds(joint.ofArm()), ElementsAre("effort_unit"));
   EXPECT_EQ(joint.effort().unit, EffortUnit::JOINT_TORQUE);
-  EXPECT_THAT(joint.whyNotJudged()[0], testing::HasSubstr("telemetry.effort: joint_torque"));
+  EXPECT_THAT(joint.whyNotJudged()[0].clause, testing::HasSubstr("telemetry.effort: joint_torque"));
   const RecordingFit motor = Robot(at_motor).fit();
   EXPECT_THAT(kinds(motor.ofArm()), ElementsAre("effort_unit"));
   EXPECT_EQ(motor.effort().unit, EffortUnit::MOTOR_TORQUE);
@@ -302,7 +302,7 @@ TEST(RecordingFit, AnotherGainIsNoOtherUnit)
   expectNothing(Robot([](std::size_t, Given& given) { given.effort *= 1.6; }).fit());
   const RecordingFit fit = Robot([](std::size_t, Given& given) { given.effort *= 3.5; }).fit();
   EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("gain"));
-  EXPECT_THAT(fit.whyNotJudged()[0], "");
+  EXPECT_THAT(fit.whyNotJudged()[0].clause, "");
 }
 
 TEST(RecordingFit, AtRestNothingIsKnown)
@@ -312,7 +312,7 @@ TEST(RecordingFit, AtRestNothingIsKnown)
   const RecordingFit fit = still.fit();
   EXPECT_THAT(kinds(fit.ofArm()), IsEmpty());
   EXPECT_THAT(kinds(fit.ofJoint(ELBOW)), ElementsAre("at_rest"));
-  EXPECT_THAT(fit.whyNotJudged()[ELBOW], "");
+  EXPECT_THAT(fit.whyNotJudged()[ELBOW].clause, "");
   EXPECT_FALSE(std::isfinite(fit.stampFactor().value));
   EXPECT_FALSE(std::isfinite(fit.effort().factor.value));
   EXPECT_FALSE(fit.isSettled());

@@ -15,6 +15,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/tracker.hpp"
+#include "tracking/verdict_watch.hpp"
 
 namespace hjt
 {
@@ -448,6 +449,46 @@ TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
   EXPECT_NEAR(touched.back(), 20.5 + ContactWatch::HOLD, 0.5);
   EXPECT_NEAR(tracker.evidence().contact().last().largest, 3.0 * parameters.telemetry.torque_per_current, 5.0);
   EXPECT_LT(tracker.outsideShare(), 0.02);
+}
+
+TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
+{
+  const Parameters parameters = parametersWith(KNOWN_LOAD);
+  const SwingingRobot robot(parameters, 60.0);
+  Tracker tracker(parameters, InputMode::MOTION);
+  tracker.pushLoad(0.0, 0.0);
+  VerdictWatch watch(tracker, parameters, true);
+  std::vector<Verdict> each_second;
+  const auto row_of = [](double time) { return static_cast<std::size_t>(std::lround(time / PERIOD)); };
+  for (std::size_t i = 0; i < robot.rows(); ++i)
+  {
+    robot.push(tracker, i, i > row_of(20.0) && i < row_of(20.5) ? 3.0 : 0.0);
+    if (i % row_of(1.0) == 0)
+    {
+      watch.judge(1.0);
+      each_second.push_back(watch.now());
+      if (i > row_of(19.0))
+      {
+        EXPECT_EQ(watch.now().isJudged(), !tracker.evidence().isTouched()) << PERIOD * static_cast<double>(i) << " s";
+      }
+    }
+  }
+  const Verdict& before = each_second[19];
+  EXPECT_EQ(before.level, VerdictLevel::OK);
+  EXPECT_EQ(before.reason, Reason::SOUND);
+  EXPECT_NEAR(before.friction.factor, 1.0, 0.02);
+  EXPECT_NEAR(before[Figure::FRICTION_OF_OWN], 1.0, 0.02);
+  const Verdict& touched = each_second[22];
+  EXPECT_EQ(touched.level, VerdictLevel::NOT_JUDGED);
+  EXPECT_EQ(touched.reason, Reason::CONTACT);
+  EXPECT_FALSE(std::isfinite(touched.friction.factor));
+  EXPECT_THAT(verdictText(touched), HasSubstr("touched the arm"));
+  EXPECT_EQ(each_second.back().reason, Reason::SOUND);
+
+  watch.setMisfit({ Reason::STAMPS, "the stamps are wrong" }, true);
+  EXPECT_EQ(watch.now().reason, Reason::STAMPS);
+  EXPECT_EQ(verdictText(watch.now()), "Not judged: the stamps are wrong.");
+  EXPECT_EQ(watch.confirmed().reason, Reason::SOUND);
 }
 
 TEST(Tracker, WhatStaysIsNoContact)

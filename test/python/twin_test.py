@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The twin from Python: the tool's numbers, blocks, views, threads, interrupts. Argument: the tool."""
+import copy
 import gc
 import math
 import os
@@ -56,6 +57,18 @@ class Run(unittest.TestCase):
             steps.step()
             self.assertEqual(steps.outputs, row)
         self.assertEqual(steps.stamp, blocks.stamp)
+
+    def test_goes_on_in_a_copy(self):
+        twin = hjt.Twin(hjt.Parameters({"thermal.model": "two_nodes", "sensors.motor_noise": 1e-4}))
+        twin.watch_signals = True
+        twin.inject_fault("tooth_wear:0.3:20:0.02")
+        twin.run(100, motor_torque=0.35)
+        copies = copy.copy(twin), copy.deepcopy(twin)
+        rows = twin.run(motor_torque=course(), load_torque=5.0)
+        del twin
+        for each in copies:
+            np.testing.assert_array_equal(each.run(motor_torque=course(), load_torque=5.0), rows)
+            self.assertEqual([(fault.severity, fault.place) for fault in each.active_faults], [(0.3, 20)])
 
     def test_to_a_time_ends_at_the_last_instant_before(self):
         twin = hjt.Twin(hjt.Parameters())

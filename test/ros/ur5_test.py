@@ -299,7 +299,8 @@ class UR5(unittest.TestCase):
 
     def test_every_number_on_every_topic_is_finite(self):
         for twin in TWINS:
-            for name in ("comparison", "indicators", "assessment", "contact_forces", "encoders", "health", "stress"):
+            for name in ("comparison", "indicators", "assessment", "contact_forces", "encoders", "health", "stress",
+                         "verdict"):
                 self.everything[twin, name].wait_for(1)
         for which, listener in self.everything.items():
             with self.subTest(topic=which):

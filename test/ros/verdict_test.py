@@ -17,8 +17,9 @@ import rospy
 import rostest
 from sensor_msgs.msg import JointState
 
-from ros_support import OK, PACKAGE, WARN, Diagnostics, Listener, executable, wait_until
+from ros_support import OK, PACKAGE, STALE, WARN, Diagnostics, Listener, executable, wait_until
 from harmonic_joint_twin.msg import Comparison
+from harmonic_joint_twin.msg import Verdict as VerdictMessage
 from ur5_test import JOINTS, PERIOD, SICK, WAIT_OF_ARM, angles, run_robot
 
 MOVING = 7 * 2.0 * math.pi / 1.6  # until the end of a swing [s]
@@ -34,6 +35,7 @@ class Verdict(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.directory)
         self.bag = os.path.join(self.directory, "robot.bag")
         self.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
+        self.verdicts = {joint: Listener(f"/{joint}/joint_twin/verdict", VerdictMessage) for joint in JOINTS}
         self.comparisons = Listener("/wrist_3/joint_twin/comparison", Comparison)
         self.publisher = rospy.Publisher("/joint_states", JointState, queue_size=1000)
         wait_until(lambda: self.publisher.get_num_connections() == 1, "the node")
@@ -80,11 +82,31 @@ class Verdict(unittest.TestCase):
                 self.assertEqual(live(), expected, joint)  # shows both
             self.assertEqual(self.diagnostics[joint].values("Drive")["Verdict"], verdict["level"])
             reported = {(status.level, status.message) for status in self.diagnostics[joint].statuses("Drive")
-                        if "Nothing" not in status.message}
+                        if status.level != STALE}
             if joint == SICK:
-                self.assertIn((LEVELS[verdict["level"]], verdict["reason"].rstrip(".")), reported)
+                self.assertIn((LEVELS[verdict["level"]], verdict["text"].rstrip(".")), reported)
             else:
                 self.assertEqual({level for level, _ in reported}, {OK}, joint)
+            self.check_message(self.verdicts[joint].messages()[-1], verdict)
+            wait_until(lambda joint=joint: self.diagnostics[joint].level("Drive") == STALE, f"{joint} stopped")
+            self.assertIn("Last: " + verdict["level"], self.diagnostics[joint].statuses("Drive")[-1].message)
+            late = rospy.wait_for_message(f"/{joint}/joint_twin/verdict", VerdictMessage, timeout=10.0)
+            self.assertEqual(late.header, self.verdicts[joint].messages()[-1].header, "latched")
+
+    def check_message(self, message, offline):
+        """Every field of the message is that of the JSON document."""
+        self.assertEqual(message.level, getattr(VerdictMessage, offline["level"].replace(" ", "_")))
+        self.assertEqual(message.reason, getattr(VerdictMessage, offline["reason"]))
+        self.assertTrue(message.friction_measured)
+        for field in ("joint", "text", "friction_factor", "friction_lower", "friction_upper", "friction_has_interval",
+                      "causes", "cause_weights"):
+            value = getattr(message, field)
+            self.assertEqual(list(value) if isinstance(value, tuple) else value, offline[field], field)
+        live = dict(zip(message.evidence_names, message.evidence_values))
+        stored = dict(zip(offline["evidence_names"], offline["evidence_values"]))
+        for name in ("friction_of_twin", "friction_speeds", "lowest_speed", "highest_speed", "current_rms"):
+            self.assertEqual(live[name], stored[name], name)
+        self.assertGreater(message.header.stamp, rospy.Time(1))
 
 
 if __name__ == "__main__":

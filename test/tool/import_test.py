@@ -76,7 +76,7 @@ class Import(tool.ToolTest):
         good = tool.telemetry_csv(rows=2)
         for text, parts in [("\n".join([good[0].replace("actual_q_3", "q3")] + good[1:]),
                              ["a.csv:1: column 'actual_q_3' is missing"]),
-                            ("time,motor_torque\n0,1\n", ["column 'timestamp' is missing"]),
+                            ("time,motor_torque\n0,1\n", ["columns 'timestamp', ", "are missing"]),
                             (good[0].replace("target_q_1", "actual_q_1") + "\n",
                              ["a.csv:1: column 'actual_q_1' is there twice"]),
                             (good[0] + "\n", ["a.csv has no rows"]),

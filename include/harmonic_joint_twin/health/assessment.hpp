@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// As in diagnostic_msgs/DiagnosticStatus.
+/// Level with the values of diagnostic_msgs/DiagnosticStatus.
 enum class HealthLevel : std::uint8_t
 {
   OK = 0,
@@ -60,7 +60,7 @@ struct Assessment
   int windows_here{};    ///< at the last operating point: in the reference if there is no more, else compared
   int windows_needed{};  ///< of those, for a reference or a verdict
   HealthLevel level{};
-  Cause cause{};                ///< the most likely; NONE at level OK, and at others if it is nothing of the table
+  Cause cause{};                ///< the most likely; NONE at level OK, or if no known fault explains the departure
   bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
   double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]

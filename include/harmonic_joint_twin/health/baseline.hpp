@@ -40,7 +40,7 @@ struct OperatingBin
 /// `load_step`: between two classes of load [N.m].
 OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 
-/// That of this gear [N.m].
+/// The gear's step between two classes of load [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
 /// What healthy indicators follow within a class: temperature, its square, the load's mean magnitude, and what the

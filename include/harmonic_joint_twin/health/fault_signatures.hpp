@@ -146,7 +146,7 @@ std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indic
 /// What a window says of the causes.
 struct CausePosterior
 {
-  /// Given that something is wrong; of NONE: that it is nothing of the table [-]
+  /// Given that something is wrong; entry NONE: that no fault of the table is the cause [-]
   std::array<double, CAUSE_COUNT> probability{};
   std::array<double, CAUSE_COUNT> severity{};            ///< mean, given the cause [-]
   std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of that [-]

@@ -31,7 +31,7 @@ enum class ScalarIndicator : std::size_t
   COUNT
 };
 
-/// In which signal a line stands.
+/// Signal that a line is taken from.
 enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
@@ -115,7 +115,7 @@ struct SignalIndicators
   std::array<double, INDICATOR_COUNT> uncertainty{};  ///< standard error by the fit, 0: not known; units as values
 };
 
-/// What `measured` differs by from the indicators of a model run alike; amplitudes of phase-locked lines become those
-/// of the difference of the lines, not the difference of amplitudes.
+/// `measured` minus the indicators of a model with the same inputs. The amplitude of a phase-locked line is that of the
+/// complex difference of both lines, not the difference of both amplitudes.
 SignalIndicators difference(const SignalIndicators& measured, const SignalIndicators& model) noexcept;
 }  // namespace hjt

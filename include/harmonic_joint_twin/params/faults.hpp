@@ -51,7 +51,7 @@ struct Fault
   double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
 
   /// Whether a twin with this fault in its configuration starts with it.
-  bool isThereFromTheStart() const noexcept { return severity > 0.0 && onset == 0.0; }
+  bool isActiveAtStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
 /// What a place counts.
@@ -146,7 +146,7 @@ constexpr const FaultDescription& describe(FaultKind kind) noexcept  ///< row of
 {
   return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
 }
-/// Where it shows first in this drive, with the orders of its own bearing and teeth.
+/// Signal in which it shows first in this drive, with the orders of its own bearing and teeth.
 std::string shownFirst(FaultKind kind, const Parameters& parameters);
 std::optional<FaultKind> faultNamed(const std::string& name);  ///< nothing if no kind has this name
 std::string faultNames();                                      ///< all, for an error text

@@ -34,7 +34,8 @@ struct GearParameters
   }
 };
 
-/// Which rotation the rim resists: of each segment from rest (thesis 5.47-5.53), or between neighbouring segments.
+/// Rotation that the rim's bending resists: of each segment from rest (thesis 5.47-5.53), or between neighbouring
+/// segments.
 enum class BendingLaw
 {
   ABSOLUTE,
@@ -52,14 +53,14 @@ struct RingParameters
   double loss_factor{};
 };
 
-/// Where the wave generator pushes: at the thesis' polar point (eq. 5.11), or along the true normal.
+/// Line of the wave generator's push: to the thesis' polar point (eq. 5.11), or along the true normal.
 enum class ContactLaw
 {
   POLAR,
   NORMAL
 };
 
-/// On what the rim sits.
+/// Support of the rim.
 enum class SupportKind
 {
   SPRINGS,      ///< a spring at each tooth on a rigid ellipse
@@ -219,7 +220,7 @@ enum class StepperKind
   ADAPTIVE
 };
 
-/// By what the ring's equilibrium is found: always all teeth, or a response surface where one holds.
+/// How the ring's equilibrium is computed: always with all teeth, or from a response surface where one holds.
 enum class SceneKind
 {
   FULL_RING,
@@ -280,7 +281,7 @@ struct HealthParameters
   double averaging_time{};
 };
 
-/// Where the flexspline is stressed most, in the order of all arrays by place.
+/// Places of the flexspline with the largest stresses, in the order of all arrays by place.
 enum class StressPlace
 {
   TOOTH_SPACE,  ///< rim between two teeth
@@ -350,7 +351,7 @@ enum class InputMode
   OBSERVER   ///< beside a robot: both, the joint's states corrected towards the encoders
 };
 
-/// Where the torque at the output of a measured joint comes from.
+/// Source of the torque at the output of a measured joint.
 enum class LoadSource
 {
   MODEL,          ///< weight and inertia as configured below output

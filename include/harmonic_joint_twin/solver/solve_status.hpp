@@ -48,9 +48,9 @@ struct [[nodiscard]] SolveStatus
   }
 };
 
-/// As written in the source, e.g. "NO_DESCENT".
+/// Name of the status as in the source, e.g. "NO_DESCENT".
 const char* nameOf(SolveCode code) noexcept;
 
-/// For the user: the stage that failed, the code, what was left unbalanced and what to do.
+/// Message for the user: the stage that failed, the code, what was left unbalanced and what to do.
 std::string explanationOf(const SolveStatus& status);
 }  // namespace hjt

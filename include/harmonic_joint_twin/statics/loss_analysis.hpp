@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Where the friction comes from, each as a torque at the motor shaft, averaged over a tooth pitch [N.m].
+/// Parts of the friction, each as a torque at the motor shaft, averaged over a tooth pitch [N.m].
 struct LossShares
 {
   double bearing{};  ///< of the wave generator, Palmgren

@@ -9,7 +9,7 @@ namespace hjt
 {
 class SurfacePool;
 
-/// Where response surfaces are kept, and whom to tell.
+/// Where a twin takes response surfaces from, and callbacks for progress.
 struct SurfaceSource
 {
   std::string cache_directory;                       ///< made if missing; empty: nothing is kept

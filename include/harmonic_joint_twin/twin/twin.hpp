@@ -108,6 +108,11 @@ public:
   ~Twin();
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;
+  /// The same instant, with what waits and what was learned: with the same inputs both go on with the same bits. Shares
+  /// the response surfaces; one that is being built in the background the copy obtains in a thread of its own. Both
+  /// allocate, and the copy once more in its first steps.
+  Twin(const Twin& other);
+  Twin& operator=(const Twin& other);
 
   const Parameters& parameters() const noexcept;  ///< those of the construction, without injected faults
 

@@ -62,7 +62,7 @@ private:
   CommandNode& node_;
 };
 
-/// Where a subcommand stands in the help, in this order.
+/// Groups of subcommands, in the order of the help.
 enum class Subject
 {
   GEAR,

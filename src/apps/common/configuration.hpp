@@ -20,7 +20,7 @@ struct CommonOptions : ConfigurationOptions
 /// `--fault`, for the commands that march the joint.
 void addFaultOption(Command& command, ConfigurationOptions& options);
 
-/// Those about the configuration alone.
+/// Options about the configuration alone.
 void addConfigurationOptions(Command& command, ConfigurationOptions& options);
 
 void addCommonOptions(Command& command, CommonOptions& options);

@@ -17,15 +17,19 @@ Watch consoleWatch()
 
 void addRecording(Command& command, RecordingOptions& options)
 {
-  command.add("recording", options.recording, "a bag, or a UR controller's CSV recording")
+  command
+      .add("recording", options.recording,
+           "a bag, a .db3 or .mcap file of ROS 2 or their directory, or a UR controller's CSV recording")
       .required()
-      .type("IN.bag|IN.csv")
-      .bagOrCsv();
+      .type("IN.bag|IN.db3|IN.mcap|DIR|IN.csv");
 }
 
 void addReadingOptions(Command& command, RecordingOptions& options, bool& json)
 {
   command.add("--topic", options.topic, "of the telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  command.add("--prefix", options.affixes.prefix,
+              "before the arm's names of the joints in the messages, as left_; `joint_twin check` finds it");
+  command.add("--suffix", options.affixes.suffix, "behind them");
   command
       .add("--time-scale", options.time_scale,
            "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")

@@ -19,7 +19,7 @@ using ArmOptions = Printed<RecordingOptions>;
 /// Progress and notices on stderr; signals that end the process otherwise stop the function, as long as it is kept.
 Watch consoleWatch();
 
-/// Those but the joint: the recording itself, then how it is read.
+/// Options but the joint: the recording itself, then how it is read.
 void addRecording(Command& command, RecordingOptions& options);
 void addReadingOptions(Command& command, RecordingOptions& options, bool& json);
 

@@ -16,7 +16,7 @@ using Options = Printed<ComparisonOptions>;
 void printArm(const ComparedRecording& compared)
 {
   std::cout << compared.level << '\n';
-  printWrapped(compared.reason, 0);
+  printWrapped(compared.text, 0);
   std::cout << '\n';
   tableOf(compared).print();
 }
@@ -31,8 +31,9 @@ void printJoint(const ComparedRecording& compared)
   std::cout << '\n' << compared.level << '\n';
   for (const Finding& finding : joint.verdict.findings)
   {
-    printWrapped(
-        finding.title + ": " + (finding.judged ? levelName(finding.level) : "not judged") + ". " + finding.text, 0);
+    printWrapped(subjectTitle(finding.subject) + (": " + std::string(levelName(finding.level))) + ". " +
+                     findingText(joint.verdict, finding),
+                 0);
   }
   std::cout << '\n';
   printReport(false, { { "", "rows", joint.rows },

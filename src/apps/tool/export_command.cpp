@@ -2,17 +2,25 @@
 #include <cmath>
 #include <iostream>
 #include <string>
+#include <vector>
+
+#include <link.h>
 
 #include <Eigen/Dense>
 
 #include "apps/common/configuration.hpp"
 #include "apps/common/not_converged.hpp"
 #include "output/exit_code.hpp"
+#include "output/output_file.hpp"
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
+#include "base/xml_text.hpp"
 #include "elements/motor.hpp"
+#include "fmu/fmu_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "params/configuration_files.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt
@@ -22,6 +30,7 @@ namespace
 struct ExportOptions : CommonOptions
 {
   std::string format;
+  std::string out;
 };
 
 /// What other simulators can hold of the joint; all at the joint.
@@ -37,32 +46,6 @@ struct ExportedJoint
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
 };
-
-std::string xmlText(const std::string& text)
-{
-  std::string escaped;
-  for (const char letter : text)
-  {
-    switch (letter)
-    {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += letter;
-    }
-  }
-  return escaped;
-}
 
 /// Straight line through the friction without load, over the speeds that the joint can have.
 void fitFriction(const Parameters& parameters, ExportedJoint& joint)
@@ -164,8 +147,45 @@ std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
          "\"/>\n  </actuator>\n</mujoco>\n";
 }
 
+/// The library of yaml-cpp that this program has loaded, which another system may lack; none where it is linked in.
+std::vector<std::string> loadedYamlCpp()
+{
+  std::vector<std::string> paths;
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* found)
+      {
+        const std::string path = info->dlpi_name;
+        if (path.find("/libyaml-cpp.so") != std::string::npos)
+        {
+          static_cast<std::vector<std::string>*>(found)->push_back(path);
+        }
+        return 0;
+      },
+      &paths);
+  return paths;
+}
+
+int exportFmu(const ExportOptions& options)
+{
+  const Parameters parameters = loadGear(options);
+  requireWritable(options.out, options.force);
+  const std::string library = libraryDirectory() / "harmonic_joint_twin/harmonic_joint_twin_fmu.so";
+  writeTextFile(options.out, fmu::fmuFile(parameters, library, loadedYamlCpp()));
+  return EXIT_DONE;
+}
+
 int exportJoint(const ExportOptions& options)
 {
+  const bool is_fmu = options.format == "fmu";
+  if (is_fmu == options.out.empty())
+  {
+    std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
+    return EXIT_USAGE;
+  }
+  if (is_fmu)
+  {
+    return exportFmu(options);
+  }
   const Parameters parameters = loadParameters(options);
   const double ratio = nominalRatio(parameters.gear);
   const double rated = parameters.life.rated_torque;
@@ -191,13 +211,18 @@ int exportJoint(const ExportOptions& options)
 
 void declare(Command& command, ExportOptions& options)
 {
-  command.add("--format", options.format, "what is written to stdout: a joint with its damping and friction")
+  command
+      .add("--format", options.format,
+           "urdf, sdf, mjcf: a joint with its damping and friction, to stdout; fmu: the twin itself as a co-simulation "
+           "unit of FMI 3.0, to --out")
       .required()
-      .choice({ "urdf", "sdf", "mjcf" });
+      .choice({ "urdf", "sdf", "mjcf", "fmu" });
+  command.add("--out", options.out, "file of the unit").type("FILE.fmu");
+  command.flag("--force", options.force, "overwrite an existing file");
   addConfigurationOptions(command, options);
 }
 
-const Subcommand EXPORT{ Subject::JOINT, "export", "the joint for other simulators: URDF, SDF or MJCF", declare,
+const Subcommand EXPORT{ Subject::JOINT, "export", "the joint for other simulators: URDF, SDF, MJCF or FMU", declare,
                          exportJoint };
 }  // namespace
 }  // namespace hjt

@@ -6,6 +6,6 @@
 
 namespace hjt
 {
-/// Those but the common ones, which a command adds behind its own.
+/// Options of signals without the common ones, which a command adds behind its own.
 void addSignalOptions(Command& command, SignalOptions& options);
 }  // namespace hjt

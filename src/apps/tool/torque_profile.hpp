@@ -13,7 +13,7 @@ namespace hjt
 class TorqueProfile
 {
 public:
-  /// From t = 0 on [N.m].
+  /// A constant torque from t = 0 on [N.m].
   static TorqueProfile constant(double motor_torque);
 
   /// CSV with columns time [s, from 0 on, ascending], motor_torque [N.m] and, if wanted, load_torque [N.m] and brake (0

@@ -10,7 +10,7 @@ namespace hjt
 /// docs/faults.md says what each kind stands for.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
-/// Where the crack at a tooth's root runs, by the backup ratio rim thickness / tooth height (thesis 3.4.2): through the
-/// tooth above 1, into the rim below; between 0.4 and 1 it may do either, and the worse is taken.
+/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim, by the backup ratio rim thickness /
+/// tooth height (thesis 3.4.2): through the tooth above 1, into the rim below 0.4. Between both the worse is taken.
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
 }  // namespace hjt

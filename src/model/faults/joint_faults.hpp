@@ -18,7 +18,7 @@ public:
     apply(faults);
   }
 
-  /// From now on the joint has these faults, each valid, and no others.
+  /// Gives the joint these faults, each valid, in place of those before.
   void apply(const FaultList& faults) noexcept
   {
     model_ = sound_;  // vectors of equal size: nothing is allocated
@@ -43,7 +43,7 @@ inline JointModel startingJoint(const Parameters& parameters)
   FaultList faults;
   for (const Fault& fault : parameters.faults)
   {
-    if (fault.isThereFromTheStart())
+    if (fault.isActiveAtStart())
     {
       faults.set(fault, 0);
     }

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <map>
+
+#include <sqlite3.h>
+
+#include "bags/recording_format.hpp"
+#include "bags/ros2_messages.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+struct CloseDatabase
+{
+  void operator()(sqlite3* database) const { sqlite3_close(database); }
+};
+
+struct EndStatement
+{
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+
+class DatabaseMessages : public RecordedMessages
+{
+public:
+  explicit DatabaseMessages(const std::string& path) : RecordedMessages(path)
+  {
+    sqlite3* database = nullptr;
+    const int result = sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+    database_.reset(database);
+    if (result != SQLITE_OK)
+    {
+      fail();
+    }
+    const auto topics = prepare("SELECT id, name, type, serialization_format FROM topics");
+    while (step(topics))
+    {
+      Ros2Channel channel{ text(topics, 1), ros1Type(text(topics, 2)), encodingOf(text(topics, 3)), false };
+      topics_[channel.topic].type = channel.type;
+      channels_[sqlite3_column_int64(topics.get(), 0)] = std::move(channel);
+    }
+    const auto counts = prepare("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
+    while (step(counts))
+    {
+      const auto channel = channels_.find(sqlite3_column_int64(counts.get(), 0));
+      if (channel != channels_.end())
+      {
+        topics_[channel->second.topic].messages += static_cast<std::uint64_t>(sqlite3_column_int64(counts.get(), 1));
+      }
+    }
+  }
+
+  void visit(const std::vector<std::string>& topics, bool with_temperatures, const Visit& visit,
+             const Progress& progress) override
+  {
+    double total = 0.0;
+    for (auto& [id, channel] : channels_)
+    {
+      channel.is_chosen = isChosen(channel, topics, with_temperatures);
+      total += static_cast<double>(messagesOn(channel.topic));
+    }
+    Ros2Message message(visit);
+    const auto rows = prepare("SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp, id");
+    std::vector<std::uint8_t> bytes;
+    for (double done = 1.0; step(rows); ++done)
+    {
+      const auto channel = channels_.find(sqlite3_column_int64(rows.get(), 0));
+      if (channel == channels_.end() || !channel->second.is_chosen)
+      {
+        continue;
+      }
+      const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(rows.get(), 2));
+      bytes.assign(data, data + (data == nullptr ? 0 : sqlite3_column_bytes(rows.get(), 2)));
+      if (!message.take(channel->second, sqlite3_column_int64(rows.get(), 1), bytes))
+      {
+        return;
+      }
+      progress(done / total);
+    }
+  }
+
+private:
+  using Statement = std::unique_ptr<sqlite3_stmt, EndStatement>;
+
+  [[noreturn]] void fail() const
+  {
+    throw InputError(path_ + " is a SQLite file and cannot be read as a .db3 of ROS 2: " +
+                     sqlite3_errmsg(database_.get()) + "; if ROS 2 reads it, " + conversionOf(path_));
+  }
+
+  Statement prepare(const char* query) const
+  {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(database_.get(), query, -1, &statement, nullptr) != SQLITE_OK)
+    {
+      fail();
+    }
+    return Statement(statement);
+  }
+
+  bool step(const Statement& statement) const
+  {
+    const int result = sqlite3_step(statement.get());
+    if (result != SQLITE_ROW && result != SQLITE_DONE)
+    {
+      fail();
+    }
+    return result == SQLITE_ROW;
+  }
+
+  static std::string text(const Statement& statement, int column)
+  {
+    const auto* text = sqlite3_column_text(statement.get(), column);
+    return text == nullptr ? "" : reinterpret_cast<const char*>(text);
+  }
+
+  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  std::map<std::int64_t, Ros2Channel> channels_;
+};
+}  // namespace
+
+std::unique_ptr<RecordedMessages> openDatabase(const std::string& path)
+{
+  return std::make_unique<DatabaseMessages>(path);
+}
+
+}  // namespace hjt

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include "bags/recording_format.hpp"
+#include "bags/ros2_messages.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Bytes = std::vector<std::uint8_t>;
+
+// https://mcap.dev/spec: records are an opcode, a length and so many bytes, all little endian.
+enum Opcode : std::uint8_t
+{
+  FOOTER = 0x02,
+  SCHEMA = 0x03,
+  CHANNEL = 0x04,
+  MESSAGE = 0x05,
+  CHUNK = 0x06,
+  DATA_END = 0x0F
+};
+
+constexpr std::size_t MAGIC = 8;             // [byte]
+constexpr std::size_t RECORD_HEAD = 9;       // opcode and length [byte]
+constexpr std::size_t MAX_CHUNK = 1U << 30;  // [byte]
+
+struct Damage
+{
+  std::string what;
+};
+
+/// Takes fields out of a record. @throws Damage beyond its end.
+class Fields
+{
+public:
+  Fields(const std::uint8_t* begin, std::size_t size) : at_(begin), left_(size) {}
+
+  template <class Number>
+  Number number()
+  {
+    Number value{};
+    std::memcpy(&value, take(sizeof(value)), sizeof(value));
+    return value;
+  }
+
+  std::string text()
+  {
+    const auto length = number<std::uint32_t>();
+    return std::string(reinterpret_cast<const char*>(take(length)), length);
+  }
+
+  const std::uint8_t* take(std::size_t count)
+  {
+    if (count > left_)
+    {
+      throw Damage{ "a record that is shorter than its fields" };
+    }
+    const std::uint8_t* taken = at_;
+    at_ += count;
+    left_ -= count;
+    return taken;
+  }
+
+  std::size_t left() const { return left_; }
+
+private:
+  const std::uint8_t* at_;
+  std::size_t left_;
+};
+
+Bytes unpackedLz4(const std::uint8_t* data, std::size_t size, std::size_t unpacked_size)
+{
+  LZ4F_dctx* context = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0)
+  {
+    throw Damage{ "no memory for a chunk" };
+  }
+  Bytes unpacked(unpacked_size);
+  std::size_t written = 0;
+  std::size_t read = 0;
+  std::size_t hint = 1;
+  while (hint != 0 && LZ4F_isError(hint) == 0 && read < size)
+  {
+    std::size_t room = unpacked.size() - written;
+    std::size_t left = size - read;
+    hint = LZ4F_decompress(context, unpacked.data() + written, &room, data + read, &left, nullptr);
+    written += room;
+    read += left;
+    if (room == 0 && left == 0)
+    {
+      break;
+    }
+  }
+  LZ4F_freeDecompressionContext(context);
+  if (hint != 0 || written != unpacked.size())
+  {
+    throw Damage{ "a chunk that lz4 does not unpack" };
+  }
+  return unpacked;
+}
+
+Bytes unpackedZstd(const std::uint8_t* data, std::size_t size, std::size_t unpacked_size)
+{
+  Bytes unpacked(unpacked_size);
+  if (ZSTD_decompress(unpacked.data(), unpacked.size(), data, size) != unpacked.size())
+  {
+    throw Damage{ "a chunk that zstd does not unpack" };
+  }
+  return unpacked;
+}
+
+class McapMessages : public RecordedMessages
+{
+public:
+  explicit McapMessages(const std::string& path) : RecordedMessages(path)
+  {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    size_ = static_cast<std::uint64_t>(file.tellg());
+    readAll([](const Ros2Channel&, Stamp, const std::uint8_t*, std::size_t) { return true; },
+            [this](const Ros2Channel& channel) { ++topics_[channel.topic].messages; }, [](double) {});
+    if (topics_.empty())
+    {
+      throw InputError(path + " is an MCAP file without a message" + (remark_.empty() ? "" : ": " + remark_) +
+                       "; if ROS 2 reads it, " + conversionOf(path));
+    }
+  }
+
+  void visit(const std::vector<std::string>& topics, bool with_temperatures, const Visit& visit,
+             const Progress& progress) override
+  {
+    for (auto& [id, channel] : channels_)
+    {
+      channel.is_chosen = isChosen(channel, topics, with_temperatures);
+    }
+    Ros2Message message(visit);
+    Bytes bytes;
+    readAll(
+        [&](const Ros2Channel& channel, Stamp recorded, const std::uint8_t* data, std::size_t size)
+        {
+          if (!channel.is_chosen)
+          {
+            return true;
+          }
+          bytes.assign(data, data + size);
+          return message.take(channel, recorded, bytes);
+        },
+        [](const Ros2Channel&) {}, progress);
+  }
+
+private:
+  using Take = std::function<bool(const Ros2Channel&, Stamp, const std::uint8_t*, std::size_t)>;
+  using Count = std::function<void(const Ros2Channel&)>;
+
+  /// All records of the file, up to what is damaged or cut off.
+  void readAll(const Take& take, const Count& count, const Progress& progress)
+  {
+    std::ifstream file(path_, std::ios::binary);
+    file.seekg(MAGIC);
+    std::uint64_t at = MAGIC;
+    Bytes record;
+    remark_.clear();
+    try
+    {
+      for (;;)
+      {
+        std::array<std::uint8_t, RECORD_HEAD> head{};
+        file.read(reinterpret_cast<char*>(head.data()), RECORD_HEAD);
+        std::uint64_t length = 0;
+        std::memcpy(&length, head.data() + 1, sizeof(length));
+        if (!file || length > size_ - at - RECORD_HEAD)
+        {
+          throw Damage{ "it was not closed" };
+        }
+        if (head[0] == DATA_END || head[0] == FOOTER)
+        {
+          return;
+        }
+        record.resize(length);
+        file.read(reinterpret_cast<char*>(record.data()), static_cast<std::streamsize>(length));
+        if (!takeRecord(head[0], Fields(record.data(), record.size()), take, count))
+        {
+          return;
+        }
+        at += RECORD_HEAD + length;
+        progress(static_cast<double>(at) / static_cast<double>(size_));
+      }
+    }
+    catch (const Damage& damage)
+    {
+      remark_ =
+          path_ + " is read up to byte " + std::to_string(at) + " of " + std::to_string(size_) + ": " + damage.what;
+    }
+  }
+
+  bool takeRecord(std::uint8_t opcode, Fields fields, const Take& take, const Count& count)
+  {
+    switch (opcode)
+    {
+      case SCHEMA:
+      {
+        const auto id = fields.number<std::uint16_t>();
+        schemas_[id] = ros1Type(fields.text());
+        return true;
+      }
+      case CHANNEL:
+        addChannel(fields);
+        return true;
+      case MESSAGE:
+        return takeMessage(fields, take, count);
+      case CHUNK:
+        return takeChunk(fields, take, count);
+      default:
+        return true;
+    }
+  }
+
+  void addChannel(Fields& fields)
+  {
+    const auto id = fields.number<std::uint16_t>();
+    const auto schema = fields.number<std::uint16_t>();
+    Ros2Channel& channel = channels_[id];
+    channel.topic = fields.text();
+    channel.type = schemas_[schema];
+    channel.encoding = encodingOf(fields.text());
+    topics_[channel.topic].type = channel.type;
+  }
+
+  bool takeMessage(Fields& fields, const Take& take, const Count& count)
+  {
+    const auto channel = channels_.find(fields.number<std::uint16_t>());
+    fields.number<std::uint32_t>();  // sequence
+    const auto recorded = static_cast<Stamp>(fields.number<std::uint64_t>());
+    fields.number<std::uint64_t>();  // time of publication
+    if (channel == channels_.end())
+    {
+      return true;
+    }
+    count(channel->second);
+    const std::size_t size = fields.left();
+    return take(channel->second, recorded, fields.take(size), size);
+  }
+
+  bool takeChunk(Fields& fields, const Take& take, const Count& count)
+  {
+    fields.take(2 * sizeof(std::uint64_t));  // times
+    const auto unpacked_size = fields.number<std::uint64_t>();
+    fields.take(sizeof(std::uint32_t));  // check sum
+    const std::string compression = fields.text();
+    const auto size = fields.number<std::uint64_t>();
+    const std::uint8_t* data = fields.take(size);
+    if (unpacked_size > MAX_CHUNK)
+    {
+      throw Damage{ "a chunk of " + std::to_string(unpacked_size) + " bytes" };
+    }
+    Bytes unpacked;
+    if (compression == "lz4")
+    {
+      unpacked = unpackedLz4(data, size, unpacked_size);
+    }
+    else if (compression == "zstd")
+    {
+      unpacked = unpackedZstd(data, size, unpacked_size);
+    }
+    else if (compression.empty())
+    {
+      unpacked.assign(data, data + size);
+    }
+    else
+    {
+      throw Damage{ "a chunk compressed by " + compression + "; `mcap compress` recompresses it by zstd" };
+    }
+    Fields records(unpacked.data(), unpacked.size());
+    while (records.left() > 0)
+    {
+      const auto opcode = records.number<std::uint8_t>();
+      const auto length = records.number<std::uint64_t>();
+      if (!takeRecord(opcode, Fields(records.take(length), length), take, count))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::uint64_t size_{};
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, Ros2Channel> channels_;
+};
+}  // namespace
+
+std::unique_ptr<RecordedMessages> openMcap(const std::string& path)
+{
+  return std::make_unique<McapMessages>(path);
+}
+}  // namespace hjt

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bags/recorded_messages.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "bags/bag_file.hpp"
+#include "bags/checked_message.hpp"
+#include "bags/recording_format.hpp"
+#include "bags/ros2_messages.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+class BagMessages : public RecordedMessages
+{
+public:
+  explicit BagMessages(const std::string& path) : RecordedMessages(path)
+  {
+    openForReading(bag_, path);
+    rosbag::View view(bag_);
+    for (const rosbag::ConnectionInfo* connection : view.getConnections())
+    {
+      topics_[connection->topic].type = connection->datatype;
+    }
+    for (auto& [name, topic] : topics_)
+    {
+      topic.messages = rosbag::View(bag_, rosbag::TopicQuery(name)).size();
+    }
+  }
+
+  void visit(const std::vector<std::string>& topics, bool with_temperatures, const Visit& visit,
+             const Progress& progress) override
+  {
+    rosbag::View view;
+    view.addQuery(bag_, rosbag::TopicQuery(topics));
+    if (with_temperatures)
+    {
+      view.addQuery(bag_, rosbag::TypeQuery(TEMPERATURE_TYPE));
+    }
+    const double total = view.size();
+    double done = 0.0;
+    CheckedMessage message;
+    for (const rosbag::MessageInstance& instance : view)
+    {
+      const std::string topic = instance.getTopic();
+      RecordedMessage recorded{ topic, fromRosTime(instance.getTime()), instance.getCallerId() };
+      if (instance.getDataType() == TEMPERATURE_TYPE && with_temperatures)
+      {
+        recorded.temperature = message.readTemperature(instance) ? &message.temperature() : nullptr;
+      }
+      else
+      {
+        recorded.state = message.read(instance) ? &message.state() : nullptr;
+      }
+      if (!visit(recorded))
+      {
+        return;
+      }
+      progress(++done / total);
+    }
+  }
+
+private:
+  rosbag::Bag bag_;
+};
+
+/// The files of a directory of rosbag2, one after the other.
+class DirectoryMessages : public RecordedMessages
+{
+public:
+  explicit DirectoryMessages(const std::string& path) : RecordedMessages(path)
+  {
+    std::vector<std::string> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path))
+    {
+      const std::string ending = entry.path().extension().string();
+      if (ending == ".db3" || ending == ".mcap")
+      {
+        files.push_back(entry.path().string());
+      }
+    }
+    if (files.empty())
+    {
+      throw InputError(path + " is a directory without .db3 and .mcap files");
+    }
+    // NAME_2 before NAME_10
+    std::sort(files.begin(), files.end(),
+              [](const std::string& a, const std::string& b)
+              { return std::make_pair(a.size(), a) < std::make_pair(b.size(), b); });
+    for (const std::string& file : files)
+    {
+      parts_.push_back(open(file));
+      for (const auto& [name, topic] : parts_.back()->topics())
+      {
+        topics_[name].type = topic.type;
+        topics_[name].messages += topic.messages;
+      }
+      remark_ += (remark_.empty() || parts_.back()->remark().empty() ? "" : "; ") + parts_.back()->remark();
+    }
+  }
+
+  void visit(const std::vector<std::string>& topics, bool with_temperatures, const Visit& visit,
+             const Progress& progress) override
+  {
+    bool more = true;
+    for (std::size_t i = 0; i < parts_.size() && more; ++i)
+    {
+      parts_[i]->visit(
+          topics, with_temperatures, [&](const RecordedMessage& message) { return more = visit(message); },
+          [&](double share) { progress((static_cast<double>(i) + share) / static_cast<double>(parts_.size())); });
+    }
+  }
+
+private:
+  std::vector<std::unique_ptr<RecordedMessages>> parts_;
+};
+}  // namespace
+
+Stamp RecordedMessage::stamp() const
+{
+  const ros::Time none;
+  const ros::Time& own = state != nullptr       ? state->header.stamp :
+                         temperature != nullptr ? temperature->header.stamp :
+                                                  none;
+  return own.isZero() ? recorded : fromRosTime(own);
+}
+
+std::unique_ptr<RecordedMessages> RecordedMessages::open(const std::string& path)
+{
+  switch (formatOfRecording(path))
+  {
+    case RecordingFormat::DATABASE:
+      return openDatabase(path);
+    case RecordingFormat::MCAP:
+      return openMcap(path);
+    case RecordingFormat::DIRECTORY:
+      return std::make_unique<DirectoryMessages>(path);
+    case RecordingFormat::TABLE:
+      throw InputError(path + " is text, no recording of ROS");
+    case RecordingFormat::BAG:
+      break;
+  }
+  return std::make_unique<BagMessages>(path);
+}
+
+std::uint64_t RecordedMessages::messagesOn(const std::string& topic) const
+{
+  const auto found = topics_.find(topic);
+  return found == topics_.end() ? 0 : found->second.messages;
+}
+
+std::string RecordedMessages::listTopics() const
+{
+  std::string text;
+  for (const auto& [name, topic] : topics_)
+  {
+    text += "\n  " + name + " (" + topic.type + ")";
+  }
+  return text.empty() ? " nothing" : text;
+}
+
+void RecordedMessages::requireStates(const std::string& topic) const
+{
+  if (messagesOn(topic) > 0)
+  {
+    return;
+  }
+  std::string others;
+  for (const auto& [name, found] : topics_)
+  {
+    others += found.type == JOINT_STATE_TYPE && found.messages > 0 ? "; --topic " + name + " reads that one" : "";
+  }
+  throw InputError(path_ + " has no messages on " + topic + "; it holds:" + listTopics() + others);
+}
+}  // namespace hjt

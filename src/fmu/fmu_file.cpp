@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fmu/fmu_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "fmu/model_description.hpp"
+#include "fmu/variables.hpp"
+#include "fmu/zip.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "params/configuration_files.hpp"
+
+namespace hjt::fmu
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+std::string readBytes(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{ std::istreambuf_iterator<char>(file), {} };
+  if (!file)
+  {
+    throw InputError("'" + path + "' cannot be read");
+  }
+  return bytes;
+}
+}  // namespace
+
+std::string fmuFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
+{
+#ifdef __aarch64__
+  const std::string binaries = "binaries/aarch64-linux/";
+#else
+  const std::string binaries = "binaries/x86_64-linux/";
+#endif
+  const std::string resources = "resources/";
+  Zip zip;
+  const auto carry = [&](std::string& name, const char* carried)
+  {
+    if (name != NO_FILE)
+    {
+      const std::string path =
+          fs::path(name).is_absolute() ? name : findConfiguration(name, configurationDirectory(""));
+      name = carried;
+      zip.add(resources + name, readBytes(path));
+    }
+  };
+  carry(parameters.indicators.signatures, "signatures.yaml");
+  carry(parameters.manufacture.flexspline_pitch.table, "flexspline_pitch.csv");
+  carry(parameters.manufacture.circular_spline_pitch.table, "circular_spline_pitch.csv");
+  const std::string text = describeParameters(parameters);
+  zip.add(resources + PARAMETER_FILE, text);
+  zip.add("modelDescription.xml", modelDescription(parameters, instantiationToken(text)));
+  zip.add(binaries + MODEL_IDENTIFIER + ".so", readBytes(library));
+  for (const std::string& other : others)
+  {
+    const std::string name = fs::path(other).filename();
+    zip.add(binaries + name, readBytes(other));
+    // Its licence goes with it, from where Debian keeps it: /usr/share/doc/libNAME-VERSION/copyright.
+    const std::string package = name.substr(0, name.find(".so"));
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator("/usr/share/doc", error))
+    {
+      const fs::path licence = entry.path() / "copyright";
+      if (entry.path().filename().string().rfind(package, 0) == 0 && fs::exists(licence, error))
+      {
+        zip.add("documentation/licenses/" + entry.path().filename().string() + ".txt", readBytes(licence));
+        break;
+      }
+    }
+  }
+  return zip.bytes();
+}
+}  // namespace hjt::fmu

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fmu/variables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "health/indicator_table.hpp"
+#include "params/choices.hpp"
+#include "params/field_table.hpp"
+
+#include "base/text_hash.hpp"
+#include "base/text_stream.hpp"
+#include "gear/ratio.hpp"
+
+namespace hjt::fmu
+{
+namespace
+{
+/// Of an operating twin or of what it publishes; the last four are an input, or change what the description states.
+constexpr std::array LEFT_OUT{ "joint.",
+                               "life.",
+                               "input.",
+                               "telemetry.",
+                               "observer.",
+                               "publish.",
+                               "realtime.",
+                               "comparison.",
+                               "stress.",
+                               "solver.rate",
+                               "brake.engaged_at_start",
+                               "gear.teeth_flexspline",
+                               "gear.teeth_circular_spline" };
+
+double finite(double value)
+{
+  return std::isfinite(value) ? value : 0.0;
+}
+
+template <ScalarIndicator INDICATOR>
+double indicator(const Twin& twin, const JointOutputs&)
+{
+  return finite(twin.signalIndicators()[INDICATOR]);
+}
+
+double motorCurrent(const Twin& twin, const JointOutputs&)
+{
+  const TelemetryParameters& telemetry = twin.parameters().telemetry;
+  return nominalRatio(twin.parameters().gear) * twin.motorTorqueReading() / telemetry.torque_per_current +
+         telemetry.current_offset;
+}
+
+/// Makes a variable of each field.
+struct ParameterMaker
+{
+  void operator()(const std::string& key, const char* unit, double value, const Range& range, const Meaning& meaning)
+  {
+    add({ key, unit, meaning.text, Causality::PARAMETER, Type::FLOAT64, { { value } }, range });
+  }
+  void operator()(const std::string& key, const char* unit, int value, const Range& range, const Meaning& meaning)
+  {
+    add({ key, unit, meaning.text, Causality::PARAMETER, Type::INT32, { { static_cast<double>(value) } }, range });
+  }
+  template <std::size_t N>
+  void operator()(const std::string& key, const char* unit, const std::array<double, N>& values, const Range& range,
+                  const Meaning& meaning)
+  {
+    add({ key,
+          unit,
+          meaning.text,
+          Causality::PARAMETER,
+          Type::FLOAT64,
+          { { values.begin(), values.end() } },
+          range,
+          true });
+  }
+  void operator()(const std::string& key, bool value, const Meaning& meaning)
+  {
+    add({ key, "-", meaning.text, Causality::PARAMETER, Type::BOOLEAN, { { value ? 1.0 : 0.0 } } });
+  }
+  void operator()(const std::string& key, const std::string& value, const Meaning& meaning)
+  {
+    const auto* const* end = std::end(FILE_PARAMETERS);
+    if (std::find(std::begin(FILE_PARAMETERS), end, key) == end)
+    {
+      add({ key, "-", meaning.text, Causality::PARAMETER, Type::STRING, { {}, value } });
+    }
+  }
+  template <class Choice>
+  std::enable_if_t<std::is_enum<Choice>::value> operator()(const std::string& key, Choice value, const Meaning& meaning)
+  {
+    for (const auto& [name, choice] : choiceNames(Choice{}))
+    {
+      if (choice == value)
+      {
+        add({ key, "-", meaning.text, Causality::PARAMETER, Type::STRING, { {}, name } });
+      }
+    }
+  }
+
+  void add(FmuVariable variable)
+  {
+    const auto begins = [&](const char* left_out) { return variable.name.rfind(left_out, 0) == 0; };
+    if (std::none_of(LEFT_OUT.begin(), LEFT_OUT.end(), begins))
+    {
+      all.push_back(std::move(variable));
+    }
+  }
+
+  std::vector<FmuVariable>& all;
+};
+
+/// The configured fault of a kind that the twin starts with, if any; else none at the first place allowed.
+Fault startingFault(FaultKind kind, const Parameters& parameters)
+{
+  const auto found =
+      std::find_if(parameters.faults.begin(), parameters.faults.end(),
+                   [&](const Fault& fault) { return fault.kind == kind && fault.isActiveAtStart(); });
+  return found != parameters.faults.end() ? *found : Fault{ kind, 0.0, firstPlace(kind) };
+}
+
+void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
+{
+  const double load = parameters.output.load_torque_limit;
+  const auto add = [&](const char* name, const char* unit, const char* meaning, double start, const Range& range) {
+    all.push_back({ name, unit, meaning, Causality::INPUT, Type::FLOAT64, { { start } }, range });
+  };
+  all.push_back({ "time", "s", "simulated time", Causality::INDEPENDENT, Type::FLOAT64 });
+  add("motor_torque", "N.m", "torque commanded of the motor; clamped to motor.torque_limit", 0.0, { -1e6, 1e6 });
+  add("load_torque", "N.m", "external torque at the output, > 0 resists positive motion", 0.0, { -load, load });
+  add("temperature", "degC", "of the drive, or with thermal.model = two_nodes of its surroundings",
+      parameters.input.temperature, { MIN_TEMPERATURE, MAX_TEMPERATURE });
+  all.push_back({ "brake",
+                  "-",
+                  "engages the brake, after brake.delay",
+                  Causality::INPUT,
+                  Type::BOOLEAN,
+                  { { parameters.brake.engaged_at_start ? 1.0 : 0.0 } } });
+  for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
+  {
+    all.push_back({ std::string("fault_") + kind.name,
+                    "-",
+                    std::string("severity; 1: ") + kind.severity,
+                    Causality::INPUT,
+                    Type::FLOAT64,
+                    { { startingFault(kind.kind, parameters).severity } },
+                    Range{ 0.0, 1.0 },
+                    false,
+                    true });
+  }
+}
+
+void addOutputs(const Parameters& parameters, std::vector<FmuVariable>& all)
+{
+  for (const ScalarOutput& output : scalarOutputs())
+  {
+    all.push_back({ output.name, output.unit, output.description, Causality::OUTPUT, output.type });
+  }
+  const auto teeth = static_cast<std::size_t>(parameters.gear.teeth_flexspline);
+  for (const ToothOutput& output : toothOutputs())
+  {
+    all.push_back({ output.name,
+                    "N",
+                    output.description,
+                    Causality::OUTPUT,
+                    Type::FLOAT64,
+                    { std::vector<double>(teeth, 0.0) },
+                    {},
+                    true });
+  }
+}
+}  // namespace
+
+const std::vector<ScalarOutput>& scalarOutputs()
+{
+  using T = const Twin&;
+  using O = const JointOutputs&;
+  using S = ScalarIndicator;
+  constexpr Type F = Type::FLOAT64;
+  static const std::vector<ScalarOutput> OUTPUTS{
+    { "motor_angle", "rad", "of the wave generator, true", F, [](T, O o) { return o.motor_angle; } },
+    { "motor_velocity", "rad/s", "of the wave generator, true", F, [](T, O o) { return o.motor_velocity; } },
+    { "output_angle", "rad", "of the circular spline, true", F, [](T, O o) { return o.output_angle; } },
+    { "output_velocity", "rad/s", "of the circular spline, true", F, [](T, O o) { return o.output_velocity; } },
+    { "motor_angle_encoder", "rad", "as the motor's encoder reads it", F,
+      [](T t, O) { return t.encoders().motor_angle; } },
+    { "motor_velocity_encoder", "rad/s", "difference of its readings", F,
+      [](T t, O) { return t.encoders().motor_velocity; } },
+    { "output_angle_encoder", "rad", "as the output's encoder reads it, unwrapped", F,
+      [](T t, O) { return t.encoders().output_angle; } },
+    { "output_velocity_encoder", "rad/s", "difference of its readings", F,
+      [](T t, O) { return t.encoders().output_velocity; } },
+    { "motor_current", "A", "that the drive reads, by telemetry.torque_per_current", F, motorCurrent },
+    { "motor_torque_reading", "N.m", "motor torque by the current, as read", F,
+      [](T t, O) { return t.motorTorqueReading(); } },
+    { "motor_torque_applied", "N.m", "after limits and current loop", F, [](T, O o) { return o.motor_torque; } },
+    { "wave_generator_torque", "N.m", "of the wave generator on the flexspline", F,
+      [](T, O o) { return o.wave_generator_torque; } },
+    { "joint_torque", "N.m", "of the mesh on the circular spline", F, [](T, O o) { return o.joint_torque; } },
+    { "friction_torque", "N.m", "all friction at the motor shaft, by power", F,
+      [](T, O o) { return o.friction_torque; } },
+    { "torsional_stiffness", "N.m/rad", "local, wave generator locked", F,
+      [](T, O o) { return o.torsional_stiffness; } },
+    { "energy_residual", "J", "energy in less stored, dissipated and released since the start", F,
+      [](T, O o) { return o.energy_residual; } },
+    { "grease_temperature", "degC", "that the friction has", F, [](T, O o) { return o.temperature; } },
+    { "housing_temperature", "degC", "of the housing", F, [](T, O o) { return o.housing_temperature; } },
+    { "brake_engaged", "-", "the brake holds the motor, but for its play", Type::BOOLEAN,
+      [](T, O o) { return o.brake_engaged ? 1.0 : 0.0; } },
+    { "converged", "-", "false: the ring found no equilibrium and the last good state is held", Type::BOOLEAN,
+      [](T, O o) { return o.converged ? 1.0 : 0.0; } },
+    { "transmission_ratio", "-", "over the last motor turn; 0: none yet", F,
+      [](T t, O) { return t.health().motion.transmission_ratio.value; } },
+    { "torsion", "rad", "motor angle over nominal ratio less output angle", F,
+      [](T t, O) { return t.health().motion.torsion; } },
+    { "running_stiffness", "N.m/rad", "slope of torque over torsion in the motion; 0: none yet", F,
+      [](T t, O) { return t.health().motion.torsional_stiffness.value; } },
+    { "running_efficiency", "-", "of the last motion; 0: none yet", F,
+      [](T t, O) { return t.health().motion.efficiency.value; } },
+    { "running_kinematic_error", "rad", "peak to peak over the last motor turn; 0: none yet", F,
+      [](T t, O) { return t.health().motion.kinematic_error.value; } },
+    { "teeth_loaded", "-", "teeth that carry mesh force", Type::INT32,
+      [](T t, O) { return static_cast<double>(t.health().lobes.teeth_loaded); } },
+    { "lobe_force_0", "N", "mesh force about lobe 0", F, [](T t, O) { return t.health().lobes.mesh_force[0]; } },
+    { "lobe_force_1", "N", "mesh force about lobe 1", F, [](T t, O) { return t.health().lobes.mesh_force[1]; } },
+    { "bearing_force", "N", "load of the wave generator's bearing, sum over the teeth", F,
+      [](T t, O) { return t.health().lobes.wave_generator_force; } },
+    { "assessment_level", "-", "of the assessment by the readings: 0 OK, 1 WARN, 2 ERROR", Type::INT32,
+      [](T t, O) { return static_cast<double>(t.assessment().level); }, true },
+    { "assessment_state", "-", "0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows", Type::INT32,
+      [](T t, O) { return static_cast<double>(t.assessment().state); }, true },
+    { "assessment_cause", "-", "most likely: 0 none, then the inputs fault_* from 1 on, last a circular spline tooth",
+      Type::INT32, [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
+    { "assessment_confidence", "-", "probability of that cause", F, [](T t, O) { return t.assessment().confidence; },
+      true },
+    { "assessment_severity", "-", "of the fault if that is the cause", F,
+      [](T t, O) { return t.assessment().severity; }, true },
+    { "indicator_windows", "-", "windows that the indicators were made of; an indicator of none that tells it is 0",
+      Type::INT32, [](T t, O) { return static_cast<double>(t.signalIndicators().windows); }, true },
+    { "indicator_kinematic_error", "rad", "of the last window", F, indicator<S::KINEMATIC_ERROR>, true },
+    { "indicator_torsional_stiffness", "N.m/rad", "of the last window", F, indicator<S::TORSIONAL_STIFFNESS>, true },
+    { "indicator_lost_motion", "rad", "of the last window", F, indicator<S::LOST_MOTION>, true },
+    { "indicator_hysteresis_area", "J", "of the last window", F, indicator<S::HYSTERESIS_AREA>, true },
+    { "indicator_running_torque", "N.m", "of the last window", F, indicator<S::RUNNING_TORQUE>, true },
+    { "indicator_coulomb_torque", "N.m", "of the last window", F, indicator<S::COULOMB_TORQUE>, true },
+    { "indicator_viscous_friction", "N.m.s/rad", "of the last window", F, indicator<S::VISCOUS_FRICTION>, true },
+    { "indicator_efficiency", "-", "of the last window", F, indicator<S::EFFICIENCY>, true },
+    { "indicator_residual_rms", "rad", "of the last window", F, indicator<S::RESIDUAL_RMS>, true },
+  };
+  return OUTPUTS;
+}
+
+const std::vector<ToothOutput>& toothOutputs()
+{
+  static const std::vector<ToothOutput> OUTPUTS{
+    { "tooth_mesh_force", "normal to the flank of each tooth, > 0 leading, < 0 trailing flank",
+      &ToothForces::mesh_force },
+    { "tooth_wave_generator_force", "of the wave generator on each tooth", &ToothForces::wave_generator_force },
+    { "tooth_rim_tension", "of the rim from each tooth to the next", &ToothForces::rim_tension },
+    { "tooth_bending_force", "of the rim from each tooth to the next", &ToothForces::bending_force },
+  };
+  return OUTPUTS;
+}
+
+std::size_t placeReference(std::size_t kind)
+{
+  return FIRST_OUTPUT + scalarOutputs().size() + toothOutputs().size() + kind;
+}
+
+std::vector<FmuVariable> variables(const Parameters& parameters)
+{
+  std::vector<FmuVariable> all;
+  addInputs(parameters, all);
+  addOutputs(parameters, all);
+  for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
+  {
+    const Range places{ static_cast<double>(firstPlace(kind.kind)),
+                        static_cast<double>(lastPlace(kind.kind, parameters)) };
+    all.push_back({ std::string("fault_") + kind.name + "_place",
+                    "-",
+                    placeText(kind.kind, parameters),
+                    Causality::PARAMETER,
+                    Type::INT32,
+                    { { static_cast<double>(startingFault(kind.kind, parameters).place) } },
+                    places });
+  }
+  ParameterMaker maker{ all };
+  visitFields(parameters, maker);
+  return all;
+}
+
+std::string instantiationToken(const std::string& text)
+{
+  TextStream token;
+  token << "harmonic_joint_twin " << HJT_VERSION << ' ' << std::hex << textHash(text);
+  return token.str();
+}
+}  // namespace hjt::fmu

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "bags/recorded_messages.hpp"
+#include "base/joined.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/joint_affixes.hpp"
+#include "recordings/message_rows.hpp"
+#include "recordings/motion_readers.hpp"
+#include "recordings/row_time.hpp"
+#include "recordings/source_watch.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Rows of the parts in which an arm comes, put side by side at the times of the first part.
+class SideBySide
+{
+public:
+  SideBySide(const std::vector<std::vector<std::size_t>>& parts, std::size_t joints, const VisitRows& visit)
+    : parts_(parts), waiting_(parts.size()), rows_(joints), visit_(visit)
+  {
+  }
+
+  void clear()
+  {
+    for (auto& rows : waiting_)
+    {
+      rows.clear();
+    }
+  }
+
+  /// False: the visitor has had enough.
+  bool add(std::size_t part, const std::vector<MotionRow>& rows)
+  {
+    waiting_[part].push_back(rows);
+    while (!waiting_[0].empty() && areReady(waiting_[0].front().front().time))
+    {
+      const std::vector<MotionRow> base = std::move(waiting_[0].front());
+      waiting_[0].pop_front();
+      place(0, base);
+      bool is_complete = true;
+      for (std::size_t other = 1; other < parts_.size() && is_complete; ++other)
+      {
+        is_complete = placeAt(other, base.front());
+      }
+      ++(is_complete ? complete_ : dropped_);
+      if (is_complete && !visit_(rows_))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::uint64_t complete() const { return complete_; }
+  std::uint64_t dropped() const { return dropped_; }
+
+private:
+  /// All other parts have a row that is not before `time`.
+  bool areReady(double time) const
+  {
+    return std::all_of(waiting_.begin() + 1, waiting_.end(),
+                       [&](const auto& rows) { return !rows.empty() && rows.back().front().time >= time; });
+  }
+
+  void place(std::size_t part, const std::vector<MotionRow>& rows)
+  {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      rows_[parts_[part][i]] = rows[i];
+    }
+  }
+
+  /// On the line between the rows of `part` before and after. False: they are too far from each other.
+  bool placeAt(std::size_t part, const MotionRow& base)
+  {
+    auto& rows = waiting_[part];
+    while (rows.size() > 1 && rows[1].front().time <= base.time)
+    {
+      rows.pop_front();
+    }
+    if (rows.front().front().time > base.time)
+    {
+      return false;
+    }
+    std::vector<MotionRow> between = rows.front();
+    const double step = rows.size() > 1 ? rows[1].front().time - between.front().time : 0.0;
+    const double passed = base.time - between.front().time;
+    if (passed > 0.0 && (step <= 0.0 || step > MotionDifferentiator::MAX_GAP))
+    {
+      return false;
+    }
+    for (std::size_t i = 0; i < between.size() && passed > 0.0; ++i)
+    {
+      const auto to = [&](double& from, double next) { from += passed / step * (next - from); };
+      const MotionRow& next = rows[1][i];
+      to(between[i].position, next.position);
+      to(between[i].current, next.current);
+      to(between[i].load, next.load);
+      to(between[i].motor_angle, next.motor_angle);
+      to(between[i].recorded_velocity, next.recorded_velocity);
+      between[i].time = base.time;
+      between[i].received = base.received;
+    }
+    place(part, between);
+    return true;
+  }
+
+  const std::vector<std::vector<std::size_t>>& parts_;
+  std::vector<std::deque<std::vector<MotionRow>>> waiting_;
+  std::vector<MotionRow> rows_;
+  const VisitRows& visit_;
+  std::uint64_t complete_{};
+  std::uint64_t dropped_{};
+};
+
+/// What the messages of a topic gave of the joints, for the text where that was nothing.
+class SeenNames
+{
+public:
+  explicit SeenNames(const std::vector<std::string>& joints) : joints_(joints), incomplete_(joints.size()) {}
+
+  void add(const sensor_msgs::JointState& state)
+  {
+    for (const std::string& name : state.name)
+    {
+      if (std::find(names_.begin(), names_.end(), name) == names_.end() && names_.size() < MOST)
+      {
+        names_.push_back(name);
+      }
+    }
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      const std::size_t place = placeOf(state, joints_[i]);
+      if (place < state.name.size())
+      {
+        Incomplete& joint = incomplete_[i];
+        joint.angle = joint.angle || place < state.position.size();
+        joint.effort = joint.effort || place < state.effort.size();
+        joint.finite = joint.finite || (place < std::min(state.position.size(), state.effort.size()) &&
+                                        std::isfinite(state.position[place]) && std::isfinite(state.effort[place]));
+      }
+    }
+  }
+
+  std::string text(const std::string& topic) const
+  {
+    std::vector<std::string> missing;
+    std::vector<std::string> without_angle;
+    std::vector<std::string> without_effort;
+    std::vector<std::string> not_finite;
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      const Incomplete& joint = incomplete_[i];
+      const bool named = std::find(names_.begin(), names_.end(), joints_[i]) != names_.end();
+      auto& list = !named ? missing : !joint.angle ? without_angle : !joint.effort ? without_effort : not_finite;
+      if (!joint.finite)
+      {
+        list.push_back(joints_[i]);
+      }
+    }
+    std::string text = topic + " never contains angle and effort of ";
+    std::vector<std::string> all = missing;
+    all.insert(all.end(), without_angle.begin(), without_angle.end());
+    all.insert(all.end(), without_effort.begin(), without_effort.end());
+    all.insert(all.end(), not_finite.begin(), not_finite.end());
+    std::vector<std::string> found = names_;
+    std::sort(found.begin(), found.end());
+    text += joined(all) + "; joints found: " + (found.empty() ? "none" : joined(found));
+    text += without_angle.empty() ? "" : "; their position is empty";
+    text += without_effort.empty() ? "" : "; their effort is empty: the motors' currents have to be recorded as effort";
+    text += not_finite.empty() ? "" : "; what they give is not finite (NaN)";
+    for (const JointAffixes& affixes : findAffixes(joints_, names_))
+    {
+      text += affixes.empty() ? "" : "; given" + optionsOf(affixes) + " they are found";
+    }
+    return text;
+  }
+
+private:
+  static constexpr std::size_t MOST = 100;
+
+  struct Incomplete
+  {
+    bool angle{};
+    bool effort{};
+    bool finite{};
+  };
+
+  const std::vector<std::string>& joints_;
+  std::vector<std::string> names_;
+  std::vector<Incomplete> incomplete_;
+};
+
+/// One part of the arm on its way into rows.
+struct Part
+{
+  std::vector<std::string> names;
+  std::unique_ptr<MessageRows> rows;
+};
+
+std::string counted(std::uint64_t rows, const std::string& text)
+{
+  return std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;
+}
+
+class MessageMotion
+{
+public:
+  MessageMotion(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names,
+                const VisitRows& visit)
+    : recording_(recording)
+    , source_(source)
+    , names_(names)
+    , seen_(names)
+    , layout_(readLayout(recording, source, names))
+    , side_by_side_(layout_.parts, names.size(), visit)
+  {
+    for (std::size_t i = 0; i < layout_.parts.size(); ++i)
+    {
+      Part part;
+      for (const std::size_t joint : layout_.parts[i])
+      {
+        part.names.push_back(names[joint]);
+      }
+      part.rows = std::make_unique<MessageRows>(source, part.names, layout_,
+                                                [this, i](const StampedRows& rows) { return take(i, rows); });
+      parts_.push_back(std::move(part));
+    }
+  }
+
+  MotionCount read(const std::function<void(double)>& progress)
+  {
+    bool more = true;
+    recording_.visit(
+        topics(), true,
+        [&](const RecordedMessage& message)
+        {
+          if (message.state != nullptr && message.topic == source_.topic && !start_)
+          {
+            seen_.add(*message.state);
+          }
+          for (Part& part : parts_)
+          {
+            more = more && part.rows->read(message);
+          }
+          return more;
+        },
+        progress);
+    for (Part& part : parts_)
+    {
+      more = more && part.rows->flush();
+    }
+    std::size_t joints = 0;
+    for (const Part& part : parts_)
+    {
+      joints += part.names.size();
+    }
+    if (!start_ || joints < names_.size())
+    {
+      throw InputError(seen_.text(source_.topic));
+    }
+    finish();
+    if (count_.rows == 0)
+    {
+      throw InputError(source_.topic + ": the messages that name a part of the joints each are never less than " +
+                       numberText(MotionDifferentiator::MAX_GAP) + " s apart: " + joined(names_));
+    }
+    return count_;
+  }
+
+private:
+  std::vector<std::string> topics() const
+  {
+    const auto& known = recording_.topics();
+    const auto load = known.find(source_.load_topic);
+    return load == known.end() || source_.load_topic == source_.topic ?
+               std::vector<std::string>{ source_.topic } :
+               std::vector<std::string>{ source_.topic, source_.load_topic };
+  }
+
+  bool take(std::size_t part, const StampedRows& held)
+  {
+    if (!start_)
+    {
+      start_ = count_.start = held.stamp;
+      count_.least_delay = count_.most_delay = held.delay();
+    }
+    std::vector<MotionRow> rows = held.rows;
+    const std::uint64_t rounds = time_.rounds();
+    const double time = time_.at(held.stamp);
+    if (time_.rounds() != rounds)
+    {
+      side_by_side_.clear();
+    }
+    for (MotionRow& row : rows)
+    {
+      row.time = time;
+      row.received = time_.received(held.recorded);
+    }
+    sources_[part].add(held.publisher, rows);
+    count_.duration = std::max(count_.duration, time);
+    count_.least_delay = std::min(count_.least_delay, held.delay());
+    count_.most_delay = std::max(count_.most_delay, held.delay());
+    return side_by_side_.add(part, rows);
+  }
+
+  void finish()
+  {
+    std::uint64_t without_time = 0;
+    std::uint64_t without_effort = 0;
+    std::uint64_t folds = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+    {
+      const MessageRows& rows = *parts_[i].rows;
+      count_.corrupt = i == 0 ? rows.corrupt() : std::max(count_.corrupt, rows.corrupt());
+      without_time += rows.withoutTime();
+      without_effort += rows.withoutEffort();
+      folds += rows.folds();
+      count_.refused_temperatures += rows.refusedTemperatures();
+      if (!count_.misfit.exists())
+      {
+        count_.misfit = { Reason::TWO_SOURCES, sources_[i].text() };
+      }
+    }
+    count_.rows = side_by_side_.complete();
+    count_.corrupt += side_by_side_.dropped() + without_effort;
+    const auto remark = [this](bool is, const std::string& text)
+    {
+      if (is)
+      {
+        count_.remarks.push_back(text);
+      }
+    };
+    remark(!recording_.remark().empty(), recording_.remark());
+    remark(without_time > 0, counted(without_time, "without a time (stamp 0, before there was one) left out"));
+    remark(
+        without_effort > 0,
+        counted(without_effort, "with effort 0 left out: a second source without values, or a source that had none"));
+    remark(folds > 0, foldsText(folds));
+    remark(time_.rounds() > 1, roundsText(time_.rounds()));
+    remark(parts_.size() > 1, "the joints come in " + std::to_string(parts_.size()) +
+                                  " messages: put side by side in time by lines between their rows");
+  }
+
+  RecordedMessages& recording_;
+  const MotionSource& source_;
+  const std::vector<std::string>& names_;
+  SeenNames seen_;
+  const TopicLayout layout_;
+  SideBySide side_by_side_;
+  std::vector<Part> parts_;
+  std::map<std::size_t, SourceWatch> sources_;
+  RowTime time_;
+  std::optional<Stamp> start_;
+  MotionCount count_;
+};
+}  // namespace
+
+MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitRows& visit,
+                              const std::function<void(double)>& progress)
+{
+  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
+  recording->requireStates(source.topic);
+  return MessageMotion(*recording, source, names, visit).read(progress);
+}
+}  // namespace hjt

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/message_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "messages/telemetry_messages.hpp"
+#include "tracking/plausible.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
+constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
+
+/// What no measurement gives: the efforts of all these joints exactly zero; of one joint all that it gives.
+bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
+{
+  const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
+  {
+    const std::size_t place = placeOf(message, name);
+    return place >= values.size() || values[place] == 0.0;
+  };
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name)
+                     {
+                       return is_zero(message.effort, name) && (names.size() > 1 || (is_zero(message.position, name) &&
+                                                                                     is_zero(message.velocity, name)));
+                     });
+}
+
+bool isVoid(const MotionRow& row)
+{
+  return row.position == 0.0 && row.current == 0.0 && !(std::abs(row.recorded_velocity) > 0.0);
+}
+
+/// Of a joint all that it gives turned to exactly zero, or the angles of all did: a source that had no values.
+bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
+{
+  constexpr std::size_t MANY = 3;
+  const auto is_at_zero = [](const MotionRow& row) { return row.position == 0.0; };
+  const auto all_at_zero = [&](const std::vector<MotionRow>& all)
+  { return all.size() >= MANY && std::all_of(all.begin(), all.end(), is_at_zero); };
+  bool is_void = all_at_zero(rows) && !all_at_zero(before);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    is_void = is_void || (isVoid(rows[i]) && before[i].position != 0.0 && before[i].current != 0.0);
+  }
+  return is_void;
+}
+}  // namespace
+
+TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names)
+{
+  TopicLayout layout;
+  bool is_whole = false;
+  std::set<std::vector<std::size_t>> parts;
+  recording.visit(
+      { source.topic }, false,
+      [&](const RecordedMessage& message)
+      {
+        if (message.state == nullptr)
+        {
+          return true;
+        }
+        std::vector<std::size_t> part;
+        for (std::size_t i = 0; i < names.size(); ++i)
+        {
+          if (placeOf(*message.state, names[i]) < message.state->name.size())
+          {
+            part.push_back(i);
+          }
+        }
+        if (part.empty())
+        {
+          return true;
+        }
+        layout.has_stamps = layout.has_stamps || !message.state->header.stamp.isZero();
+        layout.has_efforts = layout.has_efforts || !isWithoutEffort(*message.state, names);
+        is_whole = is_whole || part.size() == names.size();
+        parts.insert(part);
+        return !(is_whole && layout.has_stamps && layout.has_efforts);
+      },
+      [](double) {});
+  // Joints that come in several parts count in the largest.
+  std::vector<std::vector<std::size_t>> sorted(parts.begin(), parts.end());
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  std::set<std::size_t> taken;
+  for (const std::vector<std::size_t>& part : sorted)
+  {
+    if (std::none_of(part.begin(), part.end(), [&](std::size_t joint) { return taken.count(joint) > 0; }))
+    {
+      layout.parts.push_back(part);
+      taken.insert(part.begin(), part.end());
+    }
+  }
+  return layout;
+}
+
+MessageRows::MessageRows(const MotionSource& source, const std::vector<std::string>& names, const TopicLayout& layout,
+                         Visit visit)
+  : source_(source)
+  , layout_(layout)
+  , visit_(std::move(visit))
+  , joints_(names)
+  , names_(names.begin(), names.end())
+  , angles_(names.size())
+  , loads_(names.size())
+  , temperatures_(names.size())
+{
+}
+
+bool MessageRows::read(const RecordedMessage& message)
+{
+  if (message.temperature != nullptr)
+  {
+    for (std::size_t i = 0; i < names_.size(); ++i)
+    {
+      if (message.temperature->header.frame_id == names_[i].joint)
+      {
+        temperatures_[i].push(toSeconds(message.stamp()), message.temperature->temperature);
+      }
+    }
+    return true;
+  }
+  if (message.topic == source_.topic)
+  {
+    if (message.state == nullptr)
+    {
+      ++corrupt_;
+      return true;
+    }
+    return takeTelemetry(*message.state, message);
+  }
+  if (message.state != nullptr)
+  {
+    readLoad(*message.state, message.stamp());
+  }
+  return true;
+}
+
+bool MessageRows::flush()
+{
+  if (!waiting_)
+  {
+    return true;
+  }
+  StampedRows held = std::move(*waiting_);
+  waiting_.reset();
+  if (!held.agrees && seen_ > 1)
+  {
+    ++corrupt_;
+    return true;
+  }
+  for (std::size_t i = 0; i < names_.size(); ++i)
+  {
+    held.rows[i].temperature = temperatures_[i].at(toSeconds(held.stamp));
+  }
+  return visit_(held);
+}
+
+bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
+{
+  const double time = std::abs(toSeconds(b.recorded - a.recorded)) + SLACK;
+  bool agrees = std::abs(b.delay() - a.delay()) < CLOCK_STEP;
+  for (std::size_t i = 0; i < names_.size(); ++i)
+  {
+    agrees = agrees && std::abs(b.rows[i].position - a.rows[i].position) < FASTEST * time;
+  }
+  return agrees;
+}
+
+/// False: a joint lacks something, or what it gives cannot be.
+bool MessageRows::readRows(const sensor_msgs::JointState& message, std::vector<MotionRow>& rows)
+{
+  for (std::size_t i = 0; i < names_.size(); ++i)
+  {
+    const TelemetryStatus status = readTelemetry(message, names_[i], rows[i]);
+    rows[i].current *= source_.current_per_effort;
+    const std::size_t motor = placeOf(message, names_[i].motor);
+    if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())
+    {
+      rows[i].current = source_.current_per_motor_torque * message.effort[motor];
+    }
+    if (status != TelemetryStatus::FOUND || !isPlausibleEffort(rows[i].current))
+    {
+      return false;
+    }
+    rows[i].load = loads_[i];
+  }
+  return true;
+}
+
+bool MessageRows::takeTelemetry(const sensor_msgs::JointState& message, const RecordedMessage& recorded)
+{
+  const auto is_named = [&](const JointNames& names) { return placeOf(message, names.joint) < message.name.size(); };
+  if (std::none_of(names_.begin(), names_.end(), is_named))
+  {
+    return true;
+  }
+  StampedRows held;
+  held.rows.resize(names_.size());
+  if (!readRows(message, held.rows))
+  {
+    ++corrupt_;
+    return true;
+  }
+  if (layout_.has_stamps && message.header.stamp.isZero())
+  {
+    ++without_time_;
+    return true;
+  }
+  if ((layout_.has_efforts && isWithoutEffort(message, joints_)) || (last_ && isVoidAfter(last_->rows, held.rows)))
+  {
+    ++without_effort_;
+    return true;
+  }
+  held.stamp = recorded.stamp();
+  held.recorded = recorded.recorded;
+  held.publisher = recorded.publisher;
+  for (std::size_t i = 0; i < names_.size(); ++i)
+  {
+    held.rows[i].position = angles_[i].take(toSeconds(held.stamp), held.rows[i].position);
+  }
+  held.agrees = last_ && agree(*last_, held);
+  if (waiting_ && held.agrees)
+  {
+    waiting_->agrees = true;
+  }
+  last_ = held;
+  ++seen_;
+  const bool more = flush();
+  waiting_ = std::move(held);
+  return more;
+}
+
+void MessageRows::readLoad(const sensor_msgs::JointState& message, Stamp stamp)
+{
+  for (std::size_t i = 0; i < names_.size(); ++i)
+  {
+    const std::size_t place = placeOf(message, names_[i].joint);
+    if (place >= message.effort.size() || !isPlausibleEffort(message.effort[place]))
+    {
+      continue;
+    }
+    loads_[i] = message.effort[place];
+    if (waiting_ && stamp <= waiting_->stamp)
+    {
+      waiting_->rows[i].load = loads_[i];
+    }
+  }
+}
+
+std::uint64_t MessageRows::folds() const
+{
+  std::uint64_t folds = 0;
+  for (const UnfoldedAngle& angle : angles_)
+  {
+    folds += angle.folds();
+  }
+  return folds;
+}
+
+std::uint64_t MessageRows::refusedTemperatures() const
+{
+  std::uint64_t refused = 0;
+  for (const TemperatureRecord& temperatures : temperatures_)
+  {
+    refused += temperatures.refused();
+  }
+  return refused;
+}
+}  // namespace hjt

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "recordings/recorded_motion.hpp"
+
+namespace hjt
+{
+// The two kinds of recordings behind readMotion and readArmMotion; times as they are recorded.
+
+using VisitRows = std::function<bool(const std::vector<MotionRow>& rows)>;
+
+/// Messages: one row for each of `names`, all of one time.
+MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitRows& visit,
+                              const std::function<void(double)>& progress);
+
+/// A table: the joints of these numbers in its columns.
+MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,
+                            const std::function<void(double)>& progress);
+
+// Remarks of a reading.
+std::string foldsText(std::uint64_t folds);
+std::string roundsText(std::uint64_t rounds);
+
+/// The table has a load of that joint.
+bool tableRecordsLoad(const MotionSource& source);
+}  // namespace hjt

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/recording_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "arm/arm_configuration.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/recorded_arms.hpp"
+#include "tracking/common_friction.hpp"
+#include "tracking/effort.hpp"
+#include "tracking/joint_evidence.hpp"
+#include "tracking/verdict.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Taken where no arm explains the currents clearly better than others.
+constexpr const char* DEFAULT_ARM = "ur5";
+
+RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
+{
+  RecordingOptions own = options;
+  own.arm = name;
+  own.load = LOAD_OF_ARM;
+  own.affixes = arm.affixes;
+  return own;
+}
+
+/// What each arm's load leaves of the currents, in every unit that the efforts can be of; all from one reading.
+std::vector<ArmFit> rankArms(const RecordingOptions& options, const CheckedArm& arm)
+{
+  constexpr double ENOUGH = 120.0;  // [s]
+  const bool unit_is_given = std::any_of(options.assignments.begin(), options.assignments.end(),
+                                         [](const auto& text) { return text.find("telemetry.effort") == 0; });
+  std::vector<ArmFit> fits;
+  for (const std::string& name : arm.fitting)
+  {
+    const RecordingOptions own = optionsFor(options, arm, name);
+    const ArmRecording recording(own);
+    RecordingFit fit(recording.parameters());
+    recording.read([](const std::vector<ArmJointRow>&) {}, fit, ENOUGH);
+    const EffortUnit configured = recording.parameters(0).telemetry.effort;
+    ArmFit best{ name, fit.loadRest(configured), configured };
+    for (const EffortUnit unit : { EffortUnit::CURRENT, EffortUnit::JOINT_TORQUE, EffortUnit::MOTOR_TORQUE })
+    {
+      const ArmFit other{ name, fit.loadRest(unit), unit };
+      constexpr double CLEARLY = 0.5;
+      best = !unit_is_given && other.rest.share() < CLEARLY * best.rest.share() ? other : best;
+    }
+    fits.push_back(best);
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const ArmFit& a, const ArmFit& b) { return a.rest.share() < b.rest.share(); });
+  return fits;
+}
+
+/// The best of the ranking where it explains the currents clearly better than the default.
+std::string choice(const CheckedArm& arm)
+{
+  constexpr double EXPLAINED = 0.35;
+  constexpr double CLEARLY = 0.8;
+  const auto preset =
+      std::find_if(arm.ranked.begin(), arm.ranked.end(), [](const ArmFit& fit) { return fit.arm == DEFAULT_ARM; });
+  if (preset == arm.ranked.end())
+  {
+    return arm.ranked.front().arm;
+  }
+  const ArmFit& best = arm.ranked.front();
+  return best.rest.share() < EXPLAINED && best.rest.share() < CLEARLY * preset->rest.share() ? best.arm : preset->arm;
+}
+
+void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters, CheckedArm& arm)
+{
+  arm.stamps = fit.stampFactor();
+  arm.effort = fit.effort();
+  arm.configured_effort = parameters.front().telemetry.effort;
+  arm.rest = fit.loadRest(arm.configured_effort);
+  arm.temperature = parameters.front().input.temperature;
+  arm.findings = fit.ofArm();
+  const std::vector<Misfit> misfits = fit.whyNotJudged();
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    CheckedJoint& joint = arm.joints[i];
+    joint.reach = fit.reach(i);
+    joint.gain = parameters[i].telemetry.torque_per_current;
+    joint.has_velocity = fit.hasVelocity(i);
+    joint.time_factor = fit.timeFit(i).factor();
+    joint.lag = fit.timeFit(i).lag();
+    joint.findings = fit.ofJoint(i);
+    joint.misfit = misfits[i];
+  }
+}
+
+/// The joints beside their twins, as `joint_twin compare` puts them.
+class Judging
+{
+public:
+  Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
+    : parameters_(parameters), differentiators_(parameters.size())
+  {
+    for (const Parameters& of : parameters)
+    {
+      joints_.push_back(std::make_unique<JointEvidence>(of, load));
+    }
+  }
+
+  void add(std::size_t joint, const MotionRow& row)
+  {
+    differentiators_[joint].push(row);
+    forward(joint, false);
+  }
+
+  /// Takes the misfits as the reading before left them.
+  void judgeAll(double duration, CheckedArm& arm)
+  {
+    std::vector<MeasuredFriction> frictions;
+    const auto context = [&](std::size_t i, double factor) {
+      return JointContext{ OwnReference(), false, duration, factor, arm.joints[i].misfit };
+    };
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      forward(i, true);
+      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0)));
+    }
+    const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      arm.joints[i].verdict = judge(*joints_[i], parameters_[i], context(i, common.factors[i]));
+    }
+  }
+
+private:
+  void forward(std::size_t joint, bool at_end)
+  {
+    while (const std::optional<MotionSample> sample = differentiators_[joint].pop(at_end))
+    {
+      joints_[joint]->update(*sample);
+    }
+  }
+
+  const std::vector<Parameters>& parameters_;
+  std::vector<MotionDifferentiator> differentiators_;
+  std::vector<std::unique_ptr<JointEvidence>> joints_;
+};
+
+void addJoint(const std::string& name, const std::string& in_messages, CheckedArm& arm)
+{
+  CheckedJoint& joint = arm.joints.emplace_back();
+  joint.name = name;
+  joint.joint = in_messages;
+}
+
+void readArm(const RecordingOptions& options, CheckedArm& arm)
+{
+  const RecordingOptions own = optionsFor(options, arm, arm.taken);
+  const ArmRecording recording(own);
+  StreamTiming timing;
+  RecordingFit fit(recording.parameters());
+  Judging judging(recording.parameters(), LoadOrigin::ARM);
+  arm.found = recording.read(
+      [&](const std::vector<ArmJointRow>& rows)
+      {
+        timing.add(rows.front().row.time, rows.front().row.received);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          judging.add(i, rows[i].row);
+        }
+      },
+      fit);
+  arm.timing = timing.report();
+  arm.joints.clear();
+  for (const ArmJoint& joint : recording.joints())
+  {
+    addJoint(joint.short_name, arm.affixes(joint.name), arm);
+    arm.joints.back().stated_gain = recording.statedGains()[arm.joints.size() - 1];
+  }
+  takeFit(fit, recording.parameters(), arm);
+  judging.judgeAll(arm.found.duration, arm);
+}
+
+/// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
+void readJoints(const RecordingOptions& options, CheckedArm& arm)
+{
+  const std::vector<std::string>& names = arm.joints_at_hand;
+  if (names.empty())
+  {
+    return;
+  }
+  const std::vector<Parameters> parameters(names.size(), loadParameters(options));
+  const MotionDriven twin(parameters.front());
+  StreamTiming timing;
+  RecordingFit fit(parameters);
+  Judging judging(parameters, LoadOrigin::CONFIGURED);
+  std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmLoad::HALF_WIDTH));
+  std::vector<MotionSample> samples(names.size());
+  const std::vector<double> unknown(names.size(), std::nan(""));
+  const auto forward = [&](bool at_end)
+  {
+    while (std::optional<MotionSample> first = differentiators[0].pop(at_end))
+    {
+      samples[0] = *first;
+      for (std::size_t i = 1; i < names.size(); ++i)
+      {
+        samples[i] = differentiators[i].pop(at_end).value_or(samples[i]);
+      }
+      fit.update(samples, unknown);
+      for (std::size_t i = 0; i < names.size(); ++i)
+      {
+        samples[i].load = twin.modelledLoad(samples[i]);
+        judging.add(i, samples[i]);
+      }
+    }
+  };
+  static_cast<MotionCount&>(arm.found) = readArmMotion(
+      motionSource(options), names,
+      [&](const std::vector<MotionRow>& rows)
+      {
+        timing.add(rows.front().time, rows.front().received);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          MotionRow row = rows[i];
+          row.current *= currentPerEffort(parameters.front());
+          differentiators[i].push(row);
+        }
+        forward(false);
+        return !options.watch.stopped();
+      },
+      options.watch.progress("reading"));
+  forward(true);
+  arm.found.refused = differentiators[0].refused();
+  arm.found.gaps = differentiators[0].gaps();
+  arm.found.has_load = recordsLoad(motionSource(options));
+  arm.timing = timing.report();
+  for (const std::string& name : names)
+  {
+    addJoint(name, name, arm);
+    arm.joints.back().stated_gain = std::nan("");
+  }
+  fit.refuse(arm.found.misfit);
+  takeFit(fit, parameters, arm);
+  judging.judgeAll(arm.found.duration, arm);
+}
+
+bool hasFinding(const CheckedArm& arm, const std::string& kind)
+{
+  return std::any_of(arm.findings.begin(), arm.findings.end(),
+                     [&](const RecordingFinding& finding) { return finding.kind == kind; });
+}
+
+/// A number that a person would write, within what is known of it.
+std::string plainFactor(const FittedFactor& factor)
+{
+  int digits = 1;
+  const double slack = std::max(0.01 * factor.value, 3.0 * factor.uncertainty);
+  while (digits < 4 && std::abs(decimalNumber(roundedText(factor.value, digits)).value() - factor.value) > slack)
+  {
+    ++digits;
+  }
+  return roundedText(factor.value, digits);
+}
+
+/// Reads the recording again with what would mend its findings.
+void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
+{
+  RecordingOptions changed = options;
+  TriedRemedy remedy;
+  std::string kind;
+  if (hasFinding(arm, "stamps"))
+  {
+    kind = "stamps";
+    const std::string factor = plainFactor({ options.time_scale * arm.stamps.value, arm.stamps.uncertainty });
+    changed.time_scale = *decimalNumber(factor);
+    remedy.options = " --time-scale " + factor;
+  }
+  else if (hasFinding(arm, "effort_unit"))
+  {
+    kind = "effort_unit";
+    const std::string assignment = std::string("telemetry.effort=") + effortKeyword(arm.effort.unit);
+    changed.assignments.push_back(assignment);
+    remedy.options = " --set " + assignment;
+  }
+  else
+  {
+    return;
+  }
+  CheckedArm mended = arm;
+  mended.joints.clear();
+  readArm(changed, mended);
+  remedy.before = arm.rest.share();
+  remedy.after = mended.rest.share();
+  remedy.helps = !hasFinding(mended, kind) && remedy.after < remedy.before;
+  arm.tried.push_back(remedy);
+}
+}  // namespace
+
+bool RecordingCheck::isUsable() const
+{
+  return std::any_of(arms.begin(), arms.end(),
+                     [](const CheckedArm& arm)
+                     {
+                       return std::any_of(arm.joints.begin(), arm.joints.end(),
+                                          [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
+                     });
+}
+
+RecordingCheck checkRecording(const RecordingOptions& options)
+{
+  RecordingCheck check;
+  check.contents = readCheckedContents(motionSource(options));
+  check.arms = findArms(options, check.contents);
+  for (CheckedArm& arm : check.arms)
+  {
+    if (arm.taken.empty() && !arm.fitting.empty())
+    {
+      arm.ranked = rankArms(options, arm);
+      arm.taken = choice(arm);
+    }
+    if (arm.taken.empty())
+    {
+      readJoints(options, arm);
+    }
+    else
+    {
+      readArm(options, arm);
+      tryRemedies(options, arm);
+    }
+  }
+  return check;
+}
+}  // namespace hjt

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tracking/motion_differentiator.hpp"
+
+namespace hjt
+{
+/// Do several sources give the same joints in turn?
+///
+/// By the names of their nodes where these are recorded; else by the angles: a row that is nearer to the last but one
+/// than to the last, in more than LEAST_SHARE of the rows, comes from another source than its neighbours.
+class SourceWatch
+{
+public:
+  void add(const std::string& publisher, const std::vector<MotionRow>& rows)
+  {
+    if (!publisher.empty())
+    {
+      ++publishers_[publisher];
+      switches_ += !last_publisher_.empty() && publisher != last_publisher_ ? 1 : 0;
+      last_publisher_ = publisher;
+    }
+    if (seen_ >= 2)
+    {
+      const double to_last = distance(rows, last_[(seen_ - 1) % 2]);
+      const double to_other = distance(rows, last_[seen_ % 2]);
+      moves_ += to_last > LEAST_STEP || to_other > LEAST_STEP ? 1 : 0;
+      returns_ += to_last > LEAST_STEP && to_other < NEARER * to_last ? 1 : 0;
+    }
+    last_[seen_++ % 2] = rows;
+  }
+
+  /// As a clause; empty: one source.
+  std::string text() const
+  {
+    if (publishers_.size() > 1 && switches_ >= LEAST_RETURNS)
+    {
+      std::string names;
+      for (const auto& [name, messages] : publishers_)
+      {
+        names += (names.empty() ? "" : " and ") + name;
+      }
+      return "several sources give these joints in turn on this topic: the nodes " + names;
+    }
+    const bool returns =
+        returns_ >= LEAST_RETURNS && static_cast<double>(returns_) > LEAST_SHARE * static_cast<double>(moves_);
+    return returns ? "two sources give these joints in turn on this topic: in " + std::to_string(returns_) + " of " +
+                         std::to_string(seen_) + " rows the angles jump to and fro" :
+                     std::string();
+  }
+
+private:
+  static constexpr double LEAST_STEP = 5e-3;  // more than the noise of an angle [rad]
+  static constexpr double NEARER = 0.3;       // [-]
+  static constexpr double LEAST_SHARE = 0.05;
+  static constexpr std::uint64_t LEAST_RETURNS = 20;
+
+  static double distance(const std::vector<MotionRow>& a, const std::vector<MotionRow>& b)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+    {
+      sum += std::abs(a[i].position - b[i].position);
+    }
+    return sum;
+  }
+
+  std::map<std::string, std::uint64_t> publishers_;
+  std::string last_publisher_;
+  std::uint64_t switches_{};
+  std::array<std::vector<MotionRow>, 2> last_;
+  std::uint64_t seen_{};
+  std::uint64_t moves_{};
+  std::uint64_t returns_{};
+};
+}  // namespace hjt

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/stated_gains.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/median.hpp"
+#include "base/number_table.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr std::size_t JOINTS = 6;
+constexpr std::size_t COLUMNS = 4 * JOINTS;
+
+/// In this order, each of all joints.
+enum Column : std::size_t
+{
+  CURRENT = 0,
+  MOMENT = JOINTS,
+  TARGET_SPEED = 2 * JOINTS,
+  SPEED = 3 * JOINTS
+};
+
+NumberTable<COLUMNS>::Names columnNames()
+{
+  NumberTable<COLUMNS>::Names names;
+  for (std::size_t joint = 0; joint < JOINTS; ++joint)
+  {
+    const std::string number = std::to_string(joint);
+    names[CURRENT + joint] = "target_current_" + number;
+    names[MOMENT + joint] = "target_moment_" + number;
+    names[TARGET_SPEED + joint] = "target_qd_" + number;
+    names[SPEED + joint] = "actual_qd_" + number;
+  }
+  return names;
+}
+
+/// By the target speeds where they are recorded, else by the measured ones.
+bool isAtRest(const std::array<double, COLUMNS>& row)
+{
+  constexpr double STILL = 1e-3;  // [rad/s]
+  for (std::size_t joint = 0; joint < JOINTS; ++joint)
+  {
+    const double target = row[TARGET_SPEED + joint];
+    if (!(std::abs(std::isnan(target) ? row[SPEED + joint] : target) < STILL))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The middle one, if the ratios agree; NaN: they do not, or are of too few of the rows at rest.
+double agreedRatio(std::vector<double>& ratios, std::size_t rows)
+{
+  constexpr std::size_t LEAST = 10;
+  constexpr std::size_t SHARE = 5;  // a joint with load at rest has it in each; others have one as a motion begins
+  constexpr double AGREE = 0.005;   // a controller computes both with the same numbers [-]
+  if (ratios.size() < std::max(LEAST, rows / SHARE))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double middle = upperMedian(ratios.begin(), ratios.end());
+  for (double& ratio : ratios)
+  {
+    ratio = std::abs(ratio - middle);
+  }
+  return middle > 0.0 && upperMedian(ratios.begin(), ratios.end()) < AGREE * middle ?
+             middle :
+             std::numeric_limits<double>::quiet_NaN();
+}
+}  // namespace
+
+std::vector<double> readStatedGains(const MotionSource& source, std::size_t joints)
+{
+  constexpr int ROWS = 50000;             // minutes at any rate
+  constexpr double LEAST_CURRENT = 0.01;  // its digits would count otherwise [A]
+  constexpr double WIDEST = 100.0;        // beyond, the columns are not what they are named [N.m/A]
+  std::vector<double> gains(joints, std::numeric_limits<double>::quiet_NaN());
+  if (!isCsv(source) || joints != JOINTS)
+  {
+    return gains;
+  }
+  NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS);
+  if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
+  {
+    return gains;
+  }
+  table.allowCutOff();
+  std::array<double, COLUMNS> row;
+  row.fill(std::numeric_limits<double>::quiet_NaN());
+  std::array<std::vector<double>, JOINTS> ratios;
+  std::size_t at_rest = 0;
+  for (int i = 0; i < ROWS && table.read(row); ++i)
+  {
+    if (!isAtRest(row))
+    {
+      continue;
+    }
+    ++at_rest;
+    for (std::size_t joint = 0; joint < JOINTS; ++joint)
+    {
+      const double ratio = row[MOMENT + joint] / row[CURRENT + joint];
+      if (std::abs(row[CURRENT + joint]) > LEAST_CURRENT && std::abs(ratio) < WIDEST)
+      {
+        ratios[joint].push_back(ratio);
+      }
+    }
+  }
+  for (std::size_t joint = 0; joint < JOINTS; ++joint)
+  {
+    gains[joint] = agreedRatio(ratios[joint], at_rest);
+  }
+  return gains;
+}
+}  // namespace hjt

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/number_table.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/motion_readers.hpp"
+#include "recordings/row_time.hpp"
+#include "tracking/held_values.hpp"
+#include "tracking/unfolded_angle.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr std::size_t JOINTS = 6;
+
+/// Of one joint; the first two have to be there.
+enum Quantity : std::size_t
+{
+  ANGLE,
+  CURRENT,
+  MOMENT,
+  VELOCITY,
+  TEMPERATURE,
+  QUANTITIES
+};
+
+constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_",
+                                                     "joint_temperatures_" };
+
+/// Columns of some joints of a controller's table. `Count` of them.
+template <std::size_t Count>
+class JointTable
+{
+public:
+  static constexpr std::size_t COLUMNS = 1 + QUANTITIES * Count;
+
+  JointTable(const std::string& path, const std::vector<int>& numbers)
+    // A value that is no number spoils its row, not the file.
+    : table_(path, names(numbers), COLUMNS - 1 - 2 * Count, COLUMNS)
+  {
+    table_.allowCutOff();
+    values_.fill(std::nan(""));
+    std::fill_n(values_.begin() + column(MOMENT, 0), Count, 0.0);
+  }
+
+  bool read() { return table_.read(values_); }
+  double time() const { return values_[0]; }
+  double value(Quantity quantity, std::size_t joint) const { return values_[column(quantity, joint)]; }
+  bool has(Quantity quantity, std::size_t joint) const { return table_.hasColumn(column(quantity, joint)); }
+  std::string place() const { return table_.place(); }
+  bool wasCutOff() const { return table_.wasCutOff(); }
+
+  bool isWhole() const
+  {
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
+  }
+
+  bool isAllZero() const { return areZero(ANGLE, MOMENT); }
+  bool isWithoutCurrent() const { return areZero(CURRENT, MOMENT); }
+
+private:
+  bool areZero(Quantity first, Quantity end) const
+  {
+    const auto is_zero = [](double value) { return value == 0.0; };
+    return std::all_of(values_.begin() + column(first, 0), values_.begin() + column(end, 0), is_zero);
+  }
+
+  static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * Count + joint; }
+
+  static typename NumberTable<COLUMNS>::Names names(const std::vector<int>& numbers)
+  {
+    typename NumberTable<COLUMNS>::Names names{ "timestamp" };
+    for (std::size_t joint = 0; joint < Count; ++joint)
+    {
+      for (std::size_t quantity = 0; quantity < QUANTITIES; ++quantity)
+      {
+        names[column(quantity, joint)] = NAMES[quantity] + std::to_string(numbers[joint]);
+      }
+    }
+    return names;
+  }
+
+  NumberTable<COLUMNS> table_;
+  std::array<double, COLUMNS> values_{};
+};
+
+/// False of a motion that was made up without currents: its rows at zero are no failed reading.
+template <std::size_t Count>
+bool recordsCurrent(const std::string& path, const std::vector<int>& numbers)
+{
+  JointTable<Count> table(path, numbers);
+  while (table.read())
+  {
+    if (!table.isWithoutCurrent())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+template <std::size_t Count>
+class TableMotion
+{
+public:
+  TableMotion(const MotionSource& source, const std::vector<int>& numbers)
+    : source_(source)
+    , numbers_(numbers)
+    , table_(source.path, numbers)
+    , angles_(Count)
+    , rows_(Count)
+    , temperatures_(Count)
+  {
+  }
+
+  MotionCount read(const VisitRows& visit)
+  {
+    const bool zero_is_failure = Count > 1 && recordsCurrent<Count>(source_.path, numbers_);
+    bool more = true;
+    while (more && table_.read())
+    {
+      if (!table_.isWhole() || (zero_is_failure && table_.isAllZero()))
+      {
+        ++count_.corrupt;
+        continue;
+      }
+      more = take(visit);
+    }
+    if (count_.rows == 0)
+    {
+      throw InputError(source_.path + " has no rows" +
+                       (count_.corrupt == 0 ? std::string() :
+                                              "; " + std::to_string(count_.corrupt) +
+                                                  " rows hold no finite number in a column of time, angle or current"));
+    }
+    finish();
+    return count_;
+  }
+
+private:
+  bool take(const VisitRows& visit)
+  {
+    const Stamp stamp = std::llround(1e9 * table_.time());
+    if (count_.rows++ == 0)
+    {
+      count_.start = stamp;
+      first_ = table_.time();
+    }
+    // Differences of the numbers themselves where there is one round: as they stand in the file.
+    const double by_stamps = times_.at(stamp);
+    const double time = times_.rounds() == 1 ? table_.time() - first_ : by_stamps;
+    count_.duration = std::max(count_.duration, time);
+    for (std::size_t i = 0; i < Count; ++i)
+    {
+      rows_[i] = { time, angles_[i].take(time, table_.value(ANGLE, i)),
+                   source_.current_per_effort * table_.value(CURRENT, i), table_.value(MOMENT, i) };
+      rows_[i].received = time;
+      rows_[i].recorded_velocity = table_.value(VELOCITY, i);
+      if (table_.has(TEMPERATURE, i))
+      {
+        temperatures_[i].push(time, table_.value(TEMPERATURE, i));
+        rows_[i].temperature = temperatures_[i].at(time);
+      }
+    }
+    return visit(rows_);
+  }
+
+  void finish()
+  {
+    std::uint64_t folds = 0;
+    for (std::size_t i = 0; i < Count; ++i)
+    {
+      folds += angles_[i].folds();
+      count_.refused_temperatures += temperatures_[i].refused();
+    }
+    if (table_.wasCutOff())
+    {
+      count_.remarks.push_back("the last line is cut off and left out (" + table_.place() + ")");
+    }
+    if (folds > 0)
+    {
+      count_.remarks.push_back(foldsText(folds));
+    }
+    if (times_.rounds() > 1)
+    {
+      count_.remarks.push_back(roundsText(times_.rounds()));
+    }
+  }
+
+  const MotionSource& source_;
+  const std::vector<int>& numbers_;
+  JointTable<Count> table_;
+  std::vector<UnfoldedAngle> angles_;
+  std::vector<MotionRow> rows_;
+  std::vector<TemperatureRecord> temperatures_;
+  RowTime times_;
+  double first_{};
+  MotionCount count_;
+};
+}  // namespace
+
+std::string foldsText(std::uint64_t folds)
+{
+  return "angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi";
+}
+
+std::string roundsText(std::uint64_t rounds)
+{
+  return "stamps jump back or by days " + std::to_string(rounds - 1) +
+         " times, as of a recording played in a loop: each of " + std::to_string(rounds) + " rounds is read for itself";
+}
+
+MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,
+                            const std::function<void(double)>& progress)
+{
+  if (numbers.size() != 1 && numbers.size() != JOINTS)
+  {
+    throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(JOINTS) +
+                     " joints, the arm has " + std::to_string(numbers.size()));
+  }
+  const MotionCount count = numbers.size() == 1 ? TableMotion<1>(source, numbers).read(visit) :
+                                                  TableMotion<JOINTS>(source, numbers).read(visit);
+  progress(1.0);
+  return count;
+}
+
+bool tableRecordsLoad(const MotionSource& source)
+{
+  const CsvRows rows(source.path);  // what is missing is for the reader to say
+  const std::string name = NAMES[MOMENT] + std::to_string(source.csv_joint);
+  return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
+}
+}  // namespace hjt

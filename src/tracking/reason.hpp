@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace hjt
+{
+/// What a verdict rests on, or why there is none. Numbers and names are those of Verdict.msg.
+enum class Reason : std::uint8_t
+{
+  SOUND = 0,                 ///< judged: as in a sound joint
+  FRICTION = 1,              ///< judged: the friction is not that of a sound joint
+  TORSION = 2,               ///< judged: the torsion is not that of a sound drive
+  SIGNALS = 3,               ///< judged: the signals' indicators are not those of a sound drive
+  SOLVER_FAILED = 4,         ///< the twin found no solution: its last good state is held
+  NO_STEADY_MOTION = 5,      ///< the joint never moves steadily for long enough
+  ONE_DIRECTION = 6,         ///< it moves one way only and no load is known: friction and load cannot be separated
+  LOAD_UNKNOWN = 7,          ///< a load is expected and none came
+  LOAD_WRONG = 8,            ///< the currents do not fit the load
+  CONTACT = 9,               ///< something touched the arm
+  EFFORT_NOT_CURRENT = 10,   ///< the effort is not the motor's current
+  EFFORT_TOO_LARGE = 11,     ///< the effort is several times the current that the motion takes: its unit or gain
+  COMMON_FRICTION = 12,      ///< the friction of all joints differs by more than temperature makes
+  TELEMETRY_UNSETTLED = 13,  ///< it is not known yet whether angles and efforts fit
+  ROW_RATE = 14,             ///< the rows come too rarely
+  STAMPS = 15,               ///< angles and velocities are of another time than the stamps
+  ANGLE_UNIT = 16,           ///< the angles are not in rad
+  EFFORT_UNIT = 17,          ///< the effort is of another unit than configured
+  EFFORT_CONSTANT = 18,      ///< the effort never changes
+  VELOCITY_SIGN = 19,        ///< angle and velocity are of opposite sign
+  VELOCITY_SCALE = 20,       ///< the velocity is a multiple of the angle's change
+  VELOCITY_LAG = 21,         ///< angle and velocity are of different times
+  NO_MOTOR_ANGLE = 22,       ///< torsion: one angle a joint
+  LOAD_CONSTANT = 23,        ///< torsion: the load hardly varies
+  TOO_FEW_WINDOWS = 24,      ///< signals: fewer windows than a verdict takes
+  NO_REFERENCE = 25,         ///< signals: the reference knows none of the operating points
+  TOO_SHORT = 26,            ///< too few rows: to measure the friction, or to learn the signals without a reference
+  TWO_SOURCES = 27,          ///< several sources give the same joints in turn
+  GEAR_RATIO = 28,           ///< motor and joint do not turn by the configured gear's ratio
+  AT_REST = 29,              ///< the joint does not move
+  ONE_SPEED = 30,            ///< it moves at one speed only: how sure its friction is cannot be told
+  NO_FRICTION = 31,          ///< the effort holds no friction: a modelled or commanded torque
+  LESS_THAN_FAULTS = 32,     ///< less friction than any fault leaves: led by hand, held, another gain or ratio
+  FRICTION_SCATTER = 33,     ///< the rows scatter too much to know the friction: the load is another
+  TORSION_NO_DRIVE = 34      ///< torsion: no fault makes it so large or small; load or angles are not this joint's
+};
+constexpr std::size_t REASON_COUNT = 35;
+
+const char* reasonName(Reason reason) noexcept;  ///< "ONE_DIRECTION"
+
+/// Why nothing can be judged of a joint.
+struct Misfit
+{
+  Reason reason{};
+  std::string clause;  ///< for people, without a full stop; empty: it fits
+
+  bool exists() const { return !clause.empty(); }
+};
+}  // namespace hjt

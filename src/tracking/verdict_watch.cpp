@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/verdict_watch.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace hjt
+{
+void VerdictWatch::setMisfit(const Misfit& misfit, bool settled)
+{
+  misfit_ = misfit;
+  settled_ = settled;
+}
+
+JointContext VerdictWatch::context(double arm_friction) const
+{
+  return { OwnReference(), is_identified_, 0.0, arm_friction, misfit_ };
+}
+
+MeasuredFriction VerdictWatch::measuredFriction() const
+{
+  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0));
+}
+
+void VerdictWatch::judge(double arm_friction)
+{
+  const MotionReach& reach = tracker_.evidence().reach();
+  const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
+  Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction));
+  const bool is_open = !verdict.isJudged() && confirmed_.isJudged() && !whyNotJudged() && !is_new;
+  const bool is_no_worse = severityOf(verdict.level) <= severityOf(confirmed_.level);
+  if (!is_open && (is_new || is_no_worse || reach.end - confirmed_at_ >= CONFIRMED_AFTER))
+  {
+    confirmed_ = std::move(verdict);
+    confirmed_at_ = reach.end;
+  }
+  if (reach.end - reach.begin > JUDGED_SPAN)
+  {
+    tracker_.forgetEvidence();
+  }
+}
+
+std::optional<Misfit> VerdictWatch::whyNotJudged() const
+{
+  if (misfit_.exists())
+  {
+    return misfit_;
+  }
+  if (!tracker_.isLoadKnown())
+  {
+    return Misfit{ Reason::LOAD_UNKNOWN, "the load is unknown" };
+  }
+  const JointEvidence& evidence = tracker_.evidence();
+  return evidence.isTouched() ? std::make_optional(Misfit{ Reason::CONTACT, contactText(evidence.contact().last()) }) :
+                                std::nullopt;
+}
+
+Verdict VerdictWatch::now() const
+{
+  Verdict verdict = confirmed_;
+  if (const std::optional<Misfit> why_not = whyNotJudged())
+  {
+    verdict.dismiss(*why_not);
+  }
+  else if (severityOf(verdict.level) != HealthLevel::OK && !settled_)
+  {
+    verdict.dismiss({ Reason::TELEMETRY_UNSETTLED, "" });
+  }
+  return verdict;
+}
+
+void judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
+{
+  std::vector<MeasuredFriction> frictions;
+  for (const VerdictWatch* joint : joints)
+  {
+    frictions.push_back(joint->measuredFriction());
+  }
+  const ArmFriction arm = commonFriction(frictions, tolerance);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    joints[i]->judge(arm.factors[i]);
+  }
+}
+}  // namespace hjt

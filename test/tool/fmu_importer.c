@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A small importer of FMI 3.0: loads a unit's library, does the calls that lines of standard input name, one a line,
+/// and answers each with a line: its status, then values as hexadecimal floating-point numbers. The unit's messages go
+/// to standard error.
+///
+///   fmu_importer LIBRARY TOKEN RESOURCES
+///
+///   new I | free I | enter I START STOP | exit I | terminate I | reset I | step I TIME LENGTH [TIMES]
+///   get I TYPE REFERENCE COUNT | set I TYPE REFERENCE COUNT VALUE ...    TYPE: Float64, Int32, Boolean, String
+///   keep I S | restore I S | drop I S | call I NAME                       I, S: 0 ... 7; STOP: nan where there is none
+#include <dlfcn.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef int Status;
+typedef uint32_t Reference;
+typedef void (*Log)(void* environment, Status status, const char* category, const char* message);
+
+enum
+{
+  SLOTS = 8,
+  MOST = 4096
+};
+
+static void* library;
+
+static void* function(const char* name)
+{
+  void* found = dlsym(library, name);
+  if (found == NULL)
+  {
+    fprintf(stderr, "no function %s\n", name);
+    exit(2);
+  }
+  return found;
+}
+
+static void logMessage(void* environment, Status status, const char* category, const char* message)
+{
+  fprintf(stderr, "%s %d %s %s\n", (const char*)environment, status, category, message);
+}
+
+static void* instantiate(const char* token, const char* resources)
+{
+  void* (*make)(const char*, const char*, const char*, bool, bool, bool, bool, const Reference*, size_t, void*, Log,
+                void*) = function("fmi3InstantiateCoSimulation");
+  return make("drive", token, resources, false, true, false, false, NULL, 0, "drive", logMessage, NULL);
+}
+
+static Status get(void* instance, const char* type, Reference reference, size_t count)
+{
+  static double numbers[MOST];
+  static int32_t wholes[MOST];
+  static bool truths[MOST];
+  static const char* texts[MOST];
+  char name[32];
+  snprintf(name, sizeof name, "fmi3Get%s", type);
+  Status (*call)(void*, const Reference*, size_t, void*, size_t) = function(name);
+  void* values = strcmp(type, "Float64") == 0 ? (void*)numbers :
+                 strcmp(type, "Int32") == 0   ? (void*)wholes :
+                 strcmp(type, "Boolean") == 0 ? (void*)truths :
+                                                (void*)texts;
+  const Status status = call(instance, &reference, 1, values, count);
+  printf("%d", status);
+  for (size_t i = 0; status == 0 && i < count; ++i)
+  {
+    values == texts ? printf(" %s", texts[i]) :
+                      printf(" %a", values == numbers ? numbers[i] : values == wholes ? wholes[i] : truths[i]);
+  }
+  return status;
+}
+
+static Status set(void* instance, const char* type, Reference reference, size_t count)
+{
+  double numbers[MOST];
+  int32_t wholes[MOST];
+  bool truths[MOST];
+  const char* texts[MOST];
+  for (size_t i = 0; i < count; ++i)
+  {
+    texts[i] = strtok(NULL, " \n");
+    numbers[i] = strtod(texts[i], NULL);
+    wholes[i] = (int32_t)numbers[i];
+    truths[i] = numbers[i] != 0.0;
+  }
+  char name[32];
+  snprintf(name, sizeof name, "fmi3Set%s", type);
+  Status (*call)(void*, const Reference*, size_t, const void*, size_t) = function(name);
+  const void* values = strcmp(type, "Float64") == 0 ? (const void*)numbers :
+                       strcmp(type, "Int32") == 0   ? (const void*)wholes :
+                       strcmp(type, "Boolean") == 0 ? (const void*)truths :
+                                                      (const void*)texts;
+  return call(instance, &reference, 1, values, count);
+}
+
+static double number(void)
+{
+  return strtod(strtok(NULL, " \n"), NULL);
+}
+
+static Status step(void* instance)
+{
+  Status (*call)(void*, double, double, bool, bool*, bool*, bool*, double*) = function("fmi3DoStep");
+  const double from = number();
+  const double length = number();
+  const char* times = strtok(NULL, " \n");
+  const int steps = times != NULL ? atoi(times) : 1;
+  Status status = 0;
+  for (int i = 0; status == 0 && i < steps; ++i)
+  {
+    bool event, terminated, early;
+    double last = NAN;
+    status = call(instance, from + i * length, length, true, &event, &terminated, &early, &last);
+    if (status == 0 && (event || terminated || early || fabs(last - (from + (i + 1) * length)) > 1e-12))
+    {
+      printf("wrong results of fmi3DoStep ");
+    }
+  }
+  return status;
+}
+
+int main(int argc, char** argv)
+{
+  static char line[1 << 16];
+  void* instances[SLOTS] = { NULL };
+  void* states[SLOTS] = { NULL };
+  library = argc == 4 ? dlopen(argv[1], RTLD_NOW | RTLD_LOCAL) : NULL;
+  if (library == NULL)
+  {
+    fprintf(stderr, "%s\n", argc == 4 ? dlerror() : "usage: fmu_importer LIBRARY TOKEN RESOURCES");
+    return 2;
+  }
+  const char* (*version)(void) = function("fmi3GetVersion");
+  setvbuf(stdout, NULL, _IOLBF, 0);
+  printf("%s\n", version());
+  while (fgets(line, sizeof line, stdin) != NULL)
+  {
+    const char* command = strtok(line, " \n");
+    const int i = (int)number();
+    Status status = 0;
+    if (strcmp(command, "new") == 0)
+    {
+      instances[i] = instantiate(argv[2], argv[3]);
+      status = instances[i] == NULL;
+    }
+    else if (strcmp(command, "free") == 0)
+    {
+      void (*call)(void*) = function("fmi3FreeInstance");
+      call(instances[i]);
+      instances[i] = NULL;
+    }
+    else if (strcmp(command, "enter") == 0)
+    {
+      Status (*call)(void*, bool, double, double, bool, double) = function("fmi3EnterInitializationMode");
+      const double start = number();
+      const double stop = number();
+      status = call(instances[i], false, 0.0, start, !isnan(stop), stop);
+    }
+    else if (strcmp(command, "step") == 0)
+    {
+      status = step(instances[i]);
+    }
+    else if (strcmp(command, "get") == 0 || strcmp(command, "set") == 0)
+    {
+      const char* type = strtok(NULL, " \n");
+      const Reference reference = (Reference)number();
+      const size_t count = (size_t)number();
+      if (command[0] == 'g')
+      {
+        get(instances[i], type, reference, count);
+        printf("\n");
+        continue;
+      }
+      status = set(instances[i], type, reference, count);
+    }
+    else if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0)
+    {
+      Status (*call)(void*, void**) = function(command[0] == 'k' ? "fmi3GetFMUState" : "fmi3FreeFMUState");
+      status = call(instances[i], &states[(int)number()]);
+    }
+    else if (strcmp(command, "restore") == 0)
+    {
+      Status (*call)(void*, void*) = function("fmi3SetFMUState");
+      status = call(instances[i], states[(int)number()]);
+    }
+    else
+    {
+      const char* name = strcmp(command, "exit") == 0      ? "fmi3ExitInitializationMode" :
+                         strcmp(command, "terminate") == 0 ? "fmi3Terminate" :
+                         strcmp(command, "reset") == 0     ? "fmi3Reset" :
+                                                             strtok(NULL, " \n");
+      Status (*call)(void*) = function(name);
+      status = call(instances[i]);
+    }
+    printf("%d\n", status);
+  }
+  return 0;
+}

@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The co-simulation unit: its description, and its library as a small importer runs it. Arguments: the tool, the
+importer. The schema is looked for in HJT_FMI_SCHEMAS, else in shared/fmi beside the checkout."""
+import csv
+import math
+import os
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree
+import zipfile
+
+import tool
+
+IMPORTER = sys.argv.pop(2)
+SCHEMAS = os.environ.get("HJT_FMI_SCHEMAS", os.path.join(os.path.dirname(tool.CHECKOUT), "shared", "fmi"))
+RATE = 10000.0
+OK, ERROR = 0, 3
+
+
+class Unit:
+    """A unit that has been unpacked, and one process that has loaded its library."""
+
+    def __init__(self, folder):
+        self.root = xml.etree.ElementTree.parse(os.path.join(folder, "modelDescription.xml")).getroot()
+        self.variables = {each.get("name"): each for each in self.root.find("ModelVariables")}
+        model = self.root.find("CoSimulation").get("modelIdentifier")
+        self.library = os.path.join(folder, "binaries", os.listdir(os.path.join(folder, "binaries"))[0], model + ".so")
+        self.process = subprocess.Popen(
+            [IMPORTER, self.library, self.root.get("instantiationToken"), os.path.join(folder, "resources", "")],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        self.version = self.process.stdout.readline().strip()
+
+    def close(self):
+        """What the unit said to its log."""
+        _, said = self.process.communicate(timeout=60)
+        assert self.process.returncode == 0, said
+        return said
+
+    def stop(self):
+        self.process.kill()
+        self.process.wait()
+        for pipe in self.process.stdin, self.process.stdout, self.process.stderr:
+            pipe.close()
+
+    def ask(self, *words):
+        print(*words, file=self.process.stdin, flush=True)
+        return self.process.stdout.readline().split()
+
+    def call(self, *words):
+        """The status."""
+        answer = self.ask(*words)
+        assert len(answer) == 1, answer
+        return int(answer[0])
+
+    def size(self, name):
+        dimension = self.variables[name].find("Dimension")
+        return 1 if dimension is None else int(dimension.get("start"))
+
+    def get(self, name, instance=0):
+        variable = self.variables[name]
+        status, *values = self.ask("get", instance, variable.tag, variable.get("valueReference"), self.size(name))
+        assert status == "0", (name, status)
+        return values[0] if variable.tag == "String" else [float.fromhex(value) for value in values]
+
+    def set(self, name, *values, instance=0):
+        variable = self.variables[name]
+        return self.call("set", instance, variable.tag, variable.get("valueReference"), len(values), *values)
+
+    def outputs(self, instance=0):
+        return {name: self.get(name, instance) for name, variable in self.variables.items()
+                if variable.get("causality") == "output"}
+
+    def start(self, instance=0, begin=0.0, stop="nan", **values):
+        """An instance that has been initialised with these values."""
+        assert self.call("new", instance) == OK
+        for name, value in values.items():
+            assert self.set(name.replace("__", "."), *(value if isinstance(value, list) else [value]),
+                            instance=instance) == OK, name
+        assert self.call("enter", instance, begin, stop) == OK
+        assert self.call("exit", instance) == OK
+
+
+class Fmu(tool.ToolTest):
+    def unit(self, *options):
+        if tool.SLOWER != 1.0:
+            self.skipTest("a library with a sanitizer wants it in its importer too")
+        file = self.path("joint.fmu")
+        self.succeed("export", "--format", "fmu", "--out", file, "--force", *options)
+        folder = self.path("unit")
+        shutil.rmtree(folder, ignore_errors=True)
+        with zipfile.ZipFile(file) as archive:
+            self.assertIsNone(archive.testzip())
+            archive.extractall(folder)
+        unit = Unit(folder)
+        self.addCleanup(unit.stop)
+        return unit
+
+    def simulated(self, *options):
+        """Last row of a run of the tool by the names of the unit."""
+        self.succeed("simulate", "--out", self.path("run.csv"), "--force", *options)
+        with open(self.path("run.csv"), encoding="ascii") as file:
+            row = list(csv.DictReader(file))[-1]
+        names = {"motor_torque": "motor_torque_applied", "temperature": "grease_temperature", "brake": "brake_engaged"}
+        return {names.get(name, name): [float(value)] for name, value in row.items()
+                if name not in ("time", "load_torque")}
+
+    def assert_same(self, unit, row, instance=0):
+        outputs = unit.outputs(instance)
+        self.assertEqual({name: outputs[name] for name in row}, row)
+
+
+class Description(Fmu):
+    def test_follows_the_schema(self):
+        schema = os.path.join(SCHEMAS, "fmi3", "fmi3ModelDescription.xsd")
+        if not os.path.exists(schema) or not shutil.which("xmllint"):
+            self.skipTest("no xmllint, or no schema in HJT_FMI_SCHEMAS = " + SCHEMAS)
+        self.unit("--set", 'joint.name="a<b> & \\"c\\""')
+        done = subprocess.run(["xmllint", "--noout", "--schema", schema, self.path("unit/modelDescription.xml")],
+                              stderr=subprocess.PIPE, universal_newlines=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_says_what_the_standard_wants_beyond_the_schema(self):
+        unit = self.unit()
+        variables = list(unit.root.find("ModelVariables"))
+        self.assertEqual(len(unit.variables), len(variables))
+        self.assertEqual(len({each.get("valueReference") for each in variables}), len(variables))
+        units = {each.get("name") for each in unit.root.find("UnitDefinitions")}
+        by_causality = {}
+        for each in variables:
+            by_causality.setdefault(each.get("causality"), []).append(each)
+            self.assertIn(each.get("unit", "m"), units)
+            starts = each.get("start") is not None or each.find("Start") is not None
+            self.assertEqual(starts, each.get("causality") in ("input", "parameter"), each.get("name"))
+            continuous = each.tag == "Float64" and each.get("causality") != "parameter"
+            self.assertEqual(each.get("variability") == "continuous",
+                             continuous and not each.get("name").startswith("fault_"), each.get("name"))
+        self.assertEqual([each.get("name") for each in by_causality["independent"]], ["time"])
+        outputs = [each.get("valueReference") for each in by_causality["output"]]
+        for part in "Output", "InitialUnknown":
+            self.assertEqual([each.get("valueReference") for each in unit.root.find("ModelStructure").iter(part)],
+                             outputs)
+        limit = unit.variables["motor.torque_limit"]
+        self.assertEqual((limit.get("unit"), limit.get("min")), ("N.m", "0.0"))
+        self.assertEqual(float(limit.get("start")), self.succeed_json("parameters")["motor"]["torque_limit"])
+
+    def test_shows_the_functions_of_the_standard_alone(self):
+        unit = self.unit()
+        self.assertEqual(unit.version, "3.0")
+        if not shutil.which("nm"):
+            self.skipTest("no nm")
+        symbols = subprocess.run(["nm", "-D", "--defined-only", "-f", "posix", unit.library], stdout=subprocess.PIPE,
+                                 universal_newlines=True, check=True).stdout.splitlines()
+        self.assertEqual([line for line in symbols if not line.startswith("fmi3")], [])
+        needed = subprocess.run(["ldd", unit.library], stdout=subprocess.PIPE, universal_newlines=True,
+                                check=True).stdout
+        self.assertNotIn("harmonic_joint_twin_core", needed)
+        self.assertNotIn("not found", needed)
+
+    def test_wants_a_file(self):
+        self.fail_with(2, ["--out"], "export", "--format", "fmu")
+        self.fail_with(2, ["--out"], "export", "--format", "urdf", "--out", self.path("joint.urdf"))
+
+
+class Run(Fmu):
+    def test_gives_the_numbers_of_the_tool(self):
+        """Values of the export, and values that the importer sets, are the same."""
+        options = ["--set", "thermal.model=two_nodes", "--set", "sensors.motor_noise=1.0e-4", "--set",
+                   "input.temperature=31", "--set", "cup.torsion_breakpoints=[20.0, 41.0]"]
+        row = self.simulated("--torque", 0.35, "--load", 20, "--duration", 0.2, "--fault", "tooth_wear:0.3:20",
+                             *options)
+        unit = self.unit(*options)
+        unit.start(motor_torque=0.35, load_torque=20.0, fault_tooth_wear=0.3, fault_tooth_wear_place=20)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.001, 200), OK)
+        self.assert_same(unit, row)
+        plain = self.unit()
+        plain.start(motor_torque=0.35, load_torque=20.0, temperature=31.0, fault_tooth_wear=0.3,
+                    fault_tooth_wear_place=20, thermal__model="two_nodes", sensors__motor_noise=1e-4,
+                    cup__torsion_breakpoints=[20.0, 41.0])
+        # Steps of another length, and not of whole steps of the twin.
+        self.assertEqual(plain.call("step", 0, 0.0, 0.0008, 125), OK)
+        self.assertEqual(plain.call("step", 0, 0.1, 0.00016, 625), OK)
+        self.assert_same(plain, row)
+        self.assertEqual(plain.get("thermal.model"), "two_nodes")
+        self.assertEqual(plain.get("cup.torsion_breakpoints"), [20.0, 41.0])
+        self.assertAlmostEqual(plain.get("time")[0], 0.2, delta=1e-12)
+        for said in unit.close(), plain.close():
+            self.assertEqual(said, "")
+
+    def test_takes_inputs_as_they_change(self):
+        """A row of a profile acts in the step that ends at its time; an input of the unit in the step that begins."""
+        step = 1.0 / RATE
+        profile = self.write("profile.csv", "time,motor_torque,load_torque,brake\n0,0.4,5,0\n"
+                             f"{0.05 + step},-0.4,30,0\n{0.1 + step},0,10,1\n0.15,0,10,1\n")
+        row = self.simulated("--profile", profile)
+        unit = self.unit()
+        unit.start(motor_torque=0.4, load_torque=5.0, stop=0.15)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.01, 5), OK)
+        unit.set("motor_torque", -0.4)
+        unit.set("load_torque", 30.0)
+        self.assertEqual(unit.call("step", 0, 0.05, 0.01, 5), OK)
+        unit.set("motor_torque", 0.0)
+        unit.set("load_torque", 10.0)
+        unit.set("brake", 1)
+        self.assertEqual(unit.call("step", 0, 0.1, 0.01, 5), OK)
+        self.assert_same(unit, row)
+        self.assertEqual(unit.call("step", 0, 0.15, 0.01), ERROR)
+        self.assertIn("the stop time is 0.15 [s]", unit.close())
+
+    def test_has_forces_on_teeth_and_faults_that_set_in(self):
+        unit = self.unit()
+        unit.start(load_torque=40.0, motor_torque=0.5)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.1), OK)
+        forces = unit.get("tooth_mesh_force")
+        self.assertEqual(len(forces), 200)
+        self.assertEqual(sum(force != 0.0 for force in forces), unit.get("teeth_loaded")[0])
+        self.assertTrue(all(math.isfinite(value) for values in unit.outputs().values() for value in values))
+        before = unit.get("torsional_stiffness")[0]
+        self.assertEqual(unit.set("fault_flange_crack", 0.9), OK)
+        self.assertEqual(unit.call("step", 0, 0.1, 0.02), OK)
+        self.assertLess(unit.get("torsional_stiffness")[0], before)
+        self.assertEqual(unit.close(), "")
+
+
+class States(Fmu):
+    def test_instances_do_not_disturb_each_other(self):
+        unit = self.unit()
+        for instance in 0, 1, 2:
+            unit.start(instance, motor_torque=0.4, load_torque=10.0 * (instance % 2))
+        for i in range(20):
+            for instance in 0, 1:
+                self.assertEqual(unit.call("step", instance, 0.01 * i, 0.01), OK)
+        self.assertEqual(unit.call("step", 2, 0.0, 0.01, 20), OK)
+        self.assertEqual(unit.outputs(2), unit.outputs(0))
+        self.assertNotEqual(unit.outputs(1), unit.outputs(0))
+        unit.start(3, begin=-2.5, motor_torque=0.4)
+        self.assertEqual(unit.get("time", 3), [-2.5])
+        self.assertEqual(unit.call("step", 3, -2.5, 0.01, 20), OK)
+        self.assertEqual(unit.get("output_angle", 3), unit.get("output_angle", 0))
+        unit.call("free", 0)
+        self.assertEqual(unit.call("step", 1, 0.2, 0.01), OK)
+        unit.close()
+
+    def test_a_state_is_kept_and_taken_up_again(self):
+        unit = self.unit("--set", "thermal.model=two_nodes", "--set", "sensors.motor_noise=1e-4")
+        unit.start(motor_torque=0.4)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.01, 10), OK)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        ends = []
+        for _ in range(2):
+            unit.set("load_torque", 20.0)
+            self.assertEqual(unit.call("step", 0, 0.1, 0.01, 10), OK)
+            ends.append(unit.outputs())
+            self.assertEqual(unit.call("restore", 0, 0), OK)
+            self.assertEqual(unit.get("load_torque"), [0.0])
+            self.assertAlmostEqual(unit.get("time")[0], 0.1, delta=1e-12)
+        self.assertEqual(ends[0], ends[1])
+        self.assertEqual(unit.call("drop", 0, 0), OK)
+        self.assertEqual(unit.call("drop", 0, 0), OK)
+        self.assertEqual(unit.call("restore", 0, 0), ERROR)
+        unit.close()
+
+    def test_a_reset_instance_is_as_new(self):
+        unit = self.unit()
+        unit.start(0)
+        unit.start(1, motor_torque=0.4, fault_tooth_wear=0.5, motor__torque_limit=0.3)
+        self.assertEqual(unit.call("step", 1, 0.0, 0.05), OK)
+        self.assertEqual(unit.call("terminate", 1), OK)
+        self.assertEqual(unit.get("motor_torque_applied", 1), [0.3])
+        self.assertEqual(unit.call("reset", 1), OK)
+        self.assertEqual(unit.call("enter", 1, 0.0, "nan"), OK)
+        self.assertEqual(unit.outputs(1), unit.outputs(0))
+        self.assertEqual(unit.call("exit", 1), OK)
+        for instance in 0, 1:
+            self.assertEqual(unit.call("step", instance, 0.0, 0.05), OK)
+        self.assertEqual(unit.outputs(1), unit.outputs(0))
+        unit.close()
+
+    def test_wrong_calls_are_errors_and_change_nothing(self):
+        unit = self.unit()
+        self.assertEqual(unit.call("new", 0), OK)
+        torque = unit.variables["motor_torque"].get("valueReference")
+        angle = unit.variables["output_angle"].get("valueReference")
+        wrong = [("exit", 0), ("step", 0, 0.0, 0.1), ("terminate", 0), ("enter", 0, "nan", 1.0), ("enter", 0, 2.0, 1.0),
+                 ("set", 0, "Float64", 99999, 1, 1.0), ("set", 0, "Float64", torque, 2, 1.0, 1.0),
+                 ("set", 0, "Float64", torque, 1, "nan"), ("set", 0, "Int32", torque, 1, 1),
+                 ("set", 0, "Float64", angle, 1, 1.0), ("set", 0, "Float64", 0, 1, 1.0),
+                 ("call", 0, "fmi3EnterEventMode"), ("call", 0, "fmi3SerializeFMUState"), ("call", 0, "fmi3SetTime"),
+                 ("exit", 5), ("step", 5, 0.0, 0.1), ("reset", 5), ("keep", 5, 0)]
+        for words in wrong:
+            self.assertEqual(unit.call(*words), ERROR, words)
+        self.assertEqual(unit.ask("get", 0, "Float64", angle, 1), ["3"])
+        self.assertEqual(unit.set("temperature", 1000.0), ERROR)
+        self.assertEqual(unit.set("fault_tooth_wear", 1.5), ERROR)
+        self.assertEqual(unit.set("motor.torque_limit", -1.0), ERROR)
+        self.assertEqual(unit.set("thermal.model", "hot"), OK)
+        self.assertEqual(unit.call("enter", 0, 0.0, "nan"), OK)
+        self.assertEqual(unit.call("exit", 0), ERROR)
+        self.assertEqual(unit.set("thermal.model", "none"), OK)
+        self.assertEqual(unit.call("exit", 0), OK)
+        for words in [("step", 0, 0.5, 0.1), ("step", 0, 0.0, 0.0), ("step", 0, 0.0, "nan"), ("step", 0, 0.0, -0.1),
+                      ("exit", 0), ("enter", 0, 0.0, 1.0)]:
+            self.assertEqual(unit.call(*words), ERROR, words)
+        self.assertEqual(unit.set("motor.torque_limit", 1.0), ERROR)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.01), OK)
+        said = unit.close()
+        for part in ("temperature = 1000.0 [degC] out of range, allowed: -40 ... 150",
+                     "thermal.model = 'hot'", "fmi3DoStep is not allowed in state Instantiated",
+                     "setting output_angle is not allowed in state Instantiated"):
+            self.assertIn(part, said)
+
+    def test_wants_its_own_token_and_resources(self):
+        unit = self.unit()
+        unit.close()
+        for token, resources in (("another", self.path("unit/resources")),
+                                 (unit.root.get("instantiationToken"), self.path("nowhere"))):
+            done = subprocess.run([IMPORTER, unit.library, token, resources], input="new 0\n", stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, universal_newlines=True, check=True)
+            self.assertEqual(done.stdout.split(), ["3.0", "1"])
+            self.assertIn("logStatusError", done.stderr)
+
+
+if __name__ == "__main__":
+    tool.main()

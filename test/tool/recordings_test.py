@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Recordings as people have them: formats, names, tables, and what a recorder or a driver did to the rows."""
+import io
+import json
+import os
+import sqlite3
+import struct
+import subprocess
+
+import genpy
+import numpy as np
+import rosbag
+from sensor_msgs.msg import JointState
+
+import tool
+from check_test import sound, swinging, write_csv
+
+JOINTS = tool.JOINT_NAMES
+
+
+def states(columns, prefix="", suffix="", start=tool.START):
+    """(seconds, JointState) of each row."""
+    for row, seconds in enumerate(columns["timestamp"]):
+        of = {quantity: [columns[f"actual_{quantity}_{joint}"][row] for joint in range(6)]
+              for quantity in ("q", "qd", "current")}
+        state = JointState(name=[prefix + name + suffix for name in JOINTS], position=of["q"], velocity=of["qd"],
+                           effort=of["current"])
+        state.header.stamp = genpy.Time(start) + genpy.Duration.from_sec(seconds)
+        yield seconds, state
+
+
+def write_bag(path, messages, recorded_from=tool.START):
+    with rosbag.Bag(path, "w") as bag:
+        for seconds, state in messages:
+            bag.write("/joint_states", state, genpy.Time(recorded_from) + genpy.Duration.from_sec(seconds + 0.0005))
+    return path
+
+
+class Cdr:
+    """Bytes of a message as ROS 2 writes them."""
+
+    def __init__(self, big=False):
+        self.order = ">" if big else "<"
+        self.data = bytearray(b"\0\0\0\0" if big else b"\0\1\0\0")
+
+    def number(self, kind, value):
+        size = struct.calcsize(kind)
+        self.data += b"\0" * (-(len(self.data) - 4) % size) + struct.pack(self.order + kind, value)
+
+    def text(self, value):
+        self.number("I", len(value) + 1)
+        self.data += value.encode() + b"\0"
+
+    def state(self, state):
+        self.number("i", state.header.stamp.secs)
+        self.number("I", state.header.stamp.nsecs)
+        self.text("base_link")
+        self.number("I", len(state.name))
+        for name in state.name:
+            self.text(name)
+        for values in (state.position, state.velocity, state.effort):
+            self.number("I", len(values))
+            for value in values:
+                self.number("d", value)
+        return bytes(self.data)
+
+
+def nanoseconds(state):
+    return state.header.stamp.to_nsec() + 500000
+
+
+def write_db3(path, messages, big=False):
+    database = sqlite3.connect(path)
+    database.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+                     "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)")
+    database.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, "
+                     "timestamp INTEGER NOT NULL, data BLOB NOT NULL)")
+    database.execute("INSERT INTO topics VALUES(1, '/rosout', 'rcl_interfaces/msg/Log', 'cdr', '')")
+    database.execute("INSERT INTO topics VALUES(7, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr', '')")
+    database.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES(7, ?, ?)",
+                         ((nanoseconds(state), Cdr(big).state(state)) for _, state in messages))
+    database.commit()
+    database.close()
+    return path
+
+
+def record(opcode, data):
+    return struct.pack("<BQ", opcode, len(data)) + data
+
+
+def text(value):
+    return struct.pack("<I", len(value)) + value.encode()
+
+
+def write_mcap(path, messages, compress=None, closed=True):
+    """`compress`: name in the file and function; none: messages outside of chunks."""
+    head = (record(3, struct.pack("<H", 1) + text("sensor_msgs/msg/JointState") + text("ros2msg") + text("")) +
+            record(4, struct.pack("<HH", 0, 1) + text("/joint_states") + text("cdr") + struct.pack("<I", 0)))
+    parts = [record(5, struct.pack("<HIQQ", 0, 0, nanoseconds(state), nanoseconds(state)) + Cdr().state(state))
+             for _, state in messages]
+    with open(path, "wb") as file:
+        file.write(b"\x89MCAP0\r\n" + record(1, text("ros2") + text("test")))
+        for begin in range(0, len(parts), 500):
+            body = (head if begin == 0 else b"") + b"".join(parts[begin:begin + 500])
+            if compress:
+                packed = compress[1](body)
+                body = record(6, struct.pack("<QQQI", 0, 0, len(body), 0) + text(compress[0]) +
+                              struct.pack("<Q", len(packed)) + packed)
+            file.write(body)
+        if closed:
+            file.write(record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + b"\x89MCAP0\r\n")
+    return path
+
+
+class Recordings(tool.ToolTest):
+    def check(self, recording, *more):
+        done = self.run_tool("check", recording, *more, "--json")
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        self.assertTrue(done.stdout, done.stderr)
+        return json.loads(done.stdout)
+
+    def assert_as_plain(self, found, rows=None):
+        """Nothing of what was done to the rows is left in what the joints do."""
+        plain = self.check(write_csv(self.path("plain.csv"), self.columns))
+        self.assertTrue(plain["usable"])
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [joint["judged"] for joint in plain["joints"]])
+        self.assertEqual(found["findings"], plain["findings"])
+        self.assertEqual(found["rows"], rows or plain["rows"])
+        for joint, same in zip(found["joints"], plain["joints"]):
+            for key in ("most_speed", "least_speed", "most_current"):
+                self.assertAlmostEqual(joint[key], same[key], delta=0.03, msg=(joint["name"], key))
+
+    def setUp(self):
+        super().setUp()
+        self.columns = sound(self)
+
+    def test_ros_2_files_are_read_as_a_bag_is(self):
+        self.assert_as_plain(self.check(write_db3(self.path("a.db3"), states(self.columns))))
+        self.assert_as_plain(self.check(write_db3(self.path("big.db3"), states(self.columns), big=True)))
+        self.assert_as_plain(self.check(write_mcap(self.path("a.mcap"), states(self.columns))))
+        found = self.check(write_mcap(self.path("open.mcap"), states(self.columns), closed=False))
+        self.assert_as_plain(found)
+        self.assertIn("not closed", found["remarks"][0])
+        os.mkdir(self.path("folder"))
+        rows = list(states(self.columns))
+        write_db3(self.path("folder/b_0.db3"), rows[:1000])
+        write_db3(self.path("folder/b_1.db3"), rows[1000:])
+        self.assert_as_plain(self.check("folder"))
+        done = self.run_tool("compare", "a.db3", "--arm", "ur5", "--report", "report")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.succeed("follow", "a.mcap", "--arm", "ur5", "--bag", "out.bag")
+
+    def test_compressed_chunks_of_mcap(self):
+        packers = []
+        for name, command in (("zstd", ["zstd", "-q", "-c"]), ("lz4", ["lz4", "-q", "-c"])):
+            try:
+                subprocess.run(command, input=b"x", stdout=subprocess.DEVNULL, check=True)
+            except (OSError, subprocess.CalledProcessError):
+                continue
+            packers.append((name, lambda body, command=command: subprocess.run(
+                command, input=body, stdout=subprocess.PIPE, check=True).stdout))
+        if not packers:
+            self.skipTest("neither zstd nor lz4 is here to pack with")
+        for packer in packers:
+            self.assert_as_plain(self.check(write_mcap(self.path(packer[0] + ".mcap"), states(self.columns), packer)))
+
+    def test_other_files_are_named_by_what_they_are(self):
+        for content, parts in ((b"SQLite format 3\0", ["SQLite", "rosbags-convert"]),
+                               (b"\x89MCAP0\r\n", ["MCAP", "rosbags-convert"]),
+                               (b"\x89HDF\r\n\x1a\n" + bytes(100), ["HDF5"]), (b"PK\x03\x04" + bytes(30), ["zip"]),
+                               (b"\x28\xb5\x2f\xfd" + bytes(30), ["zstd -d"])):
+            with open(self.path("a.bag"), "wb") as file:
+                file.write(content)
+            self.fail_with(1, ["a.bag", *parts], "check", "a.bag")
+
+    def test_tables_as_programs_write_them(self):
+        for separator in (" ", "\t", ";", "  ", ", "):
+            name = write_csv(self.path("a.csv"), self.columns)
+            with open(name, encoding="ascii") as file:
+                lines = file.read().splitlines()
+            for header in (str, lambda line: "# " + line, lambda line: '"' + line.replace(",", '","') + '"'):
+                with open(self.path("a.txt"), "w", encoding="utf-8") as file:
+                    file.write("\ufeff" + "\r\n".join([header(lines[0])] + lines[1:]).replace(",", separator) + "\r\n")
+                self.assert_as_plain(self.check("a.txt"))
+        with open(self.path("comma.csv"), "w", encoding="ascii") as file:
+            file.write("\n".join([lines[0].replace(",", ";")] +
+                                 [line.replace(",", ";").replace(".", ",") for line in lines[1:]]))
+        self.assert_as_plain(self.check("comma.csv"))
+
+    def test_a_cut_line_and_rows_without_numbers_are_left_out(self):
+        name = write_csv(self.path("a.csv"), self.columns)
+        with open(name, encoding="ascii") as file:
+            lines = file.read().splitlines()
+        count = len(lines) - 1
+        lines[700] = lines[700].replace(lines[700].split(",")[3], "nan", 1)
+        lines[900] = ",".join(cell if i != 9 else "" for i, cell in enumerate(lines[900].split(",")))
+        with open(self.path("cut.csv"), "w", encoding="ascii") as file:
+            file.write("\n".join(lines)[:-40])
+        found = self.check("cut.csv")
+        self.assert_as_plain(found, rows=count - 3)
+        self.assertEqual(found["unreadable"], 2)
+        self.assertIn("cut off", found["remarks"][0])
+
+    def test_all_that_a_header_lacks_is_named_at_once(self):
+        with open(self.path("a.csv"), "w", encoding="ascii") as file:
+            file.write("time,actual_q_0,actual_q_1\n0.0,1.0,1.0\n")
+        self.fail_with(1, ["'timestamp'", "'actual_q_5'", "'actual_current_0'", "'actual_current_5'", "time"], "check",
+                       "a.csv", "--arm", "ur5")
+        with open(self.path("b.csv"), "w", encoding="ascii") as file:
+            file.write("0.0,1.0,1.0\n0.1,1.0,1.0\n")
+        self.fail_with(1, ["first line holds numbers", "header"], "check", "b.csv")
+
+    def test_arms_are_found_by_the_pattern_of_their_names(self):
+        rows = []
+        for one, other in zip(states(self.columns, "robot_"), states(self.columns, suffix="_b")):
+            one[1].name += other[1].name + ["gripper"]
+            for field in ("position", "velocity", "effort"):
+                setattr(one[1], field, getattr(one[1], field) + getattr(other[1], field) + [0.0])
+            rows.append(one)
+        write_bag(self.path("two.bag"), rows)
+        found = self.check("two.bag")
+        self.assertEqual((found["prefix"], found["suffix"], found["arm"]), ("robot_", "", "ur5"))
+        self.assert_as_plain(found)
+        self.assertEqual([(arm["prefix"], arm["suffix"]) for arm in found["other_arms"]], [("", "_b")])
+        self.assert_as_plain(found["other_arms"][0])
+        self.assertIn("--prefix robot_", found["next"][1])
+        self.assertIn("--suffix _b", found["other_arms"][0]["next"][1])
+        printed = self.succeed("check", "two.bag").stdout
+        self.assertEqual(printed.count("\nwrist_3 "), 2)
+        for command in found["next"] + found["other_arms"][0]["next"][1:2]:
+            done = self.run_tool(*command.split()[1:], "--force")
+            self.assertIn(done.returncode, (0, 1), (command, done.stderr))
+            self.assertNotIn("never contains", done.stderr)
+        self.fail_with(1, ["given --prefix robot_", "given --suffix _b"], "follow", "two.bag", "--arm", "ur5")
+
+    def test_names_without_efforts_or_with_nan_are_told_apart(self):
+        for value, part in (([], "effort is empty"), ([float("nan")] * 6, "not finite")):
+            rows = list(states(swinging(seconds=3.0)))
+            for _, state in rows:
+                state.effort = value
+            write_bag(self.path("a.bag"), rows)
+            done = self.fail_with(1, [part], "follow", "a.bag", "--arm", "ur5")
+            self.assertNotIn("joints found: none", done.stderr)
+
+    def test_an_arm_in_parts_is_put_together(self):
+        rows = []
+        for row, (seconds, state) in enumerate(states(self.columns)):
+            chosen = (0, 3, 4) if row % 2 else (1, 2, 5)
+            for field in ("name", "position", "velocity", "effort"):
+                setattr(state, field, [getattr(state, field)[joint] for joint in chosen])
+            rows.append((seconds, state))
+        write_bag(self.path("parts.bag"), rows)
+        found = self.check("parts.bag")
+        self.assertIn("2 messages", " ".join(found["remarks"]))
+        self.assertGreater(found["rows"], 0.45 * len(rows))
+        self.assertEqual([finding for finding in found["findings"] if finding["stops"]], [])
+        self.assertTrue(found["usable"])
+
+    def test_folded_angles_are_unfolded(self):
+        for low in (-np.pi, 0.0):
+            rows = list(states(dict(self.columns, **{f"actual_q_{joint}": self.columns[f"actual_q_{joint}"] + 3.0
+                                                     for joint in (0, 4)})))
+            for _, state in rows:
+                state.position = [(angle - low) % (2.0 * np.pi) + low for angle in state.position]
+            write_bag(self.path("folded.bag"), rows)
+            found = self.check("folded.bag")
+            self.assertIn("folded", found["remarks"][0])
+            self.assertLess(max(joint["most_speed"] for joint in found["joints"]), 2.0)
+
+    def test_rows_that_no_source_measured_are_left_out(self):
+        def spoil(joints, fields):
+            rows = list(states(self.columns))
+            for row in range(50, len(rows), 61):
+                for field in fields:
+                    values = list(getattr(rows[row][1], field))
+                    setattr(rows[row][1], field, [0.0 if i in joints else value for i, value in enumerate(values)])
+            return rows, len(range(50, len(rows), 61))
+        whole = ("position", "velocity", "effort")
+        for joints, fields in ((range(6), whole), ((2,), whole), (range(6), whole[1:]), (range(6), whole[:1])):
+            rows, spoilt = spoil(joints, fields)
+            write_bag(self.path("zeros.bag"), rows)
+            found = self.check("zeros.bag")
+            self.assertEqual(found["unreadable"], spoilt, (joints, fields))
+            self.assert_as_plain(found, rows=len(rows) - spoilt)
+
+    def test_two_sources_are_told(self):
+        rows = list(states(self.columns))
+        for number, shift, part in ((1, 0.3, "two sources"), (4, 0.1, "two sources")):
+            mixed = []
+            for row, (seconds, state) in enumerate(rows):
+                mixed.append((seconds, state))
+                if row % number == 0:
+                    other = JointState(name=state.name, position=[angle + shift for angle in state.position],
+                                       velocity=state.velocity, effort=[current + 1.0 for current in state.effort])
+                    other.header.stamp = state.header.stamp + genpy.Duration.from_sec(0.003)
+                    mixed.append((seconds + 0.003, other))
+            write_bag(self.path("two.bag"), mixed)
+            found = self.check("two.bag")
+            self.assertFalse(found["usable"])
+            self.assertIn(part, found["findings"][0]["text"])
+            self.assertEqual(found["next"], [])
+            self.succeed("compare", "two.bag", "--arm", "ur5", "--report", "report", "--force")
+            with open(self.path("report/arm.json"), encoding="utf-8") as file:
+                self.assertIn(part, json.load(file)["text"].lower())
+
+    def test_rounds_of_a_loop_and_rows_before_the_time(self):
+        rows = list(states(self.columns))[5:]  # in the first all angles are exactly zero
+        looped = rows + [(seconds + 45.0, state) for seconds, state in rows]
+        write_bag(self.path("loop.bag"), looped)
+        found = self.check("loop.bag")
+        self.assertIn("2 rounds", found["remarks"][0])
+        self.assertAlmostEqual(found["duration"], 2.0 * 39.952 + 1.0, delta=0.01)
+        self.assertEqual((found["rows"], found["unreadable"]), (len(looped), 0))
+        early = []
+        for seconds, state in states(dict(self.columns)):
+            if seconds < 1.0:
+                state.header.stamp = genpy.Time(0)
+            early.append((seconds, state))
+        with rosbag.Bag(self.path("early.bag"), "w") as bag:
+            for row, (seconds, state) in enumerate(early):
+                late = genpy.Time(tool.START) + genpy.Duration.from_sec(seconds)
+                bag.write("/joint_states", state, genpy.Time(0, row + 1) if seconds < 1.0 else late)
+        found = self.check("early.bag")
+        self.assertIn("125 rows without a time", found["remarks"][0])
+        self.assertLess(found["duration"], 40.0)
+        self.assertEqual(found["missing"], 0)
+
+    def test_check_promises_what_compare_keeps(self):
+        for rate in (10.0, 25.0, 125.0):
+            time = np.arange(0.0, 40.0, 1.0 / rate)
+            whole = self.columns
+            columns = {name: np.interp(time, whole["timestamp"], values) for name, values in whole.items()}
+            write_csv(self.path("rate.csv"), columns)
+            found = self.check("rate.csv", "--arm", "ur5")
+            arm = self.succeed_json("compare", "rate.csv", "--arm", "ur5", "--report", "report", "--force")
+            self.assertEqual({joint["name"] for joint in found["joints"] if joint["judged"]},
+                             {joint["joint"] for joint in arm["joints"] if joint["level"] != "NOT JUDGED"}, rate)
+            for joint in found["joints"]:
+                self.assertEqual(joint["judged"], joint["verdict"]["level"] != "NOT JUDGED")
+        write_csv(self.path("slow.csv"), {name: values[::13] for name, values in self.columns.items()})
+        found = self.check("slow.csv")
+        self.assertEqual(found["findings"][0]["kind"], "period")
+        self.assertIn("Hz", found["findings"][0]["text"])
+
+    def test_a_motor_of_another_ratio_is_named(self):
+        for ratio, judged in ((-101.0, False), (51.0, False), (101.0, True)):
+            rows = []
+            for seconds, state in states(self.columns):
+                state.name = ["leg", "leg_motor"]
+                state.position = [state.position[2], ratio * state.position[2]]
+                state.velocity = [state.velocity[2], ratio * state.velocity[2]]
+                state.effort = [state.effort[2], 0.1]
+                rows.append((seconds, state))
+            write_bag(self.path("leg.bag"), rows)
+            found = self.check("leg.bag")
+            self.assertEqual([joint["name"] for joint in found["joints"]], ["leg"])
+            ratios = [finding["text"] for finding in found["joints"][0]["findings"] if finding["kind"] == "ratio"]
+            self.assertEqual(len(ratios), 0 if judged else 1, ratio)
+            if not judged:
+                self.assertIn(f"turns {ratio:g} times", ratios[0])
+                printed = self.succeed("compare", "leg.bag", "--joint", "leg", "--report", "report", "--force").stdout
+                self.assertIn("NOT JUDGED", printed)
+                self.assertIn(f"turns {ratio:g} times", printed)
+
+    def test_an_md5sum_of_nothing_is_read(self):
+        data = []
+        for seconds, state in states(self.columns):
+            buffer = io.BytesIO()
+            state.serialize(buffer)
+            data.append((seconds, buffer.getvalue()))
+        with rosbag.Bag(self.path("md5.bag"), "w") as bag:
+            for seconds, bytes_of in data:
+                bag.write("/joint_states", (JointState._type, bytes_of, "d41d8cd98f00b204e9800998ecf8427e", JointState),
+                          genpy.Time(tool.START) + genpy.Duration.from_sec(seconds), raw=True)
+        self.assert_as_plain(self.check("md5.bag"))
+
+
+if __name__ == "__main__":
+    tool.main()
