@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "messages/joint_affixes.hpp"
 #include "params/configuration_files.hpp"
+#include "ros_io/arm_node.hpp"
+#include "ros_io/joint_name.hpp"
 #include "ros_io/parameter_server.hpp"
 #include "ros_io/shutdown_signals.hpp"
 #include "ros_io/tracker_node.hpp"
@@ -67,6 +70,18 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   }
 }
 
+/// Those of a list with commas.
+std::vector<std::string> faultsOf(const std::string& list)
+{
+  std::vector<std::string> faults;
+  std::istringstream text(list);
+  for (std::string fault; std::getline(text, fault, ',');)
+  {
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
@@ -99,11 +114,11 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
       map[key] = value;
     }
     parameters.push_back(hjt::parseParameters(map));
-    hjt::writeParameterServer(hjt::TrackerNode::jointName(joint), map);
+    hjt::writeParameterServer(hjt::jointName(joint), map);
     hjt::Parameters& drive = parameters.back();
-    if (drive.input.mode == hjt::InputMode::COMMANDS)
+    if (drive.input.mode != parameters.front().input.mode)
     {
-      throw hjt::ParameterError("input.mode = commands: an arm's twins are beside a robot; torque, motion or observer");
+      throw hjt::ParameterError("input.mode is not the same for all joints of the arm: " + joint.short_name);
     }
     if (drive.telemetry.load == hjt::LoadSource::ARM)
     {
@@ -113,7 +128,15 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
                                      << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
                                      << " degC");
   }
-  run<hjt::TrackerNode>(node, arm, parameters, !identified.empty());
+  if (parameters.front().input.mode == hjt::InputMode::COMMANDS)
+  {
+    hjt::addArmFaults(arm, faultsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
+    run<hjt::ArmNode>(node, arm, parameters);
+  }
+  else
+  {
+    run<hjt::TrackerNode>(node, arm, parameters, !identified.empty());
+  }
 }
 }  // namespace
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_configuration.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
+#include "twin/configuration_options.hpp"
 
 namespace hjt
 {
@@ -49,6 +51,32 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
     readYamlFile((fs::path(identified) / (joint.short_name + ".yaml")).string(), map);
   }
   return map;
+}
+
+void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives)
+{
+  std::vector<ConfigurationOptions> of_joints(arm.joints.size());
+  for (const std::string& fault : faults)
+  {
+    const std::size_t colon = fault.find(':');
+    const std::string name = fault.substr(0, colon);
+    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
+                                    [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
+    if (colon == std::string::npos || joint == arm.joints.end())
+    {
+      std::string names;
+      for (const ArmJoint& each : arm.joints)
+      {
+        names += (names.empty() ? "" : ", ") + each.short_name;
+      }
+      throw ParameterError("fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " + names);
+    }
+    of_joints[static_cast<std::size_t>(joint - arm.joints.begin())].faults.push_back(fault.substr(colon + 1));
+  }
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    addFaults(of_joints[i], drives[i]);
+  }
 }
 
 double takeInertiaInLoad(Parameters& parameters)

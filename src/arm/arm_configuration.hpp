@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "arm/arm_description.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
@@ -17,6 +18,10 @@ std::string findArm(const std::string& name, const std::filesystem::path& direct
 /// if that directory is given. Its load is that of the arm. @throws ParameterError.
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
+
+/// Faults of an arm, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name, added to those of its
+/// drive. @throws ParameterError naming the fault.
+void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
 /// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside
 /// it: at the joint [kg.m^2].

@@ -39,6 +39,11 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
 {
 }
 
+void ArmController::reset() noexcept
+{
+  std::fill(integral_.begin(), integral_.end(), 0.0);
+}
+
 bool ArmController::isDue(const ArmTwin& twin) const noexcept
 {
   return (twin.stamp() + twin.stepLength()) % period_ == 0;

@@ -142,6 +142,10 @@ ArmDescription readArmDescription(const std::string& path)
   fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
   fields("payload.mass", "kg", arm.payload.mass, Range{ 0.0, 1e4 }, "at the tip");
   fields("payload.centre", "m", arm.payload.centre, Range{ -100.0, 100.0 }, "of its mass, in the frame of the tip");
+  if (holds(map, "state_rate"))
+  {
+    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "of the controller's states");
+  }
   const auto place = [](std::size_t joint) { return "joints." + std::to_string(joint); };
   std::size_t joints = 0;
   while (holds(map, place(joints)))

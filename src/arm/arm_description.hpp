@@ -37,6 +37,7 @@ struct ArmDescription
   std::string tip;                  ///< link that carries the payload
   std::array<double, 3> gravity{};  ///< in the frame of the base [m/s^2]
   Payload payload;
+  double state_rate{ 125.0 };    ///< of the controller's states [Hz]
   std::vector<ArmJoint> joints;  ///< from the base on; at least one
 };
 

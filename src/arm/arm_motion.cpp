@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_motion.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "arm/check_up.hpp"
+
 namespace hjt
 {
 void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
 {
+  if (repeats_ && time > end())
+  {
+    time = begin() + std::fmod(time - begin(), end() - begin());
+  }
   if (time <= begin() || time >= end())
   {
     const ArmSetPoint& point = time <= begin() ? points_.front() : points_.back();
@@ -33,7 +44,45 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
     const double c3 = length * (a.velocity + b.velocity) - 2.0 * way;
     motion[i].position = a.position + s * (length * a.velocity + s * (c2 + s * c3));
     motion[i].velocity = a.velocity + s * (2.0 * c2 + 3.0 * s * c3) / length;
-    motion[i].acceleration = a.acceleration + s * (b.acceleration - a.acceleration);
+    motion[i].acceleration = accelerations_ == ArmAccelerations::GIVEN ?
+                                 a.acceleration + s * (b.acceleration - a.acceleration) :
+                                 (2.0 * c2 + 6.0 * s * c3) / (length * length);
   }
+}
+
+ArmMotion gentleMotion(const ArmDescription& arm)
+{
+  constexpr double ACCELERATION = 2.0;             // [rad/s^2]
+  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };  // of the joint that goes farthest [rad/s]
+  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // from the pose in the middle, both ways [rad]
+  constexpr double PERIOD = 0.008;                               // of the set points [s]
+  const std::size_t joints = arm.joints.size();
+  const bool is_known = std::all_of(arm.joints.begin(), arm.joints.end(),
+                                    [](const ArmJoint& joint)
+                                    { return joint.speed_limit > 0.0 && joint.torque_limit > 0.0; });
+  const std::vector<double>& middle = arm.joints[std::min<std::size_t>(1, joints - 1)].check_up;
+  std::vector<ArmSetPoint> points;
+  if (!is_known || middle.empty())
+  {
+    points.push_back({ 0.0, std::vector<JointMotion>(joints) });
+    return ArmMotion(points);
+  }
+  std::vector<ArmMove> moves;
+  for (const double speed : SPEEDS)
+  {
+    for (const double side : { 1.0, -1.0, 0.0 })
+    {
+      moves.push_back({ middle, speed, ACCELERATION });
+      for (std::size_t i = 0; i < joints; ++i)
+      {
+        moves.back().target[i] += side * WAYS[i % WAYS.size()];
+      }
+    }
+  }
+  for (ArmInstant& instant : sampleMoves(arm, middle, moves, PERIOD))
+  {
+    points.push_back({ instant.time, std::move(instant.joints) });
+  }
+  return ArmMotion(std::move(points), ArmAccelerations::GIVEN, true);
 }
 }  // namespace hjt

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "arm/arm_dynamics.hpp"
@@ -14,13 +16,25 @@ struct ArmSetPoint
   std::vector<JointMotion> joints;  ///< all
 };
 
-/// A commanded motion between its set points: angles by cubics that have the set points' angles and speeds,
-/// accelerations linear between theirs. Before the first and after the last it stands still there.
+/// Accelerations between set points.
+enum class ArmAccelerations : std::uint8_t
+{
+  GIVEN,    ///< linear between those of the set points, which lie close together
+  OF_CUBICS ///< those of the angles between them; the set points' own are not read
+};
+
+/// A commanded motion between its set points: angles by cubics that have the set points' angles and speeds. Before the
+/// first and after the last it stands still there.
 class ArmMotion
 {
 public:
-  /// At least one set point, in order of time; otherwise undefined.
-  explicit ArmMotion(std::vector<ArmSetPoint> points) : points_(std::move(points)) {}
+  /// At least one set point, in order of time; otherwise undefined. `repeats`: after the last it goes on from the
+  /// first, which then has the same angles.
+  explicit ArmMotion(std::vector<ArmSetPoint> points, ArmAccelerations accelerations = ArmAccelerations::GIVEN,
+                     bool repeats = false)
+    : points_(std::move(points)), accelerations_(accelerations), repeats_(repeats)
+  {
+  }
 
   double begin() const noexcept { return points_.front().time; }  ///< [s]
   double end() const noexcept { return points_.back().time; }     ///< [s]
@@ -30,8 +44,18 @@ public:
   /// Fast for times that go forward; `motion`: of the joints' size.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
+  /// The first set point becomes this one, of as many joints.
+  void beginFrom(const std::vector<JointMotion>& joints) noexcept { points_.front().joints = joints; }
+
 private:
   std::vector<ArmSetPoint> points_;
+  ArmAccelerations accelerations_;
+  bool repeats_;
   std::size_t last_{};  // set point not after the time asked for last
 };
+
+/// A gentle motion of all joints that comes back to where it began, again and again: slow and fast, each joint both
+/// ways. About the pose in which the arm stands upright for its check-up. An arm without ArmJoint::check_up or limits
+/// stands still at angles of 0. @throws ParameterError if it would go beyond a limit.
+ArmMotion gentleMotion(const ArmDescription& arm);
 }  // namespace hjt

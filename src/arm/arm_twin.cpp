@@ -66,7 +66,7 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
 
 ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
                  const SurfaceSource& surface_source, double mass_rate)
-  : dynamics_(arm), start_(start), motion_(arm.joints.size()), next_(motion_), bias_(arm.joints.size())
+  : dynamics_(arm), pose_at_start_(start), zero_(start), motion_(arm.joints.size()), next_(motion_), bias_(arm.joints.size())
 {
   const std::size_t joints = arm.joints.size();
   if (drives.size() != joints || start.size() != joints)
@@ -108,7 +108,7 @@ bool ArmTwin::reset(Stamp stamp) noexcept
 {
   for (std::size_t i = 0; i < motion_.size(); ++i)
   {
-    motion_[i] = { start_[i], 0.0, 0.0 };
+    motion_[i] = { pose_at_start_[i], 0.0, 0.0 };
   }
   next_ = motion_;
   steps_ = 0;
@@ -122,7 +122,7 @@ bool ArmTwin::reset(Stamp stamp) noexcept
     good = drives_[i].reset(stamp) && good;
     link_torque_[k] = bias_[i];
     // The arm hangs in its drives' compliance, at the angles that it starts with.
-    start_[i] = motion_[i].position - drives_[i].outputs().output_angle;
+    zero_[i] = motion_[i].position - drives_[i].outputs().output_angle;
   }
   link_torque_before_ = link_torque_;
   energy_at_start_ = armEnergy();
@@ -200,7 +200,7 @@ void ArmTwin::observe() noexcept
   {
     const JointOutputs outputs = drives_[i].outputs();
     const double acceleration = inverse_.row(static_cast<Eigen::Index>(i)).dot(excess_);
-    motion_[i] = { start_[i] + outputs.output_angle, outputs.output_velocity, acceleration };
+    motion_[i] = { zero_[i] + outputs.output_angle, outputs.output_velocity, acceleration };
   }
 }
 

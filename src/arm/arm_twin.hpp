@@ -57,7 +57,7 @@ public:
   /// Angles, speeds and accelerations of the links at the present instant.
   const std::vector<JointMotion>& motion() const noexcept { return motion_; }
   /// Of the encoders' zero: joint angle less output angle of the drive [rad].
-  double startAngle(std::size_t joint) const noexcept { return start_[joint]; }
+  double startAngle(std::size_t joint) const noexcept { return zero_[joint]; }
   ToolPose toolPose() noexcept { return dynamics_.toolPose(motion_); }
 
   /// On the tip, from the next step on, in the frame of the base.
@@ -76,7 +76,8 @@ private:
   void observe() noexcept;
 
   ArmDynamics dynamics_;
-  std::vector<double> start_;
+  std::vector<double> pose_at_start_;  // [rad]
+  std::vector<double> zero_;           // of the encoders, joint angle less output angle [rad]
   std::vector<Twin> drives_;
   std::vector<double> spline_inertia_;  // [kg.m^2]
   std::int64_t mass_steps_;             // from one mass matrix to the next

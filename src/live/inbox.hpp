@@ -13,6 +13,12 @@
 
 namespace hjt
 {
+/// An input of a loop, which may advance several twins.
+struct LiveInput : Input
+{
+  std::size_t joint{};  ///< whose input it is; 0 where there is one twin
+};
+
 /// Hands inputs from the callbacks to the loop. Callbacks may wait for each other; the loop never waits.
 class Inbox
 {
@@ -22,7 +28,7 @@ public:
   Inbox() : inputs_(makeBuffer()) {}
 
   /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
-  void push(const Input& input)
+  void push(const Input& input, std::size_t joint = 0)
   {
     if (!std::isfinite(input.value))
     {
@@ -35,13 +41,13 @@ public:
       ++overflow_;
       return;
     }
-    inputs_.push_back(input);
+    inputs_.push_back({ input, joint });
   }
 
   /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`.
   /// Inputs without room there stay here. While a callback holds the lock, nothing is taken; the next call gets all.
   /// Allocates nothing.
-  void take(std::vector<Input>& inputs) noexcept
+  void take(std::vector<LiveInput>& inputs) noexcept
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (!lock.owns_lock() || inputs_.empty())
@@ -55,9 +61,9 @@ public:
   }
 
   /// An empty vector with room for a whole inbox.
-  static std::vector<Input> makeBuffer()
+  static std::vector<LiveInput> makeBuffer()
   {
-    std::vector<Input> buffer;
+    std::vector<LiveInput> buffer;
     buffer.reserve(CAPACITY);
     return buffer;
   }
@@ -67,7 +73,7 @@ public:
 
 private:
   std::mutex mutex_;
-  std::vector<Input> inputs_;
+  std::vector<LiveInput> inputs_;
   std::atomic<std::uint64_t> not_finite_{ 0 };
   std::atomic<std::uint64_t> overflow_{ 0 };
 };

@@ -66,7 +66,7 @@ void prepareThread()
 }
 }  // namespace
 
-TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+TwinLoop::TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
                    AfterCycle after_cycle)
   : twin_(twin)
   , inbox_(inbox)
@@ -74,11 +74,11 @@ TwinLoop::TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, 
   , clock_kind_(clock_kind)
   , after_step_(std::move(after_step))
   , after_cycle_(std::move(after_cycle))
-  , input_delay_(toStampLength(twin.parameters().input.delay))
+  , input_delay_(toStampLength(parameters.input.delay))
   , shortest_pause_(after_cycle_ ? shortestPause(input_delay_) : CYCLE_PERIOD)
-  , deadline_(toStampLength(twin.parameters().realtime.deadline))
-  , step_length_(toStampLength(1.0 / twin.parameters().solver.rate))
-  , wait_for_first_input_(twin.parameters().input.wait_for_first_input)
+  , deadline_(toStampLength(parameters.realtime.deadline))
+  , step_length_(toStampLength(1.0 / parameters.solver.rate))
+  , wait_for_first_input_(parameters.input.wait_for_first_input)
   , arrived_(Inbox::makeBuffer())
   , thread_([this] { run(); })
 {
@@ -165,9 +165,7 @@ void TwinLoop::cycle() noexcept
     catchUp(limit);
   }
   status_.twin_stamp = twin_.stamp();
-  status_.outputs = twin_.outputs();
-  status_.counters = twin_.counters();
-  status_.assessment = twin_.assessment();
+  twin_.show(status_);
 }
 
 /// @returns whether the clock has jumped back.
@@ -213,7 +211,7 @@ void TwinLoop::stampInputs(std::size_t waiting) noexcept
     input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
   }
   const auto kept_end = std::remove_if(
-      fresh, arrived_.end(), [this](const Input& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+      fresh, arrived_.end(), [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
   status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
   arrived_.erase(kept_end, arrived_.end());
 }
@@ -228,7 +226,7 @@ bool TwinLoop::tryStart(Stamp limit) noexcept
   // Several topics may bring the first input, in any order: the earliest stamp counts once the clock has passed it.
   status_.state = LoopState::WAITING_FOR_INPUT;
   Stamp first = std::numeric_limits<Stamp>::max();
-  for (const Input& input : arrived_)
+  for (const LiveInput& input : arrived_)
   {
     if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
     {
@@ -255,7 +253,7 @@ void TwinLoop::start(Stamp stamp) noexcept
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
   // The twin was not there yet when these were due: they act from its first instant and are not late.
-  for (Input& input : arrived_)
+  for (LiveInput& input : arrived_)
   {
     input.stamp = std::max(input.stamp, stamp);
   }
@@ -263,7 +261,7 @@ void TwinLoop::start(Stamp stamp) noexcept
 
 void TwinLoop::handOverInputs() noexcept
 {
-  for (const Input& input : arrived_)
+  for (const LiveInput& input : arrived_)
   {
     twin_.push(input);
     if (input.kind == InputKind::MOTOR_TORQUE)
@@ -285,7 +283,7 @@ void TwinLoop::catchUp(Stamp limit) noexcept
   const Stamp until = std::min(limit, twin_.stamp() + MAX_CATCH_UP);
   while (twin_.step(until))
   {
-    after_step_(twin_);
+    after_step_();
   }
   status_.lag = std::max<Stamp>(limit - twin_.stamp(), 0);
   status_.largest_lag = std::max(status_.largest_lag, status_.lag);

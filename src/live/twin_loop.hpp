@@ -73,6 +73,45 @@ struct LoopStatus
   LoopTiming timing;
 };
 
+/// What a loop advances: a twin, or several that step together. Nothing may wait or allocate.
+class Advanced
+{
+public:
+  virtual ~Advanced() = default;
+
+  virtual bool reset(Stamp stamp) noexcept = 0;           ///< as Twin::reset
+  virtual void push(const LiveInput& input) noexcept = 0;  ///< as Twin::push
+  virtual bool step(Stamp until) noexcept = 0;            ///< as Twin::step
+  virtual Stamp stamp() const noexcept = 0;               ///< as Twin::stamp
+  virtual void show(LoopStatus& status) noexcept = 0;  ///< once a cycle: fills in what the status has of one twin
+
+protected:
+  Advanced() = default;
+  Advanced(const Advanced&) = default;
+  Advanced& operator=(const Advanced&) = default;
+};
+
+/// One twin.
+class AdvancedTwin : public Advanced
+{
+public:
+  explicit AdvancedTwin(Twin& twin) : twin_(twin) {}
+
+  bool reset(Stamp stamp) noexcept override { return twin_.reset(stamp); }
+  void push(const LiveInput& input) noexcept override { twin_.push(input); }
+  bool step(Stamp until) noexcept override { return twin_.step(until); }
+  Stamp stamp() const noexcept override { return twin_.stamp(); }
+  void show(LoopStatus& status) noexcept override
+  {
+    status.outputs = twin_.outputs();
+    status.counters = twin_.counters();
+    status.assessment = twin_.assessment();
+  }
+
+private:
+  Twin& twin_;
+};
+
 /// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
 ///
 /// The twin stays `input.delay` behind the clock. It never skips time: after a jump forward it catches up, a
@@ -86,13 +125,13 @@ class TwinLoop
 {
 public:
   using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
-  using AfterStep = std::function<void(Twin&)>;  ///< called at every simulated instant; must not wait or allocate
+  using AfterStep = std::function<void()>;       ///< called at every simulated instant; must not wait or allocate
   /// Called after each cycle with the instant it has reached; returns the instant of the next output [ns].
   /// Must not wait or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// Starts the thread. Without `after_cycle` every instant is an output.
-  TwinLoop(Twin& twin, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
+  /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: of the twin or one of several.
+  TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
            AfterCycle after_cycle = {});
 
   /// Stops the thread.
@@ -121,7 +160,7 @@ private:
   void judgeLateness(Stamp due) noexcept;
   void keepTimes(std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) noexcept;
 
-  Twin& twin_;
+  Advanced& twin_;
   Inbox& inbox_;
   Clock clock_;
   const ClockKind clock_kind_;
@@ -132,7 +171,7 @@ private:
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;
-  std::vector<Input> arrived_;  ///< not yet given to the twin, which takes them once it has started
+  std::vector<LiveInput> arrived_;  ///< not yet given to the twin, which takes them once it has started
   Stamp released_{};            ///< no instant simulated now was due before this time of the clock [ns]
   Stamp start_stamp_{};         ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;

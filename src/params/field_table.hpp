@@ -355,7 +355,7 @@ void visitFields(P& p, Visitor&& visit)
   visit("life.repeated_peak_torque", "N.m", p.life.repeated_peak_torque, Range{ 1e-3, 1e5 },
         ofOthers("limit of the catalogue for torques of starting and stopping"));
   visit("life.momentary_peak_torque", "N.m", p.life.momentary_peak_torque, Range{ 1e-3, 1e5 },
-        ofOthers("limit of the catalogue for a collision"));
+        "limit of the catalogue for a collision");
   visit("life.momentary_peak_cycles", "-", p.life.momentary_peak_cycles, Range{ 1.0, 1e15 },
         ofOthers("deflections of the flexspline that the catalogue allows under momentary peaks"));
   visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },

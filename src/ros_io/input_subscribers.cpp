@@ -13,12 +13,10 @@ namespace
 {
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-/// Faults come one by one, and each warning has a reason of its own [s].
-constexpr double FAULT_WARNING_PERIOD = 1.0;
 }  // namespace
 
 InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox)
-  : parameters_(parameters), names_(parameters.joint.name), inbox_(inbox)
+  : names_(parameters.joint.name), inbox_(inbox), faults_(InputTopics{ node, too_large_ }, parameters, inbox)
 {
   using sensor_msgs::JointState;
   using std_msgs::Float64;
@@ -30,8 +28,6 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& para
                               [this](const auto& event) { receiveNow(InputKind::LOAD_TORQUE, event); }),
     inputs.subscribe<JointState>(topics::COMMAND, [this](const auto& event) { receiveCommand(*event.getMessage()); }),
     inputs.subscribe<JointState>(topics::LOAD, [this](const auto& event) { receiveLoad(*event.getMessage()); }),
-    inputs.subscribe<harmonic_joint_twin::Fault>(topics::INJECT_FAULT,
-                                                 [this](const auto& event) { receiveFault(*event.getMessage()); }),
   };
 }
 
@@ -62,24 +58,6 @@ void InputSubscribers::receiveLoad(const sensor_msgs::JointState& message)
     return;
   }
   refuse(status, topics::LOAD, names_.joint);
-}
-
-void InputSubscribers::receiveFault(const harmonic_joint_twin::Fault& message)
-{
-  std::vector<Fault> steps;
-  const std::string errors = readFault(message, parameters_, steps);
-  if (!errors.empty())
-  {
-    ++refused_fault_;
-    ROS_WARN_STREAM_THROTTLE(FAULT_WARNING_PERIOD, "Refused a message on ~" << topics::INJECT_FAULT << ", "
-                                                                            << refused_fault_ << " so far: " << errors);
-    return;
-  }
-  const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());
-  for (const Fault& fault : steps)
-  {
-    inbox_.push({ stamp, InputKind::FAULT, 0.0, fault });
-  }
 }
 
 void InputSubscribers::receiveStamped(InputKind kind, const ros::Time& stamp, double torque)

@@ -14,6 +14,7 @@
 
 #include "live/inbox.hpp"
 #include "messages/conversions.hpp"
+#include "ros_io/fault_subscriber.hpp"
 
 namespace hjt
 {
@@ -33,23 +34,21 @@ class InputSubscribers
 public:
   InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox);
 
-  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, refused_fault_, too_large_ }; }
+  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, faults_.refused(), too_large_ }; }
 
 private:
   void receiveNow(InputKind kind, const ros::MessageEvent<const std_msgs::Float64>& event);
   void receiveCommand(const sensor_msgs::JointState& message);
   void receiveLoad(const sensor_msgs::JointState& message);
-  void receiveFault(const harmonic_joint_twin::Fault& message);
   void receiveStamped(InputKind kind, const ros::Time& stamp, double torque);
   void refuse(EffortStatus status, const char* topic, const std::string& expected);
 
-  const Parameters parameters_;
   const JointNames names_;
   Inbox& inbox_;
   std::atomic<std::uint64_t> unknown_joint_{ 0 };
   std::atomic<std::uint64_t> missing_effort_{ 0 };
-  std::atomic<std::uint64_t> refused_fault_{ 0 };
   std::atomic<std::uint64_t> too_large_{ 0 };
-  std::array<ros::Subscriber, 5> subscribers_;
+  FaultSubscriber faults_;
+  std::array<ros::Subscriber, 4> subscribers_;
 };
 }  // namespace hjt

@@ -2,24 +2,14 @@
 #include "ros_io/output_publishers.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <exception>
 #include <limits>
 
 #include "base/text_stream.hpp"
-
-#include <ros/console.h>
 
 namespace hjt
 {
 namespace
 {
-using std::chrono::milliseconds;
-
-/// How long a message waits at most if the loop's wake-up was missed: it does not wait for the mutex.
-constexpr milliseconds DRAIN_PERIOD{ 20 };
-/// The same for a change of the faults while there are no subscribers.
-constexpr milliseconds IDLE_PERIOD{ 100 };
 /// Slots for lists of faults: one more change has to wait for the next instant.
 constexpr std::size_t FAULT_SLOTS = 16;
 }  // namespace
@@ -30,18 +20,14 @@ OutputPublishers::OutputPublishers(ros::NodeHandle& node, const Twin& twin)
   , faults_(FAULT_SLOTS, {})
   , faults_publisher_(node.advertise<harmonic_joint_twin::Faults>(topics::FAULTS, 1, true))
   , offered_faults_(std::numeric_limits<std::uint64_t>::max())
-  , thread_([this] { run(); })
+  , thread_(
+        [this]
+        {
+          outputs_.forEachSink([](auto& sink) { sink.drain(); });
+          drainFaults();
+        },
+        [this] { return isHeard(); })
 {
-}
-
-OutputPublishers::~OutputPublishers()
-{
-  {
-    const std::lock_guard<std::mutex> lock(wake_up_mutex_);
-    stopping_ = true;
-  }
-  wake_up_.notify_one();
-  thread_.join();
 }
 
 void OutputPublishers::offer(Twin& twin) noexcept
@@ -54,7 +40,7 @@ Stamp OutputPublishers::finishCycle(Stamp instant) noexcept
 {
   if (isHeard())
   {
-    wake_up_.notify_one();
+    thread_.wakeUp();
   }
   return outputs_.nextDue(instant);
 }
@@ -110,27 +96,4 @@ bool OutputPublishers::isHeard() const noexcept
   return std::any_of(heard.begin(), heard.end(), [](bool one) { return one; });
 }
 
-void OutputPublishers::run()
-{
-  std::unique_lock<std::mutex> lock(wake_up_mutex_);
-  for (bool stopping = false; !stopping;)
-  {
-    if (!stopping_)
-    {
-      wake_up_.wait_for(lock, isHeard() ? DRAIN_PERIOD : IDLE_PERIOD);
-    }
-    stopping = stopping_;
-    lock.unlock();
-    try
-    {
-      outputs_.forEachSink([](auto& sink) { sink.drain(); });
-      drainFaults();
-    }
-    catch (const std::exception& error)  // the thread's border: the next round goes on
-    {
-      ROS_WARN_STREAM_THROTTLE(60.0, "Messages of the twin are not published: " << error.what());
-    }
-    lock.lock();
-  }
-}
 }  // namespace hjt

@@ -2,28 +2,22 @@
 #pragma once
 
 #include <array>
-#include <condition_variable>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include <ros/node_handle.h>
 
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "ros_io/output_channel.hpp"
+#include "ros_io/publisher_thread.hpp"
 
 namespace hjt
 {
-/// Everything the twin publishes. The loop fills the messages that are due and have subscribers; serialising and
-/// sending, which allocate and
-/// lock, happen in a thread of their own.
+/// Everything the twin publishes. The loop fills the messages that are due and have subscribers; a thread sends them.
 class OutputPublishers
 {
 public:
   OutputPublishers(ros::NodeHandle& node, const Twin& twin);
-
-  /// Stops the thread after the messages already filled.
-  ~OutputPublishers();
 
   /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
   void offer(Twin& twin) noexcept;
@@ -46,12 +40,8 @@ private:
   };
   void offerFaults(const Twin& twin) noexcept;
   void drainFaults();
-  void run();
   bool isHeard() const noexcept;
 
-  std::mutex wake_up_mutex_;
-  std::condition_variable wake_up_;
-  bool stopping_{};  // under wake_up_mutex_
   Outputs<OutputChannel> outputs_;
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
@@ -59,6 +49,6 @@ private:
   std::uint64_t offered_faults_;  // version of the list that was offered last
   mutable std::mutex text_mutex_;
   std::string active_faults_;
-  std::thread thread_;
+  PublisherThread thread_;  // last: it uses the rest
 };
 }  // namespace hjt

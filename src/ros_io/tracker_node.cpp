@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include <ros/console.h>
-#include <ros/names.h>
-#include <ros/this_node.h>
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
@@ -15,6 +13,7 @@
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
+#include "ros_io/joint_name.hpp"
 #include "tracking/plausible.hpp"
 
 namespace hjt
@@ -53,13 +52,6 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const
   }
   friction_.emplace(std::move(trackers), repeat_tolerance_);
   subscribe(node);
-}
-
-std::string TrackerNode::jointName(const ArmJoint& joint)
-{
-  const std::string& name = ros::this_node::getName();
-  const std::string node = name.substr(name.rfind('/') + 1);
-  return ros::names::append(ros::names::parentNamespace(name), joint.short_name + "/" + node);
 }
 
 void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, bool is_identified)

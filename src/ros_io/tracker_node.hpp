@@ -29,9 +29,6 @@ public:
   /// Of one joint. @param parameters with input.mode other than commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// Name of a joint of an arm in the graph: NAMESPACE/SHORT_NAME/NODE. Its topics lie below.
-  static std::string jointName(const ArmJoint& joint);
-
   /// Of an arm: parameters of each of its joints. `is_identified`: their friction is that of this very arm.
   /// @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,

@@ -1,38 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_io/twin_node.hpp"
 
-#include <string>
-
-#include <ros/console.h>
-
-#include "messages/time.hpp"
+#include "ros_io/live_loop.hpp"
 #include "ros_io/node_surface_source.hpp"
 
 namespace hjt
 {
 namespace
 {
-Stamp now()
-{
-  return fromRosTime(ros::Time::now());
-}
-
-/// Whether the clock is the system's or somebody's on /clock is settled once the node runs.
-ClockKind clockKind()
-{
-  return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
-}
-
-RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
-{
-  RealtimeState state = applyRealtime(parameters, loop.thread());
-  for (const std::string& refusal : state.refusals)
-  {
-    ROS_WARN_STREAM(refusal);
-  }
-  return state;
-}
-
 Twin watchedTwin(const Parameters& parameters)
 {
   // In simulated time the twin waits for its surface, so that a replay gives the same bits every time.
@@ -44,15 +19,16 @@ Twin watchedTwin(const Parameters& parameters)
 
 TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
   : twin_(watchedTwin(parameters))
+  , advanced_(twin_)
   , publishers_(node, twin_)
   , life_(node, parameters)
   , loop_(
-        twin_, inbox_, now, clockKind(),
-        [this](Twin& twin)
+        advanced_, parameters, inbox_, rosNow, rosClockKind(),
+        [this]
         {
-          publishers_.offer(twin);
-          const JointOutputs& joint = twin.outputs();
-          life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature, twin.assessment());
+          publishers_.offer(twin_);
+          const JointOutputs& joint = twin_.outputs();
+          life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature, twin_.assessment());
         },
         [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(parameters.realtime, loop_))
@@ -73,7 +49,7 @@ bool TwinNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 
 bool TwinNode::setBrake(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
 {
-  inbox_.push({ now(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
+  inbox_.push({ rosNow(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
   response.success = true;
   response.message = request.data ? "brake engages" : "brake releases";
   return true;

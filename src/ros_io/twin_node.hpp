@@ -33,6 +33,7 @@ private:
   bool setBrake(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
 
   Twin twin_;
+  AdvancedTwin advanced_;
   Inbox inbox_;
   OutputPublishers publishers_;
   LifePublisher life_;

@@ -14,6 +14,11 @@ namespace hjt
 {
 using namespace joint_state;
 
+namespace
+{
+constexpr double AIM = 0.8;  // of the phase limit, of a substep: under load friction stiffens the joint further [-]
+}  // namespace
+
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
   : step_(1.0 / parameters.solver.rate), substep_(step_), dynamics_(model, parameters.solver)
 {
@@ -24,51 +29,59 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
         "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
         roundedText(dynamics_.status.residual, 6) + " N)");
   }
-  const double frequency = divideStep(parameters);
+  prepareDivision(parameters);
+  const double fastest = frequency(dynamics_.inertia()[1]);
+  const double longest = MAX_SUBSTEPS * AIM * phase_limit_;
+  if (fastest * step_ > longest)
+  {
+    TextStream text;
+    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << dynamics_.inertia()[0]
+         << " kg.m^2 at the motor and " << dynamics_.inertia()[1] << " kg.m^2 at the output the joint can swing at "
+         << fastest << " rad/s, which needs at least " << fastest / longest
+         << " Hz (or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle)";
+    throw ParameterError(text.str());
+  }
+  substeps_ = substepsFor(fastest * step_);
+  substep_ = step_ / substeps_;
   if (parameters.solver.stepper == StepperKind::ADAPTIVE)
   {
-    adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), frequency);
+    adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), fastest);
   }
 }
 
-/// @returns the joint's largest natural frequency [rad/s].
-double JointStepper::divideStep(const Parameters& parameters)
+void JointStepper::prepareDivision(const Parameters& parameters) noexcept
 {
-  constexpr double AIM = 0.8 * MAX_PHASE_ADVANCE;  // of a substep: under load friction stiffens the joint further [rad]
-  constexpr double MAX_PHASE = MAX_SUBSTEPS * AIM;
-  constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
-  // Fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the cup.
-  const Eigen::Vector2d inertia = dynamics_.inertia();
+  const double motor = dynamics_.inertia()[0];
   const std::array<double, 3>& slopes = parameters.cup.torsion_stiffness;
-  const double stiffness = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
+  stiffest_ = *std::max_element(slopes.begin(), slopes.end()) + dynamics_.model().cup_friction.stiffness();
   const double ratio = nominalRatio(parameters.gear);
-  double square = stiffness * (1.0 / inertia[1] + 1.0 / (inertia[0] * ratio * ratio)) +
-                  dynamics_.model().motor.coggingStiffness() / inertia[0];
+  motor_square_ = stiffest_ / (motor * ratio * ratio) + dynamics_.model().motor.coggingStiffness() / motor;
   if (parameters.motor.presliding_angle > 0.0)
   {
     // Just after a reversal, from full friction.
     dynamics_.updateFriction({ 0.0, 0.0 });
-    square += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / inertia[0];
+    motor_square_ += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / motor;
   }
-  const double frequency = std::sqrt(square);
-  const double phase = frequency * step_;
-  if (phase > MAX_PHASE)
+}
+
+/// Of the fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the
+/// cup [rad/s].
+double JointStepper::frequency(double output_inertia) const noexcept
+{
+  return std::sqrt(stiffest_ / output_inertia + motor_square_);
+}
+
+/// `phase`: of that swing in a step [rad].
+int JointStepper::substepsFor(double phase) const noexcept
+{
+  constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
+  if (phase <= phase_limit_)
   {
-    TextStream text;
-    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << inertia[0]
-         << " kg.m^2 at the motor and " << inertia[1] << " kg.m^2 at the output the joint can swing at " << frequency
-         << " rad/s, which needs at least " << frequency / MAX_PHASE
-         << " Hz (or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle)";
-    throw ParameterError(text.str());
+    return 1;
   }
-  if (phase > MAX_PHASE_ADVANCE)
-  {
-    const double wanted = std::max(phase / AIM, std::min<double>(step_ / LENGTH, MAX_SUBSTEPS));
-    const int least = static_cast<int>(std::ceil(wanted * (1.0 - 1e-12)));
-    substeps_ = least + (least % 2 == 0 ? 1 : 0);
-    substep_ = step_ / substeps_;
-  }
-  return frequency;
+  const double wanted = std::max(phase / (AIM * phase_limit_), step_ / LENGTH);
+  const int least = static_cast<int>(std::ceil(std::min<double>(wanted, MAX_SUBSTEPS) * (1.0 - 1e-12)));
+  return least + (least % 2 == 0 ? 1 : 0);
 }
 
 void JointStepper::useSurface(const ResponseSurface* surface) noexcept
@@ -103,10 +116,31 @@ bool JointStepper::reset(double load_torque) noexcept
 
 void JointStepper::setOutputInertia(double inertia) noexcept
 {
+  if (phase_limit_ != MAX_PHASE_ADVANCE_IN_ARM || inertia != dynamics_.inertia()[1])
+  {
+    phase_limit_ = MAX_PHASE_ADVANCE_IN_ARM;
+    divideAgain(inertia);
+  }
   // The speed stays, and with it the energy of the output changes: what the arm does to it.
   const double speed = x_[OUTPUT_SPEED];
   x_[LOAD_WORK] -= 0.5 * (inertia - dynamics_.inertia()[1]) * speed * speed;
   dynamics_.setOutputInertia(inertia);
+}
+
+/// More substeps once the phase is beyond its limit, fewer once fewer have it where it is aimed at.
+void JointStepper::divideAgain(double output_inertia) noexcept
+{
+  const double phase = frequency(output_inertia) * step_;
+  const int wanted = substepsFor(phase);
+  const bool too_few = phase > substeps_ * phase_limit_;
+  const bool too_many = wanted < substeps_ && phase <= wanted * AIM * phase_limit_;
+  if (too_few || too_many)
+  {
+    leapfrog_.comeBack(x_);
+    substeps_ = wanted;
+    substep_ = step_ / substeps_;
+    leapfrog_.goAhead(dynamics_, x_, substep_);
+  }
 }
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
@@ -250,8 +284,7 @@ double JointStepper::phaseAdvance() const noexcept
 bool JointStepper::isCoarse() const noexcept
 {
   // The square of the fastest swing is at most the sum of the squares.
-  return substep_ * substep_ * swingSquares().sum() > MAX_PHASE_ADVANCE * MAX_PHASE_ADVANCE &&
-         phaseAdvance() > MAX_PHASE_ADVANCE;
+  return substep_ * substep_ * swingSquares().sum() > phase_limit_ * phase_limit_ && phaseAdvance() > phase_limit_;
 }
 
 double JointStepper::energyResidual() const noexcept

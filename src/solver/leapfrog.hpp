@@ -53,6 +53,8 @@ public:
   /// Before a first step, at rest under a load [N.m]: nothing is delivered.
   void reset(double load_torque) noexcept
   {
+    speeds_.setZero();
+    work_.setZero();
     delivered_ = 0.0;
     link_torque_ = load_torque;
   }

@@ -23,6 +23,7 @@ constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]
 constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
 constexpr double SAME_TORQUE = 1e-6;      // of the torque limit, that equal torques may differ by [-]
 constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
+constexpr double COLLISION_MARGIN = 1.25;  // over the gear's momentary peak torque [-]
 
 /// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in
 /// three by the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor
@@ -82,6 +83,14 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double velocity_ratio, 
     ++groups;
   }
 }
+
+/// The motor of a wrist, held fast, would bring 2.6 times what breaks its gear, which no table holds within its size.
+double tabulatedTorque(const Parameters& parameters)
+{
+  const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);
+  return std::max(parameters.output.load_torque_limit,
+                  std::min(of_motor, COLLISION_MARGIN * parameters.life.momentary_peak_torque));
+}
 }  // namespace
 
 std::string tooManyPoints(const Parameters& parameters, std::size_t most)
@@ -107,7 +116,7 @@ SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   , pitch_(model_.ring.rest.pitchAngle())
   , ratio_(nominalRatio(parameters.gear))
   , wave_amplitude_(model_.ring.gear.wave_amplitude)
-  , torque_limit_(std::max(parameters.output.load_torque_limit, parameters.motor.torque_limit * ratio_))
+  , torque_limit_(tabulatedTorque(parameters))
   , motor_limit_(parameters.motor.torque_limit > 0.0 ? parameters.motor.torque_limit : torque_limit_ / ratio_)
   , softest_(parameters.cup.torsion_stiffness[0])
   , static_friction_(parameters.mesh.friction_static)

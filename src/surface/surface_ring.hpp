@@ -37,7 +37,9 @@ public:
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]
-  double torqueLimit() const noexcept { return torque_limit_; }  ///< of load or motor, at the output [N.m]
+  /// Of load or motor, at the output; of a motor beyond what the gear bears in a collision, a quarter more than that
+  /// [N.m].
+  double torqueLimit() const noexcept { return torque_limit_; }
   const JointModel& model() const noexcept { return model_; }
   JointModel& editModel() noexcept { return model_; }  ///< between two moves
   /// Of the wave generator on each tooth, N, at the present place [N].

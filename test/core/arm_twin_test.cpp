@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 
 #include "arm/arm_configuration.hpp"
+#include "arm/arm_motion.hpp"
+#include "arm/moving_arm.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "test/support/allocation_count.hpp"
@@ -176,6 +178,100 @@ TEST(ArmTwin, StandsInItsBrakesAsItHangs)
   // Weight of both rods about the first joint.
   const double torque = 9.81 * (4.0 * 0.3 * std::cos(0.3) + 2.0 * (0.5 * std::cos(0.3) + 0.3 * std::cos(-0.5)));
   EXPECT_NEAR(std::abs(arm.drive(0).linkTorque()), torque, CREEP * arm.drive(0).outputs().torsional_stiffness);
+}
+
+/// Two joints that go to and fro within a second.
+ArmMotion swing(bool repeats)
+{
+  std::vector<ArmSetPoint> points;
+  for (const double way : { 0.0, 0.1, 0.0 })
+  {
+    points.push_back({ 0.5 * static_cast<double>(points.size()), { { 0.3 + way, 0.0, 0.0 }, { -0.8 - way, 0.0, 0.0 } } });
+  }
+  return ArmMotion(points, ArmAccelerations::OF_CUBICS, repeats);
+}
+
+TEST(ArmMotion, RatesAreThoseOfItsAngles)
+{
+  constexpr double STEP = 1e-5;
+  ArmMotion motion = swing(false);
+  std::array<std::vector<JointMotion>, 3> at{ std::vector<JointMotion>(2), std::vector<JointMotion>(2),
+                                              std::vector<JointMotion>(2) };
+  for (const double time : { 0.1, 0.3, 0.7, 0.95 })
+  {
+    for (std::size_t k = 0; k < at.size(); ++k)
+    {
+      motion.at(time + (static_cast<double>(k) - 1.0) * STEP, at[k]);
+    }
+    EXPECT_NEAR(at[1][0].velocity, (at[2][0].position - at[0][0].position) / (2.0 * STEP), 1e-8);
+    EXPECT_NEAR(at[1][0].acceleration, (at[2][0].velocity - at[0][0].velocity) / (2.0 * STEP), 1e-8);
+  }
+}
+
+TEST(ArmMotion, RepeatsOrStandsStillAtItsEnd)
+{
+  std::vector<JointMotion> at(2);
+  std::vector<JointMotion> later(2);
+  ArmMotion repeated = swing(true);
+  repeated.at(0.3, at);
+  repeated.at(7.3, later);
+  EXPECT_NEAR(later[0].position, at[0].position, 1e-12);
+  EXPECT_NEAR(later[1].velocity, at[1].velocity, 1e-12);
+  swing(false).at(7.3, later);
+  EXPECT_EQ(later[0].position, 0.3);
+  EXPECT_EQ(later[0].velocity, 0.0);
+}
+
+/// Of every shipped arm: beyond a limit it throws.
+TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
+{
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur16e" })
+  {
+    const ArmDescription arm = readArmDescription(findArm(name, CONFIG));
+    const ArmMotion motion = gentleMotion(arm);
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      double slowest = 0.0;
+      double fastest = 0.0;
+      for (const ArmSetPoint& point : motion.points())
+      {
+        slowest = std::min(slowest, point.joints[i].velocity);
+        fastest = std::max(fastest, point.joints[i].velocity);
+      }
+      EXPECT_GT(fastest, 0.6) << name << ' ' << i;
+      EXPECT_LT(slowest, -0.6) << name << ' ' << i;
+      EXPECT_NEAR(motion.points().front().joints[i].position, motion.points().back().joints[i].position, 1e-12);
+    }
+  }
+}
+
+TEST(MovingArm, GoesToAnotherMotionFromWhereItIs)
+{
+  constexpr double NEAR = 2e-3;  // of a set point [rad]
+  const ArmDescription description = rods("0 1 0", 2);
+  MovingArm arm(description, { drive(), drive() }, swing(true), {});
+  const auto expect_followed = [&](double until)
+  {
+    std::vector<JointMotion> wanted(2);
+    while (arm.step(toStampLength(until)))
+    {
+      arm.wanted(wanted);
+      ASSERT_NEAR(arm.twin().motion()[0].position, wanted[0].position, NEAR) << toSeconds(arm.twin().stamp());
+      ASSERT_NEAR(arm.twin().motion()[1].position, wanted[1].position, NEAR) << toSeconds(arm.twin().stamp());
+    }
+  };
+  expect_followed(MovingArm::SETTLING + 0.3);
+  ArmMotion other({ { 0.0, { {}, {} } }, { 0.4, { { 0.5, 0.0, 0.0 }, { -1.0, 0.0, 0.0 } } } },
+                  ArmAccelerations::OF_CUBICS);
+  const std::size_t before = allocationCount();
+  arm.follow(other);
+  EXPECT_EQ(allocationCount(), before);
+  expect_followed(MovingArm::SETTLING + 0.8);
+  EXPECT_NEAR(arm.twin().motion()[0].position, 0.5, NEAR);
+  EXPECT_NEAR(arm.reading(1).position, -1.0, NEAR);
+  ASSERT_TRUE(arm.reset(0));
+  EXPECT_EQ(arm.twin().motion()[0].position, 0.3);
+  expect_followed(MovingArm::SETTLING + 0.1);
 }
 
 TEST(ArmTwin, AllocatesNothingInAStep)

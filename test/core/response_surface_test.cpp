@@ -325,6 +325,48 @@ TEST(ResponseSurface, AgreesWithTheFullRingAtRandomAngles)
   expectTheFullRing(surfaceParameters(), surface(), 5e-3, 3000, { 4e-4, 5e-3, 0.01 });
 }
 
+/// Its motor, held fast, would bring 142 N.m, which no table of its gear holds. Up to the gear's momentary peak torque.
+TEST(ResponseSurface, OfAWristAgreesWithTheFullRing)
+{
+  const Parameters parameters = shippedParameters({ "solver.scene=auto" }, { "size_14" });
+  const SurfaceBuild build = buildSurface(parameters, JointModel(parameters), {});
+  ASSERT_EQ(build.failure_reason, "");
+  EXPECT_LT(build.table.nodes.size(), 100'000U);
+  const ResponseSurface table(build.table);
+  SurfaceRing ring(parameters, JointModel(parameters));
+  ASSERT_TRUE(ring.insert());
+  const double farthest = 0.4 * table.highest();
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  double v = 0.0;
+  double motor = 0.0;
+  double largest = 0.0;
+  std::array<double, 2> squares{};
+  constexpr int PLACES = 2000;
+  for (int i = 0; i < PLACES; ++i)
+  {
+    v = i % 50 == 0 ? farthest * part(random) : v + 1e-5 * part(random);
+    motor += 0.05 * part(random);
+    ASSERT_TRUE(ring.moveTo(motor, v));
+    const SurfaceNode node = ring.measure();
+    ResponseSurface::Place place;
+    ASSERT_TRUE(table.locate(motor, v + motor / ring.ratio(), place));
+    const RingResponse response = table.response(place);
+    const double output = response.output_torque + node[SurfaceNode::ENERGY_BY_V];
+    const double shaft = response.wave_generator_torque + node[SurfaceNode::ENERGY_BY_U] / ring.pitch() -
+                         node[SurfaceNode::ENERGY_BY_V] / ring.ratio();
+    largest = std::max(largest, std::abs(node[SurfaceNode::ENERGY_BY_V]));
+    squares[0] += output * output;
+    squares[1] += shaft * shaft;
+    // A tenth of a second of arc, a thousandth of the motor's torque limit.
+    EXPECT_LT(std::abs(output) / node[SurfaceNode::OUTPUT_STIFFNESS], 0.1 * ARC_SECOND);
+    EXPECT_LT(std::abs(shaft), 1e-3 * parameters.motor.torque_limit);
+  }
+  EXPECT_GT(largest, parameters.life.momentary_peak_torque);
+  RecordProperty("output_rms", std::to_string(1e6 * std::sqrt(squares[0] / PLACES)) + " uN.m");
+  RecordProperty("motor_rms", std::to_string(1e6 * std::sqrt(squares[1] / PLACES)) + " uN.m");
+}
+
 /// Of the golden gear; a part of the range is enough here.
 TEST(ResponseSurface, AgreesWithTheFullRingOnSprings)
 {

@@ -23,6 +23,7 @@ ARGUMENTS = {"view": ["rviz:=false"],
 REPLAY = {("/joint_twin", "/joint_twin/health"), ("/replay_player", "/clock"), ("/replay_recorder", "/diagnostics")}
 UP = {"twin": {("/joint_twin", "/joint_twin/health")},
       "arm": {("/joint_twin", "/wrist_3/joint_twin/comparison"), ("/joint_twin", "/joint_states")},
+      "arm_twin": {("/arm_twin", "/joint_states"), ("/arm_twin", "/wrist_3/arm_twin/health")},
       "view": {("/joint_twin", "/joint_twin/health"), ("/drive_markers", "/drive_markers/markers")},
       "aggregator": {("/diagnostic_aggregator", "/diagnostics_agg")}, "replay": REPLAY, "demo": REPLAY}
 WRITTEN = {"replay": "replay.bag.active", "demo": "demo.bag.active"}

@@ -45,10 +45,11 @@ protected:
     twin_ = std::make_unique<Twin>(shippedParameters({ "solver.rate=1000", "indicators.sample_rate=1000",
                                                        "input.delay=0.02", "input.wait_for_first_input=" + wait }));
     instants_.reserve(1 << 20);
+    advanced_ = std::make_unique<AdvancedTwin>(*twin_);
     loop_ = std::make_unique<TwinLoop>(
-        *twin_, inbox_, [this] { return clock_.load(); }, clock_kind,
-        [this](Twin& twin) {
-          instants_.push_back({ twin.outputs().stamp, twin.outputs().motor_torque });
+        *advanced_, twin_->parameters(), inbox_, [this] { return clock_.load(); }, clock_kind,
+        [this] {
+          instants_.push_back({ twin_->outputs().stamp, twin_->outputs().motor_torque });
         });
   }
 
@@ -83,6 +84,7 @@ protected:
   std::atomic<Stamp> clock_{ 0 };
   Inbox inbox_;
   std::unique_ptr<Twin> twin_;
+  std::unique_ptr<AdvancedTwin> advanced_;
   std::vector<Instant> instants_;
   std::unique_ptr<TwinLoop> loop_;
 };
@@ -241,10 +243,11 @@ TEST_F(LoopFixture, SleepsUntilTheNextInstantThatIsAwaited)
   Twin twin(shippedParameters(
       { "solver.rate=1000", "indicators.sample_rate=1000", "input.delay=0.02", "realtime.deadline=1.0" }));
   instants_.reserve(1 << 20);
+  AdvancedTwin advanced(twin);
   TwinLoop loop(
-      twin, inbox_, clock, ClockKind::RUNNING,
-      [this](Twin& at) {
-        instants_.push_back({ at.outputs().stamp, 0.0 });
+      advanced, twin.parameters(), inbox_, clock, ClockKind::RUNNING,
+      [this, &twin] {
+        instants_.push_back({ twin.stamp(), 0.0 });
       },
       [&period](Stamp instant) { return (instant / period + 1) * period; });
   const auto cycles_in_a_second = [&loop]
@@ -389,7 +392,7 @@ TEST(Inbox, DropsWhatItCannotHoldAndCounts)
   inbox.push({ 0, InputKind::LOAD_TORQUE, std::numeric_limits<double>::infinity() });
   EXPECT_EQ(inbox.overflow(), 3U);
   EXPECT_EQ(inbox.notFinite(), 1U);
-  std::vector<Input> inputs = Inbox::makeBuffer();
+  std::vector<LiveInput> inputs = Inbox::makeBuffer();
   inbox.take(inputs);
   ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
   EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);

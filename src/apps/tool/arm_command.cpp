@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,27 +15,22 @@
 #include "output/run_summary.hpp"
 
 #include "arm/arm_configuration.hpp"
-#include "arm/arm_controller.hpp"
-#include "arm/arm_motion.hpp"
+#include "arm/moving_arm.hpp"
 #include "base/csv_rows.hpp"
 #include "base/number_text.hpp"
-#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double CONTROL_RATE = 2000.0;  // [Hz]
-constexpr double SETTLING = 0.5;         // before the motion, the brakes released after the first half [s]
-
 struct ArmRunOptions : CommonOptions
 {
   std::string motion;
   std::string arm;
   std::string identified;
   std::string out;
-  double rate{ 125.0 };
+  std::optional<double> rate;  // [Hz]
 };
 
 /// The column of a header by one of its names; -1: none.
@@ -137,45 +133,17 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
   return points;
 }
 
-/// JOINT:KIND:SEVERITY[:PLACE[:ONSET]] of `--fault`, the faults of each joint.
-std::vector<std::vector<std::string>> faultsOfJoints(const ArmRunOptions& options, const ArmDescription& arm)
-{
-  std::vector<std::vector<std::string>> faults(arm.joints.size());
-  for (const std::string& fault : options.faults)
-  {
-    const std::size_t colon = fault.find(':');
-    const std::string name = fault.substr(0, colon);
-    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
-                                    [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
-    if (colon == std::string::npos || joint == arm.joints.end())
-    {
-      std::string names;
-      for (const ArmJoint& each : arm.joints)
-      {
-        names += (names.empty() ? "" : ", ") + each.short_name;
-      }
-      throw ParameterError("--fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " +
-                           names);
-    }
-    faults[static_cast<std::size_t>(joint - arm.joints.begin())].push_back(fault.substr(colon + 1));
-  }
-  return faults;
-}
-
 std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescription& arm)
 {
-  const std::vector<std::vector<std::string>> faults = faultsOfJoints(options, arm);
   std::vector<Parameters> drives;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  for (const ArmJoint& joint : arm.joints)
   {
-    ParameterMap map = armJointParameters(arm.joints[i], configDirectory(options), options.identified);
+    ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
     readAssignment("solver.scene=auto", map);
     addOverlays(options, map);
-    ConfigurationOptions own;
-    own.faults = faults[i];
-    Parameters& drive = drives.emplace_back(parseParameters(map));
-    addFaults(own, drive);
+    drives.push_back(parseParameters(map));
   }
+  addArmFaults(arm, options.faults, drives);
   return drives;
 }
 
@@ -192,55 +160,51 @@ struct JointErrors
 class Recorder
 {
 public:
-  Recorder(const ArmRunOptions& options, const ArmDescription& arm, ArmTwin& twin)
-    : twin_(twin), dynamics_(arm), target_(arm.joints.size()), csv_(options.out, columnsOf(arm.joints.size()))
+  Recorder(const ArmRunOptions& options, const ArmDescription& arm, MovingArm& moving)
+    : arm_(moving), dynamics_(arm), target_(arm.joints.size()), csv_(options.out, columnsOf(arm.joints.size()))
   {
     for (std::size_t i = 0; i < arm.joints.size(); ++i)
     {
       errors_.push_back({ arm.joints[i].short_name });
-      Parameters drive = twin.drive(i).parameters();
+      Parameters drive = moving.twin().drive(i).parameters();
       inertia_in_load_.push_back(takeInertiaInLoad(drive));
     }
   }
 
-  void record(double time, ArmMotion& motion, const ArmController& controller)
+  void record(double time)
   {
-    motion.at(time, target_);
+    arm_.wanted(target_);
+    const ArmController& controller = arm_.controller();
     std::vector<double> row{ time };
     std::array<std::vector<double>, 8> values;
     for (std::size_t i = 0; i < target_.size(); ++i)
     {
-      Twin& drive = twin_.drive(i);
-      const Parameters& parameters = drive.parameters();
-      const double ratio = nominalRatio(parameters.gear);
-      const double gain = parameters.telemetry.torque_per_current;
-      const EncoderReadings read = drive.encoders();
-      const double angle = twin_.startAngle(i) + read.output_angle;
-      const double current = ratio * drive.motorTorqueReading() / gain;
+      const double gain = arm_.twin().drive(i).parameters().telemetry.torque_per_current;
+      const JointReading read = arm_.reading(i);
       const double numbers[] = { target_[i].position,
                                  target_[i].velocity,
                                  target_[i].acceleration,
                                  controller.feedForward(i) / gain,
                                  controller.rigidTorques()[i] + inertia_in_load_[i] * target_[i].acceleration,
-                                 angle,
-                                 read.motor_velocity / ratio,
-                                 current };
+                                 read.position,
+                                 read.velocity,
+                                 read.current };
       for (std::size_t k = 0; k < values.size(); ++k)
       {
         values[k].push_back(numbers[k]);
       }
       JointErrors& errors = errors_[i];
-      const double error = twin_.motion()[i].position - target_[i].position;
+      const double error = arm_.twin().motion()[i].position - target_[i].position;
       errors.squares += error * error;
       errors.largest = std::max(errors.largest, std::abs(error));
-      errors.current_squares += current * current;
+      errors.current_squares += read.current * read.current;
     }
     for (const std::vector<double>& value : values)
     {
       row.insert(row.end(), value.begin(), value.end());
     }
     const ToolPose wanted = dynamics_.toolPose(target_);
-    const ToolPose tool = twin_.toolPose();
+    const ToolPose tool = arm_.twin().toolPose();
     double square = 0.0;
     for (const ToolPose& pose : { wanted, tool })
     {
@@ -275,7 +239,7 @@ public:
                   { "real_time_factor", "times real time", duration / wall },
                   { "tool_error_rms", "tool position error, rms [mm]", 1e3 * std::sqrt(tool_squares_ / n) },
                   { "tool_error_max", "largest [mm]", 1e3 * tool_largest_ },
-                  { "energy_residual", "error of the arm's energy [J]", twin_.energyResidual() } },
+                  { "energy_residual", "error of the arm's energy [J]", arm_.twin().energyResidual() } },
                 { { "joints", Table(columns, errors_) } });
   }
 
@@ -301,7 +265,7 @@ private:
     return columns;
   }
 
-  ArmTwin& twin_;
+  MovingArm& arm_;
   ArmDynamics dynamics_;
   std::vector<JointMotion> target_;
   std::vector<double> inertia_in_load_;
@@ -312,57 +276,27 @@ private:
   CsvWriter csv_;
 };
 
-std::vector<double> anglesOf(const ArmSetPoint& point)
-{
-  std::vector<double> angles;
-  for (const JointMotion& joint : point.joints)
-  {
-    angles.push_back(joint.position);
-  }
-  return angles;
-}
-
 int runArm(const ArmRunOptions& options)
 {
   requireWritable(options.out, options.force, options.motion);
   const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   ArmMotion motion(readSetPoints(options.motion, arm));
-  const std::vector<Parameters> drives = drivesOf(options, arm);
-  std::vector<JointGains> gains;
-  for (const Parameters& drive : drives)
-  {
-    gains.push_back(ArmController::defaultGains(drive));
-  }
-  ArmTwin twin(arm, drives, anglesOf(motion.points().front()), surfaceSource());
-  ArmController controller(arm, twin, gains, CONTROL_RATE);
-  Recorder recorder(options, arm, twin);
-  const Stamp motion_begin = SIMULATION_EPOCH + toStampLength(SETTLING);
-  twin.reset(SIMULATION_EPOCH);
-  for (std::size_t i = 0; i < twin.joints(); ++i)
-  {
-    twin.drive(i).commandBrake(SIMULATION_EPOCH + toStampLength(0.5 * SETTLING), false);
-  }
-  const Stamp end = motion_begin + toStampLength(motion.end() - motion.begin());
-  const auto row_steps = std::llround(1e9 / options.rate / static_cast<double>(twin.stepLength()));
-  std::vector<JointMotion> set_point(twin.joints());
+  MovingArm moving(arm, drivesOf(options, arm), motion, surfaceSource());
+  Recorder recorder(options, arm, moving);
+  moving.reset(SIMULATION_EPOCH);
+  ArmTwin& twin = moving.twin();
+  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
+  const double rate = options.rate.value_or(arm.state_rate);
+  const auto row_steps = std::llround(1e9 / rate / static_cast<double>(twin.stepLength()));
   const InterruptScope interrupts;
   const auto started = std::chrono::steady_clock::now();
   Progress progress("moving the arm");
   std::int64_t steps = 0;
-  while (interruptSignal() == 0)
+  while (interruptSignal() == 0 && moving.step(end))
   {
-    if (controller.isDue(twin))
+    if (twin.stamp() >= moving.motionBegin() && steps++ % row_steps == 0)
     {
-      motion.at(motion.begin() + toSeconds(twin.stamp() + twin.stepLength() - motion_begin), set_point);
-      controller.control(twin, set_point);
-    }
-    if (!twin.step(end))
-    {
-      break;
-    }
-    if (twin.stamp() >= motion_begin && steps++ % row_steps == 0)
-    {
-      recorder.record(motion.begin() + toSeconds(twin.stamp() - motion_begin), motion, controller);
+      recorder.record(motion.begin() + toSeconds(twin.stamp() - moving.motionBegin()));
     }
     progress.update(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
   }
@@ -395,7 +329,7 @@ void declare(Command& command, ArmRunOptions& options)
            "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]")
       .required()
       .type("FILE.csv");
-  command.add("--rate", options.rate, "of the rows [Hz]").positive();
+  command.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states").positive();
   command.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
       .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
   addCommonOptions(command, options);

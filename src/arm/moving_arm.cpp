@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/moving_arm.hpp"
+
+#include <utility>
+
+#include "gear/ratio.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::vector<double> anglesOf(const ArmSetPoint& point)
+{
+  std::vector<double> angles;
+  for (const JointMotion& joint : point.joints)
+  {
+    angles.push_back(joint.position);
+  }
+  return angles;
+}
+
+std::vector<JointGains> gainsOf(const std::vector<Parameters>& drives)
+{
+  std::vector<JointGains> gains;
+  for (const Parameters& drive : drives)
+  {
+    gains.push_back(ArmController::defaultGains(drive));
+  }
+  return gains;
+}
+}  // namespace
+
+MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
+                     const SurfaceSource& surface_source)
+  : twin_(arm, drives, anglesOf(motion.points().front()), surface_source)
+  , controller_(arm, twin_, gainsOf(drives), CONTROL_RATE)
+  , motion_(std::move(motion))
+  , commanded_(motion_)
+  , set_point_(drives.size())
+{
+  reset(0);
+}
+
+bool MovingArm::reset(Stamp stamp) noexcept
+{
+  if (!twin_.reset(stamp))
+  {
+    return false;
+  }
+  controller_.reset();
+  is_commanded_ = false;
+  motion_begin_ = twin_.stamp() + toStampLength(SETTLING);
+  for (std::size_t i = 0; i < twin_.joints(); ++i)
+  {
+    twin_.drive(i).commandBrake(twin_.stamp() + toStampLength(0.5 * SETTLING), false);
+  }
+  return true;
+}
+
+bool MovingArm::step(Stamp until) noexcept
+{
+  const Stamp next = twin_.stamp() + twin_.stepLength();
+  if (next <= until && controller_.isDue(twin_))
+  {
+    wantedAt(next, set_point_);
+    controller_.control(twin_, set_point_);
+  }
+  return twin_.step(until);
+}
+
+void MovingArm::follow(ArmMotion& motion) noexcept
+{
+  wanted(set_point_);
+  motion.beginFrom(set_point_);
+  std::swap(commanded_, motion);
+  is_commanded_ = true;
+  command_begin_ = twin_.stamp();
+}
+
+void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
+{
+  ArmMotion& followed = is_commanded_ ? commanded_ : motion_;
+  followed.at(followed.begin() + toSeconds(stamp - (is_commanded_ ? command_begin_ : motion_begin_)), motion);
+}
+
+JointReading MovingArm::reading(std::size_t joint) const noexcept
+{
+  const Twin& drive = twin_.drive(joint);
+  const double ratio = nominalRatio(drive.parameters().gear);
+  const EncoderReadings read = drive.encoders();
+  return { twin_.startAngle(joint) + read.output_angle, read.motor_velocity / ratio,
+           ratio * drive.motorTorqueReading() / drive.parameters().telemetry.torque_per_current };
+}
+}  // namespace hjt

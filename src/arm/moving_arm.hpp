@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "arm/arm_controller.hpp"
+#include "arm/arm_motion.hpp"
+#include "arm/arm_twin.hpp"
+
+namespace hjt
+{
+/// What an arm's controller shows of a joint.
+struct JointReading
+{
+  double position{};  ///< by the encoder at the output [rad]
+  double velocity{};  ///< by that at the motor, over the ratio [rad/s]
+  double current{};   ///< of the motor [A]
+};
+
+/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for the
+/// first half of SETTLING, is held where it stands for the second, then begins its motion.
+///
+/// After construction nothing throws or allocates.
+class MovingArm
+{
+public:
+  static constexpr double CONTROL_RATE = 2000.0;  ///< [Hz]
+  static constexpr double SETTLING = 0.5;         ///< [s]
+
+  /// `drives`: as ArmTwin takes them. @throws ParameterError.
+  MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
+            const SurfaceSource& surface_source);
+
+  /// Back to the start of the motion given at construction. False: as ArmTwin::reset.
+  bool reset(Stamp stamp) noexcept;
+
+  /// As ArmTwin::step, with what the controller commands.
+  bool step(Stamp until) noexcept;
+
+  /// Gets another motion in exchange for the last one taken this way. It begins now, from the present set point, which
+  /// takes the place of its first.
+  void follow(ArmMotion& motion) noexcept;
+
+  /// Present set point; `motion`: of the joints' size.
+  void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
+
+  JointReading reading(std::size_t joint) const noexcept;
+  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< of the motion given at construction [ns]
+  ArmTwin& twin() noexcept { return twin_; }
+  const ArmTwin& twin() const noexcept { return twin_; }
+  const ArmController& controller() const noexcept { return controller_; }
+
+private:
+  void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
+
+  ArmTwin twin_;
+  ArmController controller_;
+  ArmMotion motion_;
+  ArmMotion commanded_;
+  bool is_commanded_{};
+  Stamp motion_begin_{};
+  Stamp command_begin_{};
+  std::vector<JointMotion> set_point_;  // of the next control
+};
+}  // namespace hjt

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_io/arm_node.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <ros/console.h>
+
+#include "base/number_text.hpp"
+#include "base/printable.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
+#include "ros_io/arm_trajectory.hpp"
+#include "ros_io/input_topics.hpp"
+#include "ros_io/joint_name.hpp"
+#include "ros_io/live_loop.hpp"
+#include "ros_io/node_surface_source.hpp"
+#include "surface/surface_pool.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* WRENCH = "wrench";
+/// Between two warnings of the same kind [s].
+constexpr double WARNING_PERIOD = 1.0;
+
+/// Those of the drives as they start are waited for: so many rings would not keep up with the clock. Those of faults
+/// that come later are built beside the running arm.
+SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
+{
+  SurfaceSource source = nodeSurfaceSource(false);
+  source.pool = std::make_shared<SurfacePool>(2 * drives.size());
+  for (const Parameters& drive : drives)
+  {
+    const Twin waits(drive, source);
+  }
+  source.background = !ros::Time::isSimTime();
+  return source;
+}
+
+/// The loop does not wait for torques of others.
+Parameters loopParameters(Parameters drive)
+{
+  drive.input.wait_for_first_input = false;
+  return drive;
+}
+
+std::array<double, 3> valuesOf(const geometry_msgs::Vector3& vector)
+{
+  return { vector.x, vector.y, vector.z };
+}
+}  // namespace
+
+ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<Parameters>& drives)
+  : arm(description, drives, gentleMotion(description), armSurfaces(drives))
+  , motion(gentleMotion(description))
+  , wrench(ArmWrench{})
+  , wanted_(drives.size())
+{
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    arm.twin().drive(i).watchSignals(true);
+  }
+  arm.wanted(wanted_);
+  shown.tryWrite(wanted_);
+}
+
+bool ArmNode::Advance::reset(Stamp stamp) noexcept
+{
+  return arm.reset(stamp);
+}
+
+void ArmNode::Advance::push(const LiveInput& input) noexcept
+{
+  arm.twin().drive(input.joint).push(input);
+}
+
+bool ArmNode::Advance::step(Stamp until) noexcept
+{
+  motion.take([this](ArmMotion& commanded) { arm.follow(commanded); });
+  wrench.take([this](const ArmWrench& acting) { arm.twin().setWrench(acting); });
+  return arm.step(until);
+}
+
+void ArmNode::Advance::show(LoopStatus& /*status*/) noexcept
+{
+  arm.wanted(wanted_);
+  shown.tryWrite(wanted_);
+}
+
+ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives)
+  : description_(arm)
+  , advance_(arm, drives)
+  , publishers_(node, arm, advance_.arm.twin())
+  , loop_(
+        advance_, loopParameters(drives.front()), inbox_, rosNow, rosClockKind(),
+        [this] { publishers_.offer(advance_.arm); }, [this](Stamp instant) { return publishers_.finishCycle(instant); })
+  , realtime_(requestRealtime(drives.front().realtime, loop_))
+  , timing_publisher_(node, drives.front(), loop_)
+  , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
+{
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    ros::NodeHandle joint(jointName(arm.joints[i]));
+    faults_.push_back(std::make_unique<FaultSubscriber>(InputTopics{ joint, too_large_ }, drives[i], inbox_, i));
+  }
+  const InputTopics inputs{ node, too_large_ };
+  command_subscriber_ = inputs.subscribe<trajectory_msgs::JointTrajectory>(
+      topics::COMMAND, [this](const auto& event) { receiveCommand(*event.getMessage()); });
+  wrench_subscriber_ = inputs.subscribe<geometry_msgs::WrenchStamped>(
+      WRENCH, [this](const auto& event) { receiveWrench(*event.getMessage()); });
+}
+
+void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
+{
+  const Stamp now = rosNow();
+  const double delay = std::max(toSeconds(stampOr(message.header.stamp, toRosTime(now)) - now), 0.0);
+  std::vector<ArmSetPoint> points;
+  const std::string errors = readTrajectory(message, description_, advance_.shown.read(), delay, points);
+  if (!errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
+    return;
+  }
+  advance_.motion.give(ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS));
+}
+
+void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
+{
+  constexpr double MOST = 1000.0;  // [N], [N.m]
+  const ArmWrench wrench{ valuesOf(message.wrench.force), valuesOf(message.wrench.torque) };
+  std::string errors;
+  for (const auto& vector : { wrench.force, wrench.moment })
+  {
+    for (const double value : vector)
+    {
+      // Written so that NaN fails.
+      if (!(std::abs(value) <= MOST))
+      {
+        errors = numberText(value) + " is out of range, allowed: -1000 ... 1000 [N], [N.m]";
+      }
+    }
+  }
+  const std::string& frame = message.header.frame_id;
+  if (!frame.empty() && frame != description_.base)
+  {
+    errors = "frame_id = '" + printable(frame) + "', allowed: '" + description_.base + "' or none";
+  }
+  if (!errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a wrench on ~" << WRENCH << ": " << errors);
+    return;
+  }
+  advance_.wrench.give(wrench);
+}
+
+bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  response.success = loop_.reset();
+  response.message = response.success ? "the arm restarts where it began" : "the loop does not answer";
+  return true;
+}
+}  // namespace hjt

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <std_srvs/Trigger.h>
+#include <trajectory_msgs/JointTrajectory.h>
+
+#include "arm/moving_arm.hpp"
+#include "live/handover.hpp"
+#include "live/inbox.hpp"
+#include "live/realtime.hpp"
+#include "live/try_lock_value.hpp"
+#include "live/twin_loop.hpp"
+#include "ros_io/arm_publishers.hpp"
+#include "ros_io/fault_subscriber.hpp"
+#include "ros_io/timing_publisher.hpp"
+
+namespace hjt
+{
+/// The live twin of a whole arm, in place of a robot: moves gently until somebody commands a trajectory, publishes
+/// what the robot's driver would, and takes faults of every joint.
+class ArmNode
+{
+public:
+  /// `drives`: as ArmTwin takes them. Waits for their response surfaces, then starts. @throws ParameterError.
+  ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives);
+
+private:
+  /// What the loop advances.
+  class Advance : public Advanced
+  {
+  public:
+    Advance(const ArmDescription& arm, const std::vector<Parameters>& drives);
+
+    bool reset(Stamp stamp) noexcept override;
+    void push(const LiveInput& input) noexcept override;
+    bool step(Stamp until) noexcept override;
+    Stamp stamp() const noexcept override { return arm.twin().stamp(); }
+    void show(LoopStatus& status) noexcept override;
+
+    MovingArm arm;
+    Handover<ArmMotion> motion;
+    Handover<ArmWrench> wrench;
+    TryLockValue<std::vector<JointMotion>> shown;  ///< present set point
+
+  private:
+    std::vector<JointMotion> wanted_;
+  };
+
+  void receiveCommand(const trajectory_msgs::JointTrajectory& message);
+  void receiveWrench(const geometry_msgs::WrenchStamped& message);
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  const ArmDescription description_;
+  Inbox inbox_;
+  Advance advance_;
+  ArmPublishers publishers_;
+  TwinLoop loop_;
+  RealtimeState realtime_;
+  TimingPublisher timing_publisher_;
+  std::atomic<std::uint64_t> too_large_{ 0 };
+  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
+  ros::Subscriber command_subscriber_;
+  ros::Subscriber wrench_subscriber_;
+  ros::ServiceServer reset_service_;
+};
+}  // namespace hjt

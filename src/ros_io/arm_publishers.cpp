@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_io/arm_publishers.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include <ros/names.h>
+
+#include "messages/channels.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
+#include "ros_io/joint_name.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr const char* TOOL_POSE = "tool_pose";
+constexpr const char* WANTED_TOOL_POSE = "wanted_tool_pose";
+
+template <class Message>
+Channel<Message> channelOf(const char* name)
+{
+  return { name, nullptr, SMALL_MESSAGE_SLOTS, nullptr, nullptr };
+}
+
+/// ros_control's, which UR's driver publishes with: by the joints' names.
+std::vector<std::size_t> driverOrder(const ArmDescription& arm)
+{
+  std::vector<std::size_t> order(arm.joints.size());
+  std::iota(order.begin(), order.end(), std::size_t{ 0 });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return arm.joints[a].name < arm.joints[b].name; });
+  return order;
+}
+
+sensor_msgs::JointState makeArmStates(const ArmDescription& arm, const std::vector<std::size_t>& order)
+{
+  sensor_msgs::JointState message;
+  for (const std::size_t joint : order)
+  {
+    message.name.push_back(arm.joints[joint].name);
+  }
+  message.position.resize(order.size());
+  message.velocity.resize(order.size());
+  message.effort.resize(order.size());
+  return message;
+}
+
+geometry_msgs::PoseStamped makePose(const ArmDescription& arm)
+{
+  geometry_msgs::PoseStamped message;
+  message.header.frame_id = arm.base;
+  return message;
+}
+
+bool fillPose(Stamp stamp, const ToolPose& pose, geometry_msgs::PoseStamped& message) noexcept
+{
+  message.header.stamp = toRosTime(stamp);
+  message.pose.position.x = pose.position[0];
+  message.pose.position.y = pose.position[1];
+  message.pose.position.z = pose.position[2];
+  message.pose.orientation.x = pose.orientation[0];
+  message.pose.orientation.y = pose.orientation[1];
+  message.pose.orientation.z = pose.orientation[2];
+  message.pose.orientation.w = pose.orientation[3];
+  return true;
+}
+}  // namespace
+
+ArmPublishers::ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, const ArmTwin& twin)
+  : order_(driverOrder(arm))
+  , period_(publishPeriod(arm.state_rate, twin.drive(0).parameters().solver.rate))
+  , dynamics_(arm)
+  , wanted_(arm.joints.size())
+  , states_(&parent_, channelOf<sensor_msgs::JointState>(topics::JOINT_STATES), makeArmStates(arm, order_))
+  , tool_(&node, channelOf<Pose>(TOOL_POSE), makePose(arm))
+  , wanted_tool_(&node, channelOf<Pose>(WANTED_TOOL_POSE), makePose(arm))
+  , thread_([this] { drain(); }, [this] { return isHeard(); })
+{
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    ros::NodeHandle joint(jointName(arm.joints[i]));
+    drives_.push_back(std::make_unique<OutputPublishers>(joint, twin.drive(i)));
+  }
+}
+
+void ArmPublishers::offer(MovingArm& arm) noexcept
+{
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+  {
+    drives_[i]->offer(arm.twin().drive(i));
+  }
+  const Stamp stamp = arm.twin().stamp();
+  if (stamp % period_ != 0)
+  {
+    return;
+  }
+  if (states_.isWanted())
+  {
+    states_.write(
+        [&](sensor_msgs::JointState& message)
+        {
+          message.header.stamp = toRosTime(stamp);
+          for (std::size_t k = 0; k < order_.size(); ++k)
+          {
+            const JointReading reading = arm.reading(order_[k]);
+            message.position[k] = reading.position;
+            message.velocity[k] = reading.velocity;
+            message.effort[k] = reading.current;
+          }
+          return true;
+        });
+  }
+  if (tool_.isWanted())
+  {
+    tool_.write([&](Pose& message) { return fillPose(stamp, arm.twin().toolPose(), message); });
+  }
+  if (wanted_tool_.isWanted())
+  {
+    arm.wanted(wanted_);
+    wanted_tool_.write([&](Pose& message) { return fillPose(stamp, dynamics_.toolPose(wanted_), message); });
+  }
+}
+
+Stamp ArmPublishers::finishCycle(Stamp instant) noexcept
+{
+  Stamp next = std::numeric_limits<Stamp>::max() / 2;
+  for (const auto& drive : drives_)
+  {
+    next = std::min(next, drive->finishCycle(instant));
+  }
+  if (isHeard())
+  {
+    thread_.wakeUp();
+    next = std::min(next, (instant / period_ + 1) * period_);
+  }
+  return next;
+}
+
+bool ArmPublishers::isHeard() const noexcept
+{
+  return states_.isWanted() || tool_.isWanted() || wanted_tool_.isWanted();
+}
+
+void ArmPublishers::drain()
+{
+  states_.drain();
+  tool_.drain();
+  wanted_tool_.drain();
+}
+}  // namespace hjt

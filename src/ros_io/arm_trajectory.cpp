@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_io/arm_trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/joined.hpp"
+#include "base/number_text.hpp"
+#include "base/printable.hpp"
+
+namespace hjt
+{
+namespace
+{
+using trajectory_msgs::JointTrajectory;
+using trajectory_msgs::JointTrajectoryPoint;
+
+constexpr double SAME_PLACE = 0.01;       // that a point at time 0 may be from the present set point [rad]
+constexpr std::size_t MAX_NAMES = 300;    // of the names in a message that are shown [bytes]
+constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
+
+/// Place of each joint of the arm in the message. @returns the name of one that it lacks, or nothing.
+std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, std::vector<std::size_t>& places)
+{
+  for (const ArmJoint& joint : arm.joints)
+  {
+    const auto found = std::find(message.joint_names.begin(), message.joint_names.end(), joint.name);
+    if (found == message.joint_names.end())
+    {
+      return joint.name;
+    }
+    places.push_back(static_cast<std::size_t>(found - message.joint_names.begin()));
+  }
+  return {};
+}
+
+std::string sizeErrors(const JointTrajectoryPoint& point, std::size_t joints)
+{
+  if (point.positions.size() != joints)
+  {
+    return std::to_string(point.positions.size()) + " positions for " + std::to_string(joints) + " joints";
+  }
+  if (!point.velocities.empty() && point.velocities.size() != joints)
+  {
+    return std::to_string(point.velocities.size()) + " velocities for " + std::to_string(joints) + " joints";
+  }
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  return std::all_of(point.positions.begin(), point.positions.end(), is_finite) &&
+                 std::all_of(point.velocities.begin(), point.velocities.end(), is_finite) ?
+             "" :
+             "not all values are finite";
+}
+
+/// Of a joint between two set points, at most [rad/s].
+double greatestSpeed(const JointMotion& from, const JointMotion& to, double length)
+{
+  const double way = (to.position - from.position) / length;
+  const double linear = 6.0 * way - 4.0 * from.velocity - 2.0 * to.velocity;
+  const double square = 3.0 * (from.velocity + to.velocity) - 6.0 * way;
+  double greatest = std::max(std::abs(from.velocity), std::abs(to.velocity));
+  const double at = square == 0.0 ? 0.0 : -0.5 * linear / square;
+  if (at > 0.0 && at < 1.0)
+  {
+    greatest = std::max(greatest, std::abs(from.velocity + at * (linear + at * square)));
+  }
+  return greatest;
+}
+
+/// Velocities where the message has none: the slopes through both neighbours; 0 at the end.
+void fillVelocities(const JointTrajectory& message, std::vector<ArmSetPoint>& points)
+{
+  const std::size_t first = points.size() - message.points.size();
+  for (std::size_t k = 1; k + 1 < points.size(); ++k)
+  {
+    if (k >= first && !message.points[k - first].velocities.empty())
+    {
+      continue;
+    }
+    const ArmSetPoint& before = points[k - 1];
+    const ArmSetPoint& after = points[k + 1];
+    for (std::size_t i = 0; i < points[k].joints.size(); ++i)
+    {
+      points[k].joints[i].velocity =
+          (after.joints[i].position - before.joints[i].position) / (after.time - before.time);
+    }
+  }
+}
+
+std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
+{
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      const double limit = arm.joints[i].speed_limit;
+      const double speed =
+          greatestSpeed(points[k - 1].joints[i], points[k].joints[i], points[k].time - points[k - 1].time);
+      // Written so that NaN fails.
+      if (limit > 0.0 && !(speed <= limit * (1.0 + SPEED_TOLERANCE)))
+      {
+        return arm.joints[i].name + " would reach " + roundedText(speed, 3) + " rad/s before " +
+               roundedText(points[k].time, 4) + " s, its limit is " + roundedText(limit, 4);
+      }
+    }
+  }
+  return {};
+}
+}  // namespace
+
+std::string readTrajectory(const JointTrajectory& message, const ArmDescription& arm,
+                           const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points)
+{
+  std::vector<std::size_t> places;
+  const std::string missing = placesOf(message, arm, places);
+  if (!missing.empty())
+  {
+    return "it lacks " + missing + "; it names " + printable(joined(message.joint_names, ", "), MAX_NAMES);
+  }
+  if (message.points.empty())
+  {
+    return "it has no points";
+  }
+  points.assign(1, { 0.0, present });
+  for (const JointTrajectoryPoint& point : message.points)
+  {
+    const std::string place = "points[" + std::to_string(&point - message.points.data()) + "]: ";
+    const std::string errors = sizeErrors(point, message.joint_names.size());
+    if (!errors.empty())
+    {
+      return place + errors;
+    }
+    ArmSetPoint set_point{ delay + point.time_from_start.toSec(), {} };
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      set_point.joints.push_back(
+          { point.positions[places[i]], point.velocities.empty() ? 0.0 : point.velocities[places[i]], 0.0 });
+      farthest = std::max(farthest, std::abs(set_point.joints[i].position - points.back().joints[i].position));
+    }
+    if (set_point.time <= points.back().time)
+    {
+      if (points.size() == 1 && set_point.time == 0.0 && farthest <= SAME_PLACE)
+      {
+        continue;
+      }
+      return place + "time_from_start = " + numberText(point.time_from_start.toSec()) + " s" +
+             (points.size() == 1 ? ", but it is " + roundedText(farthest, 3) + " rad from where the arm stands" :
+                                   " is not after the point before");
+    }
+    points.push_back(set_point);
+  }
+  if (points.size() == 1)
+  {
+    return "it does not move";
+  }
+  fillVelocities(message, points);
+  const auto is_moving = [](const JointMotion& joint) { return joint.velocity != 0.0; };
+  if (std::any_of(points.back().joints.begin(), points.back().joints.end(), is_moving))
+  {
+    return "it does not end at rest";
+  }
+  return speedErrors(points, arm);
+}
+}  // namespace hjt

@@ -1,0 +1,161 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The live twin of a whole arm in place of a robot, and arm.launch beside it as beside a robot."""
+import math
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from harmonic_joint_twin.msg import Fault, Faults, Health, Timing
+from ros_support import OK, PACKAGE, PATIENCE, Diagnostics, Listener, numbers_in, wait_until
+
+NODE = "/arm_twin"
+JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint",
+          "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}
+NAMES = sorted(JOINTS.values())  # as UR's driver orders them
+START = dict(zip(JOINTS.values(), (0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0, 0.0)))
+PERIOD = 0.008  # of the states [s]
+
+
+class ArmTwin(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.states = Listener("/joint_states", JointState)
+        cls.command = rospy.Publisher(f"{NODE}/command", JointTrajectory, queue_size=10)
+        cls.wrench = rospy.Publisher(f"{NODE}/wrench", WrenchStamped, queue_size=10)
+        cls.log = Listener("/rosout", Log)
+        cls.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
+        cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
+        for publisher in (cls.command, cls.wrench):
+            wait_until(lambda each=publisher: each.get_num_connections() == 1, publisher.name)
+
+    def last(self):
+        message = self.states.messages()[-1]
+        return dict(zip(message.name, message.position))
+
+    def send(self, *points, names=NAMES):
+        """Angles by joint, times [s]."""
+        message = JointTrajectory(joint_names=names)
+        for angles, at in points:
+            message.points.append(JointTrajectoryPoint(positions=[angles[name] for name in names],
+                                                       time_from_start=rospy.Duration.from_sec(at)))
+        self.command.publish(message)
+
+    def go(self, angles, duration):
+        self.send((angles, duration))
+        wait_until(lambda: max(abs(self.last()[name] - angles[name]) for name in NAMES) < 2e-3, f"the arm at {angles}")
+
+    def said(self, text):
+        wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
+
+    def test_1_arm_beside_it_finds_it_sound(self):
+        def verdicts():
+            return {joint: self.diagnostics[joint].values("Drive").get("Verdict") for joint in JOINTS}
+
+        wait_until(lambda: set(verdicts().values()) == {"OK"}, "all joints OK", 6.0 * PATIENCE)
+        for joint in JOINTS:
+            self.assertEqual({status.level for status in self.diagnostics[joint].statuses("Drive")}, {OK}, joint)
+
+    def test_2_it_publishes_as_the_driver_does(self):
+        messages = self.states.messages()[-500:]
+        self.assertEqual({tuple(message.name) for message in messages}, {tuple(NAMES)})
+        self.assertTrue(all(math.isfinite(value) for message in messages for value in numbers_in(message)))
+        stamps = [message.header.stamp.to_nsec() for message in messages]
+        self.assertEqual({b - a for a, b in zip(stamps, stamps[1:])}, {round(1e9 * PERIOD)})
+        elbow = NAMES.index("elbow_joint")
+        slopes = [(b.position[elbow] - a.position[elbow]) / (2 * PERIOD) - m.velocity[elbow]
+                  for a, m, b in zip(messages, messages[1:], messages[2:])]
+        self.assertLess(max(map(abs, slopes)), 0.1)
+
+    def test_3_it_follows_a_trajectory_and_its_tool_with_it(self):
+        tool, wanted = (Listener(f"{NODE}/{name}", PoseStamped) for name in ("tool_pose", "wanted_tool_pose"))
+        there = {name: angle + 0.2 for name, angle in START.items()}
+        self.go(there, 2.0)
+        time.sleep(0.5)
+        places = [listener.messages()[-1].pose.position for listener in (tool, wanted)]
+        self.assertEqual(tool.messages()[-1].header.frame_id, "base_link")
+        apart = math.dist(*((place.x, place.y, place.z) for place in places))
+        self.assertLess(apart, 2e-3)
+        self.assertGreater(apart, 0.0)
+
+    def test_4_what_it_cannot_follow_is_refused_and_said(self):
+        self.send((START, 2.0), names=NAMES[1:])
+        self.said("Refused a trajectory on ~command: it lacks elbow_joint; it names shoulder_lift_joint")
+        time.sleep(1.1)  # one warning a second
+        self.send((dict(START, elbow_joint=9.0), 0.5))
+        self.said("elbow_joint would reach")
+        time.sleep(1.1)
+        self.send((dict(START, elbow_joint=float("nan")), 5.0))
+        self.said("points[0]: not all values are finite")
+        time.sleep(1.1)
+        wrench = WrenchStamped()
+        wrench.header.frame_id = "tool"
+        self.wrench.publish(wrench)
+        self.said("Refused a wrench on ~wrench: frame_id = 'tool', allowed: 'base_link' or none")
+
+    def test_5_a_weight_at_the_tool_takes_current(self):
+        level = dict(START, shoulder_lift_joint=-0.4)
+        self.go(level, 3.0)
+
+        def current():
+            time.sleep(1.0)
+            lift = NAMES.index("shoulder_lift_joint")
+            rows = self.states.messages()[-60:]
+            return sum(row.effort[lift] for row in rows) / len(rows)
+
+        before = current()
+        wrench = WrenchStamped()
+        wrench.wrench.force.z = -30.0
+        self.wrench.publish(wrench)
+        heavier = current() - before
+        self.wrench.publish(WrenchStamped())
+        # 30 N at 0.3 to 0.9 m over 10.7 N.m/A, less what friction bears.
+        self.assertGreater(abs(heavier), 0.3)
+
+    def test_6_a_fault_is_taken_live_and_raises_its_joints_current(self):
+        faults = Listener("/elbow/arm_twin/faults", Faults)
+        health = Listener("/elbow/arm_twin/health", Health)
+        inject = rospy.Publisher("/elbow/arm_twin/inject_fault", Fault, queue_size=1)
+        wait_until(lambda: inject.get_num_connections() == 1, "the elbow's faults")
+
+        def currents():
+            """Mean amount of each joint while it goes to and fro [A]."""
+            self.go(START, 2.0)
+            there = {name: angle + 0.5 for name, angle in START.items()}
+            self.states.clear()
+            self.send((there, 1.5), (START, 3.0))
+            rows = self.states.wait_for(round(3.0 / PERIOD))
+            return {name: sum(abs(row.effort[k]) for row in rows) / len(rows) for k, name in enumerate(NAMES)}
+
+        sound = currents()
+        inject.publish(Fault(kind="lubricant_degradation", severity=1.0, place=-1))
+        wait_until(lambda: faults.messages() and [fault.kind for fault in faults.messages()[-1].faults] ==
+                   ["lubricant_degradation"], "the fault")
+        worn = currents()
+        more = {name: worn[name] - sound[name] for name in NAMES}
+        elbow = more.pop("elbow_joint")
+        self.assertGreater(elbow, 0.05, more)
+        self.assertLess(max(map(abs, more.values())), 0.3 * elbow, (elbow, more))
+        self.assertGreater(len(health.messages()), 10)
+
+    def test_7_it_keeps_up_and_restarts_on_request(self):
+        timing = Listener(f"{NODE}/timing", Timing).wait_for(2)[-1]
+        print(f"load of the loop {timing.load:.3f}")
+        self.assertGreater(timing.real_time_factor, 0.99)
+        self.assertTrue(rospy.ServiceProxy(f"{NODE}/reset", Trigger)().success)
+        self.states.clear()
+        wait_until(lambda: max(abs(self.last()[name] - START[name]) for name in NAMES) < 2e-3
+                   if self.states.messages() else False, "the arm at its start")
+
+
+if __name__ == "__main__":
+    rospy.init_node("arm_twin_test")
+    rostest.rosrun(PACKAGE, "arm_twin", ArmTwin, sys.argv)
